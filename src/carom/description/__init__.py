@@ -1,0 +1,30 @@
+"""What a robot is, whatever file it came from: frozen dataclasses that know no physics."""
+
+from carom.description.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
+from carom.description.joint import Joint, JointLimit, JointType, Mimic, SafetyController
+from carom.description.link import Collision, ContactParameters, Inertial, Link, Material, Visual
+from carom.description.pose import Pose
+from carom.description.robot import Robot
+
+__all__ = [
+    "Box",
+    "Capsule",
+    "Collision",
+    "ContactParameters",
+    "Cylinder",
+    "Geometry",
+    "Inertial",
+    "Joint",
+    "JointLimit",
+    "JointType",
+    "Link",
+    "Material",
+    "Mesh",
+    "Mimic",
+    "Plane",
+    "Pose",
+    "Robot",
+    "SafetyController",
+    "Sphere",
+    "Visual",
+]

@@ -1,0 +1,84 @@
+"""A joint: how a child link may move against its parent link."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from carom.description.pose import IDENTITY, Pose, Vector3
+
+
+class JointType(Enum):
+    """The kinds of joint a description can hold."""
+
+    REVOLUTE = "revolute"
+    CONTINUOUS = "continuous"
+    PRISMATIC = "prismatic"
+    FIXED = "fixed"
+    FLOATING = "floating"
+    PLANAR = "planar"
+    SPHERICAL = "spherical"
+
+
+@dataclass(frozen=True, slots=True)
+class JointLimit:
+    """Bounds of a joint; `lower > upper` means unlimited.
+
+    Attributes:
+        lower: Least position [rad or m].
+        upper: Greatest position [rad or m].
+        effort: Greatest force the drive can give [N m or N].
+        velocity: Greatest speed [rad/s or m/s].
+        twist: Greatest twist of a spherical joint [rad].
+    """
+
+    lower: float = 0.0
+    upper: float = -1.0
+    effort: float = 0.0
+    velocity: float = 0.0
+    twist: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """This joint follows another: position = multiplier · other + offset."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyController:
+    """Soft limits of a drive, as the file states them."""
+
+    soft_lower: float = 0.0
+    soft_upper: float = 0.0
+    k_position: float = 0.0
+    k_velocity: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint between two links of a robot.
+
+    Attributes:
+        parent: Index of the parent link in `Robot.links`.
+        child: Index of the child link in `Robot.links`.
+        frame: Joint frame in the parent's link frame; it is the child's link frame at position 0.
+        axis: Unit axis in the joint frame.
+        damping: Viscous damping [N m s/rad or N s/m].
+        friction: Static friction as the file states it [N m or N]; not simulated.
+    """
+
+    name: str
+    type: JointType
+    parent: int
+    child: int
+    frame: Pose = IDENTITY
+    axis: Vector3 = (1.0, 0.0, 0.0)
+    limit: JointLimit = JointLimit()
+    damping: float = 0.0
+    friction: float = 0.0
+    mimic: Mimic | None = None
+    safety: SafetyController | None = None

@@ -1,0 +1,93 @@
+"""A rigid link: its inertia, its shapes and how it touches others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from carom.description.geometry import Geometry
+from carom.description.pose import IDENTITY, Pose
+
+Rgba = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass and rotational inertia about the centre of mass.
+
+    Attributes:
+        mass: [kg].
+        frame: Inertial frame in the link frame; its origin is the centre of mass.
+        tensor: (ixx, ixy, ixz, iyy, iyz, izz) [kg m²] in the inertial frame.
+    """
+
+    mass: float = 1.0
+    frame: Pose = IDENTITY
+    tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """Looks of a visual: colour, specular colour and texture file."""
+
+    name: str = ""
+    rgba: Rgba | None = None
+    specular: tuple[float, float, float] | None = None
+    texture: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """A shape that touches; `frame` is its pose in the link frame."""
+
+    geometry: Geometry
+    frame: Pose = IDENTITY
+    name: str = ""
+    group: int | None = None
+    mask: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Visual:
+    """A shape that is seen; `frame` is its pose in the link frame."""
+
+    geometry: Geometry
+    frame: Pose = IDENTITY
+    name: str = ""
+    material: Material | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ContactParameters:
+    """How a link touches; None means the engine's default.
+
+    Attributes:
+        lateral_friction: Coulomb coefficient.
+        rolling_friction: Torque per normal force about the tangents [m].
+        spinning_friction: Torque per normal force about the normal [m].
+        restitution: Fraction of the normal speed that comes back.
+        stiffness: Contact spring [N/m].
+        damping: Contact damper [N s/m].
+        inertia_scaling: Factor on the link's inertia.
+        friction_anchor: Keep a position anchor for friction.
+    """
+
+    lateral_friction: float | None = None
+    rolling_friction: float | None = None
+    spinning_friction: float | None = None
+    restitution: float | None = None
+    stiffness: float | None = None
+    damping: float | None = None
+    inertia_scaling: float | None = None
+    friction_anchor: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """One rigid body of a robot."""
+
+    name: str
+    inertial: Inertial = Inertial()
+    collisions: tuple[Collision, ...] = ()
+    visuals: tuple[Visual, ...] = ()
+    contact: ContactParameters = ContactParameters()

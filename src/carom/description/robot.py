@@ -1,0 +1,30 @@
+"""A robot: a tree of links held together by joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from carom.description.joint import Joint
+from carom.description.link import Link, Material
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """Links and joints as a file describes them, checked to form one tree.
+
+    Attributes:
+        links: In file order.
+        joints: In file order; `parent` and `child` index `links`.
+        root: Index of the link that is nobody's child.
+        source: The file it came from, if any.
+        user_data: Key and value pairs stated by the file for the model.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
+    root: int = 0
+    materials: tuple[Material, ...] = ()
+    source: Path | None = None
+    user_data: dict[str, str] = field(default_factory=dict)

@@ -1,0 +1,88 @@
+"""A body ready for the engine: a robot flattened into the link order and frames of the solver.
+
+`carom.model.assemble` makes one from a `Robot` and the loading options; `carom.model.builder`
+appends it to the flat arrays of a `Model`. It is what the information getters read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from carom.description import Collision, ContactParameters, JointType, Pose, Visual
+from carom.description.pose import IDENTITY, Vector3
+
+BASE = -1
+
+
+@dataclass(slots=True)
+class LinkSpec:
+    """One link and the joint that carries it.
+
+    Attributes:
+        name: Link name.
+        parent: Index of the parent in `BodySpec.links`; -1 is the base. Always less than the
+            link's own index.
+        mass: [kg].
+        inertia: Principal moments [kg m²] along the axes of the inertial frame.
+        inertial_frame: Inertial (centre of mass) frame in the link frame.
+        joint_name: Name of the joint to the parent (empty for the base).
+        joint_type: Kind of that joint. `FLOATING` never occurs: inside a tree it is fixed.
+        joint_frame: Joint frame in the parent's link frame; the link frame at joint position 0.
+        joint_axis: Unit axis in the joint frame.
+        lower: Lower limit as the file states it [rad or m].
+        upper: Upper limit; `lower > upper` means none.
+        limited: The engine enforces `lower` and `upper`.
+        effort: Greatest drive force the file states; not enforced.
+        velocity: Greatest speed the file states; not enforced.
+        twist: Twist limit of a spherical joint [rad].
+        damping: Viscous joint damping [N m s/rad or N s/m].
+        friction: Joint friction the file states; not simulated.
+        collisions: Shapes that touch, in the link frame.
+        visuals: Shapes that are seen, in the link frame.
+        contact: How the link touches.
+    """
+
+    name: str
+    parent: int = BASE
+    mass: float = 0.0
+    inertia: Vector3 = (0.0, 0.0, 0.0)
+    inertial_frame: Pose = IDENTITY
+    joint_name: str = ""
+    joint_type: JointType = JointType.FIXED
+    joint_frame: Pose = IDENTITY
+    joint_axis: Vector3 = (1.0, 0.0, 0.0)
+    lower: float = 0.0
+    upper: float = -1.0
+    limited: bool = False
+    effort: float = 0.0
+    velocity: float = 0.0
+    twist: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+    collisions: tuple[Collision, ...] = ()
+    visuals: tuple[Visual, ...] = ()
+    contact: ContactParameters = ContactParameters()
+
+
+@dataclass(slots=True)
+class BodySpec:
+    """A tree of links.
+
+    Attributes:
+        name: Name of the robot.
+        base: The root link; its joint fields are unused.
+        links: Every other link, parents before children, in the order users index joints.
+        fixed_base: The base does not move (mass 0).
+        flags: The loading flags it was made with.
+        source: The file it came from, if any.
+        user_data: Key and value pairs stated by the file for the model.
+    """
+
+    name: str
+    base: LinkSpec
+    links: list[LinkSpec] = field(default_factory=list)
+    fixed_base: bool = False
+    flags: int = 0
+    source: Path | None = None
+    user_data: dict[str, str] = field(default_factory=dict)
