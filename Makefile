@@ -1,0 +1,89 @@
+# What users and developers run. Needs make and any Python >= 3.10 with venv, and nothing else.
+#
+#   make demo         the Panda and the one-joint arm at work: a table, and a plot in demo-output/
+#   make test         the test suite
+#   make check        lint, types and tests
+#   make docs         the documentation, in site/
+#   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
+#   make record       record what real PyBullet does in every conformance scenario
+#   make conformance  compare Carom with real PyBullet, live
+#   make report       the comparison as tables and plots, in docs/conformance/
+#   make bench        speed, beside real PyBullet's in the same run
+#   make clean        remove what the above have made, the recordings and reports excepted
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+
+# The first of the names after $(1) that runs and satisfies the Python condition $(1).
+python_where = $(shell for name in $(2); do \
+	$$name -c "import sys, venv; sys.exit(not ($(1)))" 2>/dev/null && { echo $$name; break; }; done)
+PYTHON ?= $(call python_where,sys.version_info >= (3$(comma) 10),python3 python3.13 python3.12 python3.11 python3.10)
+ORACLE_PYTHON ?= $(call python_where,(3$(comma) 7) <= sys.version_info < (3$(comma) 12),python3.11 python3.10 python3.9 python3)
+comma := ,
+
+VENV := .venv
+RUN := $(VENV)/bin/python
+PIP := $(RUN) -m pip --quiet --disable-pip-version-check
+
+.PHONY: help demo test check lint types docs oracle record conformance report bench clean
+
+help:
+	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
+
+# --- environments: each stamp file stands for one installed set ---------------------------------
+
+$(VENV)/created:
+	@test -n "$(PYTHON)" || { echo "No Python >= 3.10 found; name one: make PYTHON=..." >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/carom: pyproject.toml | $(VENV)/created
+	$(PIP) install --editable '.[plot]'
+	@touch $@
+
+$(VENV)/dev: $(VENV)/carom
+	$(PIP) install --upgrade 'pip>=25.1'
+	$(PIP) install --group dev
+	@touch $@
+
+$(VENV)/docs: $(VENV)/carom
+	$(PIP) install --upgrade 'pip>=25.1'
+	$(PIP) install --group docs
+	@touch $@
+
+.oracle/pybullet:
+	@test -n "$(ORACLE_PYTHON)" || { echo "PyBullet needs Python <= 3.11; name one: make ORACLE_PYTHON=..." >&2; exit 1; }
+	$(ORACLE_PYTHON) -m venv .oracle
+	.oracle/bin/python -m pip --quiet --disable-pip-version-check install pybullet==3.2.7 numpy
+	@touch $@
+
+oracle: .oracle/pybullet
+
+# --- what users run ------------------------------------------------------------------------------
+
+demo: $(VENV)/carom
+	$(RUN) -m carom warmup
+	$(RUN) examples/demo.py
+
+test: $(VENV)/dev
+	$(RUN) -m carom warmup
+	$(RUN) -m pytest --numprocesses auto
+
+# --- what developers run -------------------------------------------------------------------------
+
+check: lint types test
+
+lint: $(VENV)/dev
+	$(RUN) -m ruff check
+	$(RUN) -m ruff format --check
+
+types: $(VENV)/dev
+	$(RUN) -m pyright
+
+docs: $(VENV)/docs
+	$(RUN) -m mkdocs build --strict
+
+clean:
+	rm -rf $(VENV) .oracle .bench build dist site demo-output .pytest_cache .ruff_cache .hypothesis
+	find src tests examples benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +

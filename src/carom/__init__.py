@@ -1,0 +1,37 @@
+"""Carom: a robot simulator that runs PyBullet scripts unmodified.
+
+Scripts written for PyBullet need nothing from here: they `import pybullet`. New code can use
+`World`, `Body`, `Joint` and `Link` directly, and the controllers in `carom.control`. Names are
+imported when first used, so `import carom` itself is quick.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from carom.version import __version__
+
+if TYPE_CHECKING:
+    from carom import control
+    from carom.body import Body
+    from carom.joint import Joint
+    from carom.link import Link
+    from carom.world import World
+
+__all__ = ["Body", "Joint", "Link", "World", "__version__", "control"]
+
+_HOME = {"Body": "carom.body", "Joint": "carom.joint", "Link": "carom.link", "World": "carom.world"}
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name == "control":
+        return import_module("carom.control")
+    if name not in _HOME:
+        raise AttributeError(f"module 'carom' has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
