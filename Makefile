@@ -81,6 +81,21 @@ lint: $(VENV)/dev
 types: $(VENV)/dev
 	$(RUN) -m pyright
 
+# Beside real PyBullet; the recorded figures and the reports are committed.
+
+record: oracle
+	.oracle/bin/python -m tests.conformance.record
+
+conformance: oracle $(VENV)/dev
+	$(RUN) -m tests.conformance.live --oracle .oracle/bin/python
+
+report: $(VENV)/dev
+	$(RUN) -m tests.conformance.report
+
+bench: oracle $(VENV)/dev
+	$(RUN) -m carom warmup
+	$(RUN) benchmarks/run.py --oracle .oracle/bin/python
+
 docs: $(VENV)/docs
 	$(RUN) -m mkdocs build --strict
 

@@ -89,7 +89,7 @@ def draw(panda, arm, path):
             axis.plot(result["time"], result["measured"][:, joint], colour, label=f"joint {joint + 1}")
             axis.plot(result["time"], result["wanted"][:, joint], colour, linestyle=":", linewidth=2.5)
         axis.set_title(result["name"] + " (dotted: the path)")
-    axes[0, 0].legend(fontsize="small", ncols=2)
+    axes[0, 0].legend(fontsize="small", ncols=2, loc="center left", bbox_to_anchor=(0, 0.33))
     for result in arm:
         axes[1, 1].plot(result["time"], result["measured"], label=result["name"])
     axes[1, 1].axhline(ARM_TARGET, color="black", linestyle=":", label="target")

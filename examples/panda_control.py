@@ -103,10 +103,8 @@ def main(duration=2.0):
     for name in PHASES:
         wanted, measured = run_phase(robot, joints, name, duration)
         record[name] = {"wanted": wanted, "measured": measured}
-        errors = np.abs(wanted - measured)[:, :7]
-        print(
-            f"{name:8}: worst error on the way {errors.max():.4f} rad, at the end {errors[-1].max():.5f} rad"
-        )
+        error = np.abs(wanted - measured)[:, :7]
+        print(f"{name:8}: at most {error.max():.4f} rad off the path, {error[-1].max():.5f} rad at its end")
     p.disconnect()
     return record
 

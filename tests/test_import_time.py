@@ -1,0 +1,32 @@
+"""What an import brings with it decides how quick it is; each is looked at in a process of its own."""
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = {"matplotlib", "trimesh", "viser", "gymnasium", "scipy", "PIL", "tkinter"}
+
+
+def modules_after(statement: str) -> set[str]:
+    script = f"import sys\n{statement}\nprint(*sys.modules)"
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    return set(result.stdout.split())
+
+
+@pytest.mark.parametrize("statement", ["import pybullet", "import carom", "import carom.control"])
+def test_no_import_brings_in_plotting_meshes_or_a_viewer(statement):
+    assert not modules_after(statement) & HEAVY
+
+
+@pytest.mark.parametrize(
+    "statement", ["import carom", "import pybullet_data", "from carom.control import PID"]
+)
+def test_what_needs_no_physics_does_not_load_the_compiler(statement):
+    assert "warp" not in modules_after(statement)
+
+
+def test_importing_the_drop_in_prints_nothing():
+    script = [sys.executable, "-c", "import pybullet, pybullet_data"]
+    result = subprocess.run(script, capture_output=True, text=True, check=True)
+    assert (result.stdout, result.stderr) == ("", "")
