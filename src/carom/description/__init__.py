@@ -1,6 +1,6 @@
 """What a robot is, whatever file it came from: frozen dataclasses that know no physics."""
 
-from carom.description.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
+from carom.description.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
 from carom.description.joint import Joint, JointLimit, JointType, Mimic, SafetyController
 from carom.description.link import Collision, ContactParameters, Inertial, Link, Material, Visual
 from carom.description.pose import Pose
@@ -25,6 +25,7 @@ __all__ = [
     "Pose",
     "Robot",
     "SafetyController",
+    "SignedDistanceField",
     "Sphere",
     "Visual",
 ]

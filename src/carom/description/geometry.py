@@ -60,4 +60,11 @@ class Mesh:
     concave: bool = False
 
 
-Geometry = Sphere | Box | Cylinder | Capsule | Plane | Mesh
+@dataclass(frozen=True, slots=True)
+class SignedDistanceField:
+    """A shape given by distances on a grid, from a file."""
+
+    path: Path
+
+
+Geometry = Sphere | Box | Cylinder | Capsule | Plane | Mesh | SignedDistanceField

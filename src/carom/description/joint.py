@@ -29,14 +29,14 @@ class JointLimit:
         upper: Greatest position [rad or m].
         effort: Greatest force the drive can give [N m or N].
         velocity: Greatest speed [rad/s or m/s].
-        twist: Greatest twist of a spherical joint [rad].
+        twist: Greatest twist of a spherical joint [rad]; negative means unlimited.
     """
 
     lower: float = 0.0
     upper: float = -1.0
     effort: float = 0.0
     velocity: float = 0.0
-    twist: float = 0.0
+    twist: float = -1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +67,7 @@ class Joint:
         child: Index of the child link in `Robot.links`.
         frame: Joint frame in the parent's link frame; it is the child's link frame at position 0.
         axis: Unit axis in the joint frame.
+        axis_length: Length the axis has in the file; PyBullet reports it unnormalised.
         damping: Viscous damping [N m s/rad or N s/m].
         friction: Static friction as the file states it [N m or N]; not simulated.
     """
@@ -77,6 +78,7 @@ class Joint:
     child: int
     frame: Pose = IDENTITY
     axis: Vector3 = (1.0, 0.0, 0.0)
+    axis_length: float = 1.0
     limit: JointLimit = JointLimit()
     damping: float = 0.0
     friction: float = 0.0

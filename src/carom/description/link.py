@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.description.geometry import Geometry
@@ -55,6 +55,7 @@ class Visual:
     frame: Pose = IDENTITY
     name: str = ""
     material: Material | None = None
+    user_data: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,3 +92,4 @@ class Link:
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     contact: ContactParameters = ContactParameters()
+    user_data: dict[str, str] = field(default_factory=dict)

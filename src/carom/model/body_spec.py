@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from carom.description import Collision, ContactParameters, JointType, Pose, Visual
+from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.pose import IDENTITY, Vector3
 
 BASE = -1
@@ -30,17 +30,20 @@ class LinkSpec:
         joint_type: Kind of that joint. `FLOATING` never occurs: inside a tree it is fixed.
         joint_frame: Joint frame in the parent's link frame; the link frame at joint position 0.
         joint_axis: Unit axis in the joint frame.
+        joint_axis_length: Length the axis has in the file; PyBullet reports it unnormalised.
         lower: Lower limit as the file states it [rad or m].
         upper: Upper limit; `lower > upper` means none.
         limited: The engine enforces `lower` and `upper`.
         effort: Greatest drive force the file states; not enforced.
         velocity: Greatest speed the file states; not enforced.
-        twist: Twist limit of a spherical joint [rad].
+        twist: Twist limit of a spherical joint [rad]; negative means none.
         damping: Viscous joint damping [N m s/rad or N s/m].
         friction: Joint friction the file states; not simulated.
         collisions: Shapes that touch, in the link frame.
         visuals: Shapes that are seen, in the link frame.
         contact: How the link touches.
+        mimic: The joint this one follows, as the file states it; not simulated.
+        user_data: Key and value pairs stated by the file for the link.
     """
 
     name: str
@@ -52,6 +55,7 @@ class LinkSpec:
     joint_type: JointType = JointType.FIXED
     joint_frame: Pose = IDENTITY
     joint_axis: Vector3 = (1.0, 0.0, 0.0)
+    joint_axis_length: float = 1.0
     lower: float = 0.0
     upper: float = -1.0
     limited: bool = False
@@ -63,6 +67,8 @@ class LinkSpec:
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     contact: ContactParameters = ContactParameters()
+    mimic: Mimic | None = None
+    user_data: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(slots=True)

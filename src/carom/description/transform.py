@@ -1,0 +1,132 @@
+"""Rigid transforms on plain tuples: what readers and `assemble` need, without the cost of small arrays."""
+
+from __future__ import annotations
+
+from math import cos, sin, sqrt
+
+from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
+
+Matrix3 = tuple[Vector3, Vector3, Vector3]
+"""Row-major rotation matrix."""
+
+
+def rotation_matrix(quaternion: Quaternion) -> Matrix3:
+    """Rotation matrix of a quaternion (x, y, z, w), which need not be of unit length."""
+    x, y, z, w = quaternion
+    s = 2.0 / (x * x + y * y + z * z + w * w)
+    xs, ys, zs = x * s, y * s, z * s
+    wx, wy, wz = w * xs, w * ys, w * zs
+    xx, xy, xz = x * xs, x * ys, x * zs
+    yy, yz, zz = y * ys, y * zs, z * zs
+    return (
+        (1.0 - (yy + zz), xy - wz, xz + wy),
+        (xy + wz, 1.0 - (xx + zz), yz - wx),
+        (xz - wy, yz + wx, 1.0 - (xx + yy)),
+    )
+
+
+def quaternion_from_matrix(m: Matrix3) -> Quaternion:
+    """Unit quaternion of a rotation matrix, its sign fixed.
+
+    w is positive while the trace is; otherwise the largest of x, y and z is positive.
+    """
+    trace = m[0][0] + m[1][1] + m[2][2]
+    if trace > 0.0:
+        s = sqrt(trace + 1.0)
+        h = 0.5 / s
+        return ((m[2][1] - m[1][2]) * h, (m[0][2] - m[2][0]) * h, (m[1][0] - m[0][1]) * h, 0.5 * s)
+    i = 2 if m[2][2] > max(m[0][0], m[1][1]) else 1 if m[1][1] > m[0][0] else 0
+    j, k = (i + 1) % 3, (i + 2) % 3
+    s = sqrt(max(m[i][i] - m[j][j] - m[k][k] + 1.0, 0.0))
+    h = 0.5 / s
+    vector = [0.0, 0.0, 0.0]
+    vector[i] = 0.5 * s
+    vector[j] = (m[j][i] + m[i][j]) * h
+    vector[k] = (m[k][i] + m[i][k]) * h
+    return (vector[0], vector[1], vector[2], (m[k][j] - m[j][k]) * h)
+
+
+def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """Unit quaternion of roll, pitch and yaw [rad] about the fixed axes x, y and z, its sign fixed.
+
+    The sign rule is that of `quaternion_from_matrix`.
+    """
+    sr, cr = sin(roll / 2.0), cos(roll / 2.0)
+    sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
+    sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
+    raw = (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+    return quaternion_from_matrix(rotation_matrix(raw))
+
+
+def transposed(m: Matrix3) -> Matrix3:
+    """The transpose, which is the inverse of a rotation matrix."""
+    return (
+        (m[0][0], m[1][0], m[2][0]),
+        (m[0][1], m[1][1], m[2][1]),
+        (m[0][2], m[1][2], m[2][2]),
+    )
+
+
+def matrix_product(a: Matrix3, b: Matrix3) -> Matrix3:
+    """Product of two 3x3 matrices."""
+    columns = transposed(b)
+    return (
+        (dot(a[0], columns[0]), dot(a[0], columns[1]), dot(a[0], columns[2])),
+        (dot(a[1], columns[0]), dot(a[1], columns[1]), dot(a[1], columns[2])),
+        (dot(a[2], columns[0]), dot(a[2], columns[1]), dot(a[2], columns[2])),
+    )
+
+
+def matrix_vector(m: Matrix3, v: Vector3) -> Vector3:
+    """Product of a 3x3 matrix and a vector."""
+    return (dot(m[0], v), dot(m[1], v), dot(m[2], v))
+
+
+def dot(a: Vector3, b: Vector3) -> float:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def rotate(quaternion: Quaternion, v: Vector3) -> Vector3:
+    """A vector turned by a quaternion."""
+    return matrix_vector(rotation_matrix(quaternion), v)
+
+
+def multiplied(a: Quaternion, b: Quaternion) -> Quaternion:
+    """Hamilton product: the rotation `b` followed by `a`."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by + ay * bw + az * bx - ax * bz,
+        aw * bz + az * bw + ax * by - ay * bx,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def conjugate(q: Quaternion) -> Quaternion:
+    """Inverse of a unit quaternion."""
+    return (-q[0], -q[1], -q[2], q[3])
+
+
+def compose(a: Pose, b: Pose) -> Pose:
+    """The frame `b`, given in frame `a`, seen from where `a` is given."""
+    if a is IDENTITY:
+        return b
+    m = rotation_matrix(a.orientation)
+    x, y, z = matrix_vector(m, b.position)
+    px, py, pz = a.position
+    turned = matrix_product(m, rotation_matrix(b.orientation))
+    return Pose((x + px, y + py, z + pz), quaternion_from_matrix(turned))
+
+
+def inverse(pose: Pose) -> Pose:
+    """The frame `pose` is given in, seen from `pose`."""
+    q = conjugate(pose.orientation)
+    x, y, z = rotate(q, pose.position)
+    return Pose((-x, -y, -z), q)

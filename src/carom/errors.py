@@ -1,0 +1,30 @@
+"""The exceptions Carom raises on purpose. The drop-in turns them into `pybullet.error`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class CaromError(Exception):
+    """Base of everything Carom raises on purpose."""
+
+
+class DescriptionError(CaromError):
+    """A robot or mesh file cannot be used.
+
+    Attributes:
+        reason: What is wrong, in words.
+        file: The file at fault.
+        line: Line in that file, counted from 1, where one is known.
+        element: The XML element at fault, written as `robot > link "arm" > inertial`.
+    """
+
+    def __init__(
+        self, reason: str, *, file: Path | None = None, line: int | None = None, element: str | None = None
+    ) -> None:
+        self.reason = reason
+        self.file = file
+        self.line = line
+        self.element = element
+        where = "" if file is None else str(file) if line is None else f"{file}:{line}"
+        super().__init__(": ".join(part for part in (where, element, reason) if part))

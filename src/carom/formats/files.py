@@ -1,0 +1,110 @@
+"""Reading files in bounds, and a cache that notices every change."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import OrderedDict
+from collections.abc import Hashable
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Generic, TypeVar
+
+from carom.errors import DescriptionError
+
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
+
+SETTLED_NS = 2_000_000_000
+"""A file changed more recently than this could change again within the resolution of its time stamp."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileStamp:
+    """What changes when a file changes.
+
+    Attributes:
+        modified: Time of the last modification [ns].
+        size: [bytes].
+        inode: Tells a file moved into place from the one it replaced.
+        taken: When the stamp was taken [ns]; not compared.
+    """
+
+    modified: int
+    size: int
+    inode: int
+    taken: int
+
+    @classmethod
+    def of(cls, file: Path) -> FileStamp:
+        """The stamp of a file as it is now."""
+        status = os.stat(file)
+        return cls(status.st_mtime_ns, status.st_size, status.st_ino, time.time_ns())
+
+    def same_file(self, other: FileStamp) -> bool:
+        """Both stamps certainly belong to the same content."""
+        return (
+            self.modified == other.modified
+            and self.size == other.size
+            and self.inode == other.inode
+            and min(self.taken, other.taken) - self.modified > SETTLED_NS
+        )
+
+
+def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
+    """Content of a file and its stamp.
+
+    Raises:
+        DescriptionError: It cannot be read, or is larger than `most_bytes`.
+    """
+    try:
+        stamp = FileStamp.of(file)
+        if stamp.size > most_bytes:
+            raise DescriptionError(f"{stamp.size} bytes are more than the {most_bytes} accepted", file=file)
+        with open(file, "rb") as stream:
+            # One byte more than the stamp promised would show a file that grows, or that has no size.
+            data = stream.read(most_bytes + 1)
+    except OSError as error:
+        raise DescriptionError(f"cannot be read: {error.strerror}", file=file) from error
+    if len(data) > most_bytes:
+        raise DescriptionError(f"it holds more than the {most_bytes} bytes accepted", file=file)
+    return data, stamp
+
+
+class FileCache(Generic[Key, Value]):
+    """Values made from files, kept while the files stay the same; the least recently used go first.
+
+    Args:
+        capacity: Most values kept.
+    """
+
+    def __init__(self, capacity: int) -> None:
+        self._capacity = capacity
+        self._entries: OrderedDict[Key, tuple[FileStamp, Value]] = OrderedDict()
+        self._lock = Lock()
+
+    def get(self, key: Key, file: Path) -> Value | None:
+        """The value made from `file` under `key`, unless the file has changed or may have."""
+        with self._lock:
+            entry = self._entries.get(key)
+            if entry is None:
+                return None
+            stamp, value = entry
+            try:
+                unchanged = stamp.same_file(FileStamp.of(file))
+            except OSError:
+                unchanged = False
+            if not unchanged:
+                del self._entries[key]
+                return None
+            self._entries.move_to_end(key)
+            return value
+
+    def put(self, key: Key, stamp: FileStamp, value: Value) -> None:
+        """Keeps a value made from a file that had this stamp before it was read."""
+        with self._lock:
+            self._entries[key] = (stamp, value)
+            self._entries.move_to_end(key)
+            while len(self._entries) > self._capacity:
+                self._entries.popitem(last=False)

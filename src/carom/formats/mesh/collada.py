@@ -1,0 +1,225 @@
+"""COLLADA (DAE): the triangles of the scene, one part per geometry shown.
+
+Lengths are brought to metres by the file's unit. The file's up axis is not applied: PyBullet does not apply
+it either, and robot files account for that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import DescriptionError
+from carom.formats.mesh.part import MeshPart, make_part
+from carom.formats.xml_tree import Element, parse_xml
+
+MAX_PARTS = 4096
+"""Most geometries a scene may show."""
+
+
+def read_collada(data: bytes, file: Path) -> list[MeshPart]:
+    """Reads a DAE file.
+
+    Raises:
+        DescriptionError: It is not COLLADA, is broken, or its scene shows no triangles.
+    """
+    root = next((element for element in parse_xml(data, file) if element.tag == "COLLADA"), None)
+    if root is None:
+        raise DescriptionError("there is no <COLLADA> element", file=file)
+    reader = _ColladaReader(root, file)
+    parts = [reader.part(identifier, placement) for identifier, placement in reader.scene()]
+    parts = [part for part in parts if len(part.triangles)]
+    if not parts:
+        raise DescriptionError("the scene shows no triangles", file=file)
+    return parts
+
+
+class _ColladaReader:
+    def __init__(self, root: Element, file: Path) -> None:
+        self.root = root
+        self.file = file
+        self.geometries = {
+            element.attributes.get("id", ""): element
+            for library in root.all("library_geometries")
+            for element in library.all("geometry")
+        }
+        self._triangles: dict[str, tuple[NDArray[np.float64], NDArray[np.int64]]] = {}
+
+    def error(self, element: Element, reason: str) -> DescriptionError:
+        return DescriptionError(reason, file=self.file, line=element.line, element=f"<{element.tag}>")
+
+    def scene(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        """Geometry id and 4x4 placement, unit included, of everything the scene shows."""
+        scene = self.root.first("scene")
+        instance = None if scene is None else scene.first("instance_visual_scene")
+        wanted = "" if instance is None else instance.attributes.get("url", "")[1:]
+        placement = np.diag([self._metres_per_unit()] * 3 + [1.0])
+        shown = 0
+        for library in self.root.all("library_visual_scenes"):
+            for candidate in library.all("visual_scene"):
+                if candidate.attributes.get("id", "") != wanted:
+                    continue
+                for node in candidate.all("node"):
+                    for item in self._nodes(node, placement):
+                        shown += 1
+                        if shown > MAX_PARTS:
+                            raise self.error(candidate, f"more than {MAX_PARTS} geometries are shown")
+                        yield item
+
+    def _metres_per_unit(self) -> float:
+        asset = self.root.first("asset")
+        unit = None if asset is None else asset.first("unit")
+        if unit is None or "meter" not in unit.attributes:
+            return 1.0
+        return float(np.float32(self._numbers(unit, unit.attributes["meter"], 1)[0]))
+
+    def _nodes(
+        self, node: Element, parent: NDArray[np.float64]
+    ) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        placement = parent @ self._local_transform(node)
+        for instance in node.all("instance_geometry"):
+            identifier = instance.attributes.get("url", "")[1:]
+            if identifier not in self.geometries:
+                raise self.error(instance, f"there is no geometry {identifier!r}")
+            yield identifier, placement
+        for child in node.all("node"):
+            yield from self._nodes(child, placement)
+
+    def _local_transform(self, node: Element) -> NDArray[np.float64]:
+        total = np.eye(4)
+        for step in node.children:
+            if step.tag == "matrix":
+                total = total @ self._numbers(step, step.text, 16).reshape(4, 4)
+            elif step.tag == "translate":
+                translation = np.eye(4)
+                translation[:3, 3] = self._numbers(step, step.text, 3)
+                total = total @ translation
+            elif step.tag == "scale":
+                total = total @ np.diag([*self._numbers(step, step.text, 3), 1.0])
+            elif step.tag == "rotate":
+                x, y, z, degrees = self._numbers(step, step.text, 4)
+                total = total @ _rotation(np.array([x, y, z]), np.radians(degrees))
+        return total
+
+    def part(self, identifier: str, placement: NDArray[np.float64]) -> MeshPart:
+        """The triangles of a geometry, placed in the scene."""
+        if identifier not in self._triangles:
+            self._triangles[identifier] = self._read_geometry(self.geometries[identifier])
+        positions, corners = self._triangles[identifier]
+        placed = positions @ placement[:3, :3].T + placement[:3, 3]
+        return make_part(self.file, placed, corners, identifier)
+
+    def _read_geometry(self, geometry: Element) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        positions: list[NDArray[np.float64]] = []
+        corners: list[NDArray[np.int64]] = []
+        known = 0
+        for mesh in geometry.all("mesh"):
+            for primitive in mesh.children:
+                if primitive.tag not in ("triangles", "polylist", "polygons"):
+                    continue
+                source, offset, stride = self._position_input(mesh, primitive)
+                indices = self._corner_indices(primitive, offset, stride)
+                if len(indices) and not 0 <= indices.min() <= indices.max() < len(source):
+                    raise self.error(primitive, f"it names a vertex outside 0..{len(source) - 1}")
+                positions.append(source)
+                corners.append(indices + known)
+                known += len(source)
+        if not positions:
+            return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
+        return np.concatenate(positions), np.concatenate(corners)
+
+    def _position_input(self, mesh: Element, primitive: Element) -> tuple[NDArray[np.float64], int, int]:
+        """Positions (k, 3), the offset of their index among the indices of a corner, and how many those are."""
+        stride, offset, vertices_id = 1, None, ""
+        for entry in primitive.all("input"):
+            here = int(self._numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
+            stride = max(stride, here + 1)
+            if entry.attributes.get("semantic") == "VERTEX":
+                offset, vertices_id = here, entry.attributes.get("source", "")[1:]
+        vertices = next((v for v in mesh.all("vertices") if v.attributes.get("id", "") == vertices_id), None)
+        if offset is None or vertices is None:
+            raise self.error(primitive, "it has no VERTEX input")
+        for entry in vertices.all("input"):
+            if entry.attributes.get("semantic") == "POSITION":
+                source_id = entry.attributes.get("source", "")[1:]
+                for source in mesh.all("source"):
+                    if source.attributes.get("id", "") == source_id:
+                        return self._positions(source), offset, stride
+        raise self.error(vertices, "it has no POSITION input with a source in this mesh")
+
+    def _positions(self, source: Element) -> NDArray[np.float64]:
+        array = source.first("float_array")
+        if array is None:
+            raise self.error(source, "<float_array> is missing")
+        technique = source.first("technique_common")
+        accessor = None if technique is None else technique.first("accessor")
+        stride_text = "3" if accessor is None else accessor.attributes.get("stride", "3")
+        stride = int(self._numbers(source, stride_text, 1)[0])
+        values = self._numbers(array, array.text)
+        if stride < 3 or len(values) % stride:
+            raise self.error(array, f"{len(values)} numbers do not make positions of {stride}")
+        return values.reshape(-1, stride)[:, :3]
+
+    def _corner_indices(self, primitive: Element, offset: int, stride: int) -> NDArray[np.int64]:
+        """(m, 3) position indices; polygons are cut into fans."""
+        fans: list[NDArray[np.int64]] = []
+        counts = primitive.first("vcount")
+        for run in primitive.all("p"):
+            values = self._integers(run)
+            if len(values) % stride:
+                raise self.error(run, f"{len(values)} indices do not make corners of {stride}")
+            corners = values.reshape(-1, stride)[:, offset]
+            if primitive.tag == "triangles":
+                sizes = np.full(len(corners) // 3, 3)
+            elif primitive.tag == "polygons":
+                sizes = np.array([len(corners)])
+            else:
+                sizes = np.empty(0, dtype=np.int64) if counts is None else self._integers(counts)
+            if sizes.sum() != len(corners) or (sizes < 0).any():
+                raise self.error(run, f"{len(corners)} corners do not fit the polygons announced")
+            fans.append(_fans(corners, sizes))
+        return np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
+
+    def _integers(self, element: Element) -> NDArray[np.int64]:
+        try:
+            return np.array(list(map(int, element.text.split())), dtype=np.int64)
+        except (ValueError, OverflowError):
+            raise self.error(element, "it must hold whole numbers") from None
+
+    def _numbers(self, element: Element, text: str, count: int | None = None) -> NDArray[np.float64]:
+        try:
+            values = np.array(list(map(float, text.split())), dtype=np.float64)
+        except ValueError:
+            raise self.error(element, "it must hold numbers") from None
+        if count is not None and len(values) != count:
+            raise self.error(element, f"{len(values)} numbers where {count} are due")
+        if not np.isfinite(values).all():
+            raise self.error(element, "it must hold finite numbers")
+        return values
+
+
+def _fans(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Polygons of the given sizes, one after the other in `corners`, as triangles."""
+    if (sizes == 3).all():
+        return corners.reshape(-1, 3)
+    triangles: list[tuple[int, int, int]] = []
+    start = 0
+    for size in sizes.tolist():
+        first, *rest = corners[start : start + size].tolist() or [0]
+        triangles.extend((first, rest[i], rest[i + 1]) for i in range(len(rest) - 1))
+        start += size
+    return np.array(triangles, dtype=np.int64).reshape(-1, 3)
+
+
+def _rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    """4x4 rotation; none for an axis without length."""
+    total = np.eye(4)
+    length = np.linalg.norm(axis)
+    if length > 0.0:
+        x, y, z = axis / length
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        total[:3, :3] += np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+    return total

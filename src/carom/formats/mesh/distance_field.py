@@ -1,0 +1,31 @@
+"""Signed distance fields (CDF): where the grid lies."""
+
+from __future__ import annotations
+
+import struct
+from math import isfinite
+from pathlib import Path
+
+from carom.description.pose import Vector3
+from carom.errors import DescriptionError
+
+_DOMAIN = struct.Struct("<6d")
+
+
+def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
+    """Lowest and highest corner of the grid [m], which open the file.
+
+    Raises:
+        DescriptionError: The file is missing or too short, or the corners make no box.
+    """
+    try:
+        with open(path, "rb") as stream:
+            header = stream.read(_DOMAIN.size)
+    except OSError as error:
+        raise DescriptionError(f"cannot be read: {error.strerror}", file=path) from error
+    if len(header) < _DOMAIN.size:
+        raise DescriptionError("cut off before the bounds of the grid", file=path)
+    x0, y0, z0, x1, y1, z1 = _DOMAIN.unpack(header)
+    if not all(isfinite(low) and isfinite(high) and low <= high for low, high in ((x0, x1), (y0, y1), (z0, z1))):
+        raise DescriptionError("the bounds of the grid make no box", file=path)
+    return (x0, y0, z0), (x1, y1, z1)

@@ -1,0 +1,52 @@
+"""What every mesh reader returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import DescriptionError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshPart:
+    """One piece of a mesh file: an object or group of an OBJ, a geometry of a DAE, a whole STL.
+
+    Attributes:
+        vertices: (n, 3) float64 positions [m], each used by a triangle. They are rounded to single
+            precision, in which mesh files are written and PyBullet reads them. Read-only.
+        triangles: (m, 3) int32 indices into `vertices`, counter-clockwise seen from outside. Read-only.
+        name: Name of the object, group or geometry; may be empty.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    name: str = ""
+
+
+def make_part(
+    file: Path, positions: NDArray[np.float64], corners: NDArray[np.int64], name: str = ""
+) -> MeshPart:
+    """A part from positions and corner indices, with the positions it does not use left out.
+
+    Args:
+        file: Named in errors.
+        positions: (k, 3) positions.
+        corners: (m, 3) indices into `positions`, all in range.
+        name: Name of the part.
+
+    Raises:
+        DescriptionError: A position is not finite.
+    """
+    used, inverse = np.unique(corners, return_inverse=True)
+    with np.errstate(over="ignore"):
+        vertices = positions[used].astype(np.float32).astype(np.float64)
+    if not np.isfinite(vertices).all():
+        raise DescriptionError("a vertex is not finite, or beyond single precision", file=file)
+    triangles = inverse.reshape(-1, 3).astype(np.int32)
+    vertices.setflags(write=False)
+    triangles.setflags(write=False)
+    return MeshPart(vertices, triangles, name)

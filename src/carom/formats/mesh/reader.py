@@ -1,0 +1,46 @@
+"""Any mesh file becomes a list of parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from carom.errors import DescriptionError
+from carom.formats.files import FileCache, read_bounded
+from carom.formats.mesh.collada import read_collada
+from carom.formats.mesh.obj import read_obj
+from carom.formats.mesh.part import MeshPart
+from carom.formats.mesh.stl import read_stl
+
+MAX_FILE_BYTES = 512 << 20
+"""Largest mesh file that is read."""
+
+_READERS = {".obj": read_obj, ".stl": read_stl, ".dae": read_collada}
+
+
+def read_mesh(path: Path) -> list[MeshPart]:
+    """Reads the triangles of an OBJ, STL or DAE file.
+
+    Unchanged files are served from a cache, which never answers with stale data.
+
+    Returns:
+        The parts of the file, in file order: at least one with at least one triangle.
+
+    Raises:
+        DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles.
+    """
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise DescriptionError(f"unknown kind of mesh; known are {', '.join(_READERS)}", file=path)
+    file = path.absolute()
+    cached = _cache.get(file, file)
+    if cached is not None:
+        return list(cached)
+    data, stamp = read_bounded(file, MAX_FILE_BYTES)
+    parts = reader(data, file)
+    if not parts:
+        raise DescriptionError("there are no triangles", file=file)
+    _cache.put(file, stamp, tuple(parts))
+    return parts
+
+
+_cache: FileCache[Path, tuple[MeshPart, ...]] = FileCache(64)

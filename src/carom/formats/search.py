@@ -1,0 +1,82 @@
+"""Where files named by scripts and by robot files are looked for."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+# Scripts written against a source tree name files relative to a `data` folder near the working directory.
+_DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")
+_SCHEMES = ("package://", "model://")
+
+
+@dataclass(frozen=True, slots=True)
+class AssetSearch:
+    """The order in which places are searched.
+
+    Attributes:
+        additional: A directory searched after the working directory, as set by the user.
+    """
+
+    additional: Path | None = None
+
+    def find(self, name: str | os.PathLike[str]) -> Path | None:
+        """The file a script asks for: as named, in nearby data folders, in the additional directory.
+
+        Args:
+            name: Path, absolute or relative to one of the searched places.
+
+        Returns:
+            The path of an existing file as it was found, or None.
+        """
+        names = [os.fspath(name)]
+        if self.additional is not None:
+            names.append(os.path.join(self.additional, os.fspath(name).lstrip("/\\")))
+        for candidate in names:
+            prefixes = _DATA_PREFIXES if not os.path.isabs(candidate) else _DATA_PREFIXES[:1]
+            for prefix in prefixes:
+                if _is_file(prefix + candidate):
+                    return Path(prefix + candidate)
+        return None
+
+    def find_referenced(self, name: str, source: Path) -> Path | None:
+        """The file that a robot file refers to.
+
+        `file://`, `package://` and `model://` are taken off. Then the working directory, the directory
+        of the robot file and each directory above it, and the two directories above the working
+        directory are tried; last, the additional directory.
+
+        Args:
+            name: The reference, as the robot file states it.
+            source: The robot file.
+
+        Returns:
+            The path of an existing file, or None.
+        """
+        name = name.removeprefix("file://")
+        for scheme in _SCHEMES:
+            if name.startswith(scheme):
+                name = name[len(scheme) :]
+                break
+        if _is_file(name):
+            return Path(name)
+        # A name with a leading slash, left by `file:///`, still counts as relative to these directories.
+        relative = name.lstrip("/\\")
+        for directory in source.parents:
+            candidate = os.path.join(directory, relative)
+            if _is_file(candidate):
+                return Path(candidate)
+        for prefix in ("../", "../../"):
+            if _is_file(prefix + relative):
+                return Path(prefix + relative)
+        if self.additional is not None and _is_file(os.path.join(self.additional, relative)):
+            return Path(os.path.join(self.additional, relative))
+        return None
+
+
+def _is_file(path: str) -> bool:
+    try:
+        return os.path.isfile(path)
+    except ValueError:  # embedded NUL characters
+        return False

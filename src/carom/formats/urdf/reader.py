@@ -1,0 +1,143 @@
+"""A URDF file becomes a `Robot`."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import replace
+from math import isfinite
+from pathlib import Path
+
+from carom.description import Joint, Link, Material, Robot, Visual
+from carom.errors import DescriptionError
+from carom.formats.files import FileCache, read_bounded
+from carom.formats.search import AssetSearch
+from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.joint import read_joint
+from carom.formats.urdf.link import read_link
+from carom.formats.urdf.material import read_global_materials
+from carom.formats.urdf.tree import find_root
+from carom.formats.xml_tree import Element, parse_xml
+
+_log = logging.getLogger(__name__)
+
+MAX_FILE_BYTES = 16 << 20
+"""Largest robot file that is read."""
+
+
+def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
+    """Reads and checks a URDF file.
+
+    Unchanged files are served from a cache, which never answers with stale data.
+
+    Args:
+        path: The file; looked up with `AssetSearch.find`.
+        scale: Factor on every length (positions, shapes, limits of prismatic joints). Masses and
+            inertia tensors stay as they are.
+        search: Where the file, its meshes and its textures are looked for.
+
+    Returns:
+        The robot, its links and joints in file order.
+
+    Raises:
+        DescriptionError: The file is missing, broken, or does not describe one tree of links.
+        ValueError: `scale` is not a positive number.
+    """
+    if not (isfinite(scale) and scale > 0.0):
+        raise ValueError(f"scale must be positive and finite, not {scale}")
+    search = search or AssetSearch()
+    found = search.find(path)
+    if found is None:
+        raise DescriptionError(f"no such file: {path}", file=path)
+    file = Path(found).absolute()
+    key = (file, scale, search)
+    cached = _cache.get(key, file)
+    if cached is not None and all(
+        search.find_referenced(name, file) == target for name, target in cached[1].items()
+    ):
+        return cached[0]
+    data, stamp = read_bounded(file, MAX_FILE_BYTES)
+    robot, references = parse_urdf(data, file, scale=scale, search=search)
+    _cache.put(key, stamp, (robot, references))
+    return robot
+
+
+def parse_urdf(
+    data: bytes, file: Path, *, scale: float, search: AssetSearch
+) -> tuple[Robot, dict[str, Path | None]]:
+    """A robot from the content of a file, and what every file name in it was resolved to."""
+    element = next((root for root in parse_xml(data, file) if root.tag == "robot"), None)
+    if element is None:
+        raise DescriptionError("there is no <robot> element", file=file)
+    context = UrdfContext(file, element, scale, search)
+    name = context.required(element, "name")
+    for tag in ("deformable", "reduced_deformable"):
+        soft = element.first(tag)
+        if soft is not None:
+            raise context.error(soft, "deformable bodies are not supported")
+    read_global_materials(context)
+    links = _read_links(context)
+    joints = _read_joints(context, links)
+    if context.links_without_inertial:
+        _log.warning(
+            "%s: no <inertial>, so 1 kg is assumed, for %s", file, ", ".join(context.links_without_inertial)
+        )
+    robot = Robot(
+        name,
+        tuple(_with_late_materials(context, link) for link in links),
+        tuple(joints),
+        root=find_root(context, links, joints, list(element.all("joint"))),
+        materials=tuple(context.materials.values()),
+        source=file,
+        user_data=context.user_data(element),
+    )
+    return robot, context.references
+
+
+def _read_links(context: UrdfContext) -> list[Link]:
+    links: list[Link] = []
+    lines: dict[str, int] = {}
+    for element in context.robot.all("link"):
+        link = read_link(context, element)
+        _refuse_duplicate(context, element, link.name, lines)
+        links.append(link)
+    if not links:
+        raise context.error(context.robot, "there are no links")
+    return links
+
+
+def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
+    link_indices = {link.name: index for index, link in enumerate(links)}
+    joints: list[Joint] = []
+    lines: dict[str, int] = {}
+    for element in context.robot.all("joint"):
+        joint = read_joint(context, element, link_indices)
+        _refuse_duplicate(context, element, joint.name, lines)
+        joints.append(joint)
+    return joints
+
+
+def _refuse_duplicate(context: UrdfContext, element: Element, name: str, lines: dict[str, int]) -> None:
+    if name in lines:
+        raise context.error(element, f"the name {name!r} is taken already, on line {lines[name]}")
+    lines[name] = element.line
+
+
+def _with_late_materials(context: UrdfContext, link: Link) -> Link:
+    """Materials named before they are defined, filled in."""
+    if all(_is_settled(visual.material) for visual in link.visuals):
+        return link
+    return replace(link, visuals=tuple(_with_late_material(context, visual) for visual in link.visuals))
+
+
+def _with_late_material(context: UrdfContext, visual: Visual) -> Visual:
+    material = visual.material
+    if material is None or _is_settled(material):
+        return visual
+    return replace(visual, material=context.materials.get(material.name, material))
+
+
+def _is_settled(material: Material | None) -> bool:
+    return material is None or bool(material.rgba or material.specular or material.texture)
+
+
+_cache: FileCache[tuple[Path, float, AssetSearch], tuple[Robot, dict[str, Path | None]]] = FileCache(64)

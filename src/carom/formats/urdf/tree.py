@@ -1,0 +1,60 @@
+"""The check that links and joints form one tree."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from carom.description import Joint, Link
+from carom.formats.urdf.context import UrdfContext
+from carom.formats.xml_tree import Element
+
+_MOST_NAMES = 8
+
+
+def find_root(
+    context: UrdfContext, links: Sequence[Link], joints: Sequence[Joint], joint_elements: Sequence[Element]
+) -> int:
+    """Index of the root link.
+
+    Raises:
+        DescriptionError: A link hangs on two joints, there are several roots, or links form a loop.
+    """
+    carrier: list[int | None] = [None] * len(links)
+    for index, joint in enumerate(joints):
+        first = carrier[joint.child]
+        if first is not None:
+            raise context.error(
+                joint_elements[index],
+                f"link {links[joint.child].name!r} is already the child of joint {joints[first].name!r}",
+            )
+        carrier[joint.child] = index
+    roots = [index for index, joint in enumerate(carrier) if joint is None]
+    if len(roots) > 1:
+        raise context.error(
+            context.robot,
+            f"{len(roots)} root links, where one is needed: {_listed([links[i].name for i in roots])}",
+        )
+    looped = set(range(len(links))) - _reachable(roots, joints, len(links))
+    if looped:
+        raise context.error(
+            context.robot, f"links form a loop: {_listed([links[i].name for i in sorted(looped)])}"
+        )
+    return roots[0]
+
+
+def _reachable(roots: list[int], joints: Sequence[Joint], count: int) -> set[int]:
+    children: list[list[int]] = [[] for _ in range(count)]
+    for joint in joints:
+        children[joint.parent].append(joint.child)
+    seen: set[int] = set()
+    pending = list(roots)
+    while pending:
+        link = pending.pop()
+        seen.add(link)
+        pending.extend(children[link])
+    return seen
+
+
+def _listed(names: list[str]) -> str:
+    shown = ", ".join(repr(name) for name in names[:_MOST_NAMES])
+    return shown if len(names) <= _MOST_NAMES else f"{shown} and {len(names) - _MOST_NAMES} more"

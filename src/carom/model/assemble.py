@@ -1,0 +1,116 @@
+"""A robot becomes a body: link order, loading flags, inertias."""
+
+from __future__ import annotations
+
+import logging
+
+from carom.description import Joint, JointType, Link, Robot
+from carom.description.pose import Pose, Vector3
+from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.flags import LoadFlags
+from carom.model.inertia import inertia_from_file, inertia_from_shapes
+from carom.model.merge_fixed import merge_fixed_links
+from carom.model.tree import TreeNode, depth_first, file_order, make_tree
+
+_log = logging.getLogger(__name__)
+
+
+def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: bool = False) -> BodySpec:
+    """Flattens a robot for the engine.
+
+    Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in
+    the order of the file, save that a link never comes before the one that carries it.
+
+    Args:
+        robot: What to build.
+        flags: Loading options.
+        fixed_base: The base is nailed to the world: its mass becomes zero.
+
+    Returns:
+        A body whose base is fixed exactly when its mass is zero.
+
+    Raises:
+        DescriptionError: The file of a collision mesh cannot be used.
+    """
+    root = make_tree(robot)
+    if flags & LoadFlags.MERGE_FIXED_LINKS:
+        merge_fixed_links(root, fixed_base=fixed_base)
+    order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
+    base = _link_spec(root.link, flags, is_massless=fixed_base)
+    index_of = {id(node): index for index, node in enumerate(order, start=BASE)}
+    links = [_link_spec(node.link, flags) for node in order[1:]]
+    for node in order:
+        for child in node.children:
+            _attach(links[index_of[id(child)]], child, index_of[id(node)])
+    return BodySpec(
+        robot.name,
+        base,
+        links,
+        fixed_base=base.mass == 0.0,
+        flags=int(flags),
+        source=robot.source,
+        user_data=dict(robot.user_data),
+    )
+
+
+def _link_spec(link: Link, flags: LoadFlags, *, is_massless: bool = False) -> LinkSpec:
+    collisions = () if flags & LoadFlags.IGNORE_COLLISION_SHAPES else link.collisions
+    mass = 0.0 if is_massless else link.inertial.mass
+    inertia: Vector3 = (0.0, 0.0, 0.0)
+    frame: Pose = link.inertial.frame
+    if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:
+        inertia, frame = inertia_from_file(link.inertial, link.name)
+    elif mass != 0.0:
+        inertia = inertia_from_shapes(
+            mass, collisions, frame, implicit_cylinder=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        )
+    scaling = link.contact.inertia_scaling
+    if scaling is not None and mass != 0.0:
+        inertia = (inertia[0] * scaling, inertia[1] * scaling, inertia[2] * scaling)
+    return LinkSpec(
+        link.name,
+        mass=mass,
+        inertia=inertia,
+        inertial_frame=frame,
+        collisions=collisions,
+        visuals=() if flags & LoadFlags.IGNORE_VISUAL_SHAPES else link.visuals,
+        contact=link.contact,
+        user_data=dict(link.user_data),
+    )
+
+
+def _attach(spec: LinkSpec, node: TreeNode, parent: int) -> None:
+    """Fills in the joint of a link."""
+    joint = node.joint
+    assert joint is not None, "every node but the root hangs on a joint"
+    spec.parent = parent
+    spec.joint_name = joint.name
+    spec.joint_type = _simulated_type(joint)
+    spec.joint_frame = joint.frame
+    spec.joint_axis = joint.axis
+    spec.joint_axis_length = joint.axis_length
+    spec.lower = joint.limit.lower
+    spec.upper = joint.limit.upper
+    spec.limited = _is_limited(joint)
+    spec.effort = joint.limit.effort
+    spec.velocity = joint.limit.velocity
+    spec.twist = joint.limit.twist
+    spec.damping = joint.damping
+    spec.friction = joint.friction
+    spec.mimic = joint.mimic
+
+
+def _simulated_type(joint: Joint) -> JointType:
+    if joint.type is JointType.FLOATING:
+        _log.warning("joint %r: floating joints inside a tree are not supported; it is fixed", joint.name)
+        return JointType.FIXED
+    return joint.type
+
+
+def _is_limited(joint: Joint) -> bool:
+    limit = joint.limit
+    if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC):
+        return limit.lower <= limit.upper
+    if joint.type is JointType.SPHERICAL:
+        return min(limit.lower, limit.upper, limit.twist, limit.effort) > 0.0
+    return False

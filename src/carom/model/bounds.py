@@ -1,0 +1,137 @@
+"""Axis-aligned bounds of collision shapes, margins included, as PyBullet's inertias come from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import reduce
+from math import trunc
+
+import numpy as np
+
+from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
+from carom.description.pose import Vector3
+from carom.description.transform import Matrix3
+from carom.formats.mesh import read_field_bounds, read_mesh
+
+MARGIN = 0.001
+"""Collision margin of shapes made from files [m]."""
+
+_HULL_GRID = 10216
+"""Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""
+
+_UNBOUNDED = 1e30
+"""Half extent that stands for the infinite one of a plane [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """An axis-aligned box.
+
+    Attributes:
+        center: Its centre [m].
+        half: Half its size along each axis [m].
+    """
+
+    center: Vector3
+    half: Vector3
+
+    @classmethod
+    def between(cls, low: Vector3, high: Vector3) -> Bounds:
+        """The box with these corners."""
+        return cls(
+            (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])),
+            (0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1]), 0.5 * (high[2] - low[2])),
+        )
+
+    def grown(self, margin: float) -> Bounds:
+        """The box, larger by a margin on every side."""
+        x, y, z = self.half
+        return Bounds(self.center, (x + margin, y + margin, z + margin))
+
+    def placed(self, rotation: Matrix3, position: Vector3) -> Bounds:
+        """Bounds of the box after it is turned and moved."""
+        cx, cy, cz = self.center
+        hx, hy, hz = self.half
+        rows = [(r[0], r[1], r[2]) for r in rotation]
+        center = [r[0] * cx + r[1] * cy + r[2] * cz + p for r, p in zip(rows, position, strict=True)]
+        half = [abs(r[0]) * hx + abs(r[1]) * hy + abs(r[2]) * hz for r in rows]
+        return Bounds((center[0], center[1], center[2]), (half[0], half[1], half[2]))
+
+    def joined(self, other: Bounds) -> Bounds:
+        """Bounds of both boxes."""
+        low = [
+            min(a - h, b - k)
+            for a, h, b, k in zip(self.center, self.half, other.center, other.half, strict=True)
+        ]
+        high = [
+            max(a + h, b + k)
+            for a, h, b, k in zip(self.center, self.half, other.center, other.half, strict=True)
+        ]
+        return Bounds.between((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:
+    """Bounds of a shape in its own frame, as its own margin widens them.
+
+    A hull counts its margin twice: once in the bounds of its points and once around them.
+
+    Args:
+        geometry: The shape.
+        implicit_cylinder: Cylinders are exact; otherwise they are hulls of their rims.
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    origin = (0.0, 0.0, 0.0)
+    match geometry:
+        case Sphere(radius):
+            return Bounds(origin, (radius, radius, radius))
+        case Box(half_extents):
+            return Bounds(origin, half_extents)
+        case Capsule(radius, length):
+            return Bounds(origin, (radius, radius, radius + 0.5 * length))
+        case Cylinder(radius, length):
+            exact = Bounds(origin, (radius, radius, 0.5 * length))
+            return exact if implicit_cylinder else exact.grown(MARGIN).grown(MARGIN)
+        case Plane():
+            return Bounds(origin, (_UNBOUNDED, _UNBOUNDED, _UNBOUNDED))
+        case SignedDistanceField(path):
+            return Bounds.between(*read_field_bounds(path))
+        case Mesh():
+            return mesh_bounds(geometry)
+
+
+def mesh_bounds(mesh: Mesh) -> Bounds:
+    """Bounds of a mesh: of its triangles where it is concave, of its hulls otherwise.
+
+    The hulls of an OBJ file form a compound, which adds a margin of its own.
+
+    Raises:
+        DescriptionError: The file cannot be used.
+    """
+    parts = [_scaled_bounds(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    if mesh.concave:
+        return reduce(Bounds.joined, parts)
+    if mesh.path.suffix.lower() == ".obj":
+        hulls = reduce(Bounds.joined, (part.grown(MARGIN).grown(MARGIN) for part in parts))
+        return hulls.grown(MARGIN)
+    return _on_hull_grid(reduce(Bounds.joined, parts)).grown(MARGIN).grown(MARGIN)
+
+
+def _scaled_bounds(vertices: np.ndarray, scale: Vector3) -> Bounds:
+    ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)]) * np.asarray(scale)
+    low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
+    return Bounds.between((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _on_hull_grid(bounds: Bounds) -> Bounds:
+    """Bounds of the hull's vertices after they are cut to the grid on which PyBullet builds it."""
+    low, high = [], []
+    for center, half in zip(bounds.center, bounds.half, strict=True):
+        bottom, top = center - half, center + half
+        cell = (top - bottom) / _HULL_GRID
+        per_cell = 1.0 / cell if cell != 0.0 else 0.0
+        middle = (bottom + top) * 0.5
+        low.append(trunc((bottom - middle) * per_cell) * cell + middle)
+        high.append(trunc((top - middle) * per_cell) * cell + middle)
+    return Bounds.between((low[0], low[1], low[2]), (high[0], high[1], high[2]))

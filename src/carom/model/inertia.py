@@ -1,0 +1,187 @@
+"""Rotational inertia of a link, from its collision shapes or from the tensor in its file."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from functools import reduce
+from math import sqrt
+
+from carom.description import (
+    Box,
+    Capsule,
+    Collision,
+    Cylinder,
+    Geometry,
+    Inertial,
+    Mesh,
+    Plane,
+    Pose,
+    SignedDistanceField,
+    Sphere,
+)
+from carom.description.pose import IDENTITY, Vector3
+from carom.description.transform import (
+    Matrix3,
+    matrix_product,
+    matrix_vector,
+    quaternion_from_matrix,
+    rotation_matrix,
+    transposed,
+)
+from carom.model.bounds import MARGIN, Bounds, shape_bounds
+
+_log = logging.getLogger(__name__)
+
+_TWELFTH = 0.08333333
+"""The twelfth PyBullet uses for capsules and hulls, so that figures agree to the last digit."""
+
+_EPSILON = 2.220446049250313e-16
+
+_UNIT: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def inertia_from_shapes(
+    mass: float, collisions: Sequence[Collision], inertial_frame: Pose, *, implicit_cylinder: bool
+) -> Vector3:
+    """Moments of inertia about the axes of the inertial frame, from the collision shapes.
+
+    A single shape that lies exactly in the inertial frame counts by itself; anything else, nothing at all
+    included, counts as the box that bounds it, widened by a margin.
+
+    Args:
+        mass: [kg].
+        collisions: Shapes in the link frame.
+        inertial_frame: Inertial frame in the link frame.
+        implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
+
+    Returns:
+        Moments about x, y and z [kg m²].
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    placements = [_placement(inertial_frame, collision.frame) for collision in collisions]
+    if len(collisions) == 1 and placements[0] == (_UNIT, (0.0, 0.0, 0.0)):
+        return _shape_moments(mass, collisions[0].geometry, implicit_cylinder)
+    boxes = [
+        shape_bounds(collision.geometry, implicit_cylinder=implicit_cylinder).placed(*placement)
+        for collision, placement in zip(collisions, placements, strict=True)
+    ]
+    nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    return _box_moments(mass / 12.0, (reduce(Bounds.joined, boxes) if boxes else nothing).grown(MARGIN))
+
+
+def _placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
+    """Rotation and position of a shape in the inertial frame.
+
+    The order of operations decides whether a shape given the very pose of the inertial frame comes out
+    exactly at its origin, and thereby which rule its inertia follows.
+    """
+    if inertial_frame == IDENTITY:
+        return rotation_matrix(shape_frame.orientation), shape_frame.position
+    back = transposed(rotation_matrix(inertial_frame.orientation))
+    x, y, z = inertial_frame.position
+    ox, oy, oz = matrix_vector(back, (-x, -y, -z))
+    px, py, pz = matrix_vector(back, shape_frame.position)
+    return matrix_product(back, rotation_matrix(shape_frame.orientation)), (px + ox, py + oy, pz + oz)
+
+
+def _shape_moments(mass: float, geometry: Geometry, implicit_cylinder: bool) -> Vector3:
+    """Moments of one shape about the axes of its own frame."""
+    match geometry:
+        case Sphere(radius):
+            moment = 0.4 * mass * radius * radius
+            return (moment, moment, moment)
+        case Plane() | SignedDistanceField() | Mesh(concave=True):
+            return (0.0, 0.0, 0.0)
+        case Cylinder(radius, length) if implicit_cylinder:
+            across = mass / 12.0 * length * length + mass / 4.0 * radius * radius
+            return (across, across, mass / 2.0 * radius * radius)
+    bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder)
+    match geometry:
+        case Box():
+            return _box_moments(mass / 12.0, bounds)
+        case Mesh(path) if path.suffix.lower() == ".obj":
+            return _box_moments(mass / 12.0, bounds)
+        case Capsule():
+            return _box_moments(mass * _TWELFTH, bounds)
+        case _:
+            return _box_moments(mass * _TWELFTH, bounds.grown(MARGIN))
+
+
+def _box_moments(twelfth_mass: float, bounds: Bounds) -> Vector3:
+    x, y, z = (2.0 * half for half in bounds.half)
+    xx, yy, zz = x * x, y * y, z * z
+    return (twelfth_mass * (yy + zz), twelfth_mass * (xx + zz), twelfth_mass * (xx + yy))
+
+
+def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose]:
+    """Principal moments from the tensor of a link, and the inertial frame turned into its principal axes.
+
+    A tensor no body can have (a negative moment, or one larger than the sum of the others) counts as zero,
+    with a warning.
+
+    Returns:
+        Moments [kg m²] along the axes of the returned frame, and that frame in the link frame.
+    """
+    ixx, ixy, ixz, iyy, iyz, izz = inertial.tensor
+    axes = _UNIT
+    moments = (ixx, iyy, izz)
+    if ixy != 0.0 or ixz != 0.0 or iyz != 0.0:
+        moments, axes = diagonalize(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)), 1e-6, 30)
+    x, y, z = moments
+    if min(moments) < 0.0 or x > y + z or y > x + z or z > x + y:
+        _log.warning("link %r: no body has the inertia tensor %s; zero is used", link_name, inertial.tensor)
+        return (0.0, 0.0, 0.0), inertial.frame
+    if axes is _UNIT:
+        return moments, inertial.frame
+    turned = matrix_product(rotation_matrix(inertial.frame.orientation), axes)
+    return moments, Pose(inertial.frame.position, quaternion_from_matrix(turned))
+
+
+def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vector3, Matrix3]:
+    """Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi rotations.
+
+    Each rotation clears the largest entry off the diagonal. The order of the eigenvalues is the one in
+    which they appear on the diagonal, and the eigenvectors make a rotation, not a reflection.
+
+    Args:
+        tensor: The matrix.
+        threshold: Once the largest entry is below this fraction of the trace of magnitudes, one more
+            rotation is made and the work is done.
+        most_steps: Most rotations made.
+
+    Returns:
+        The eigenvalues, and a matrix with the eigenvectors as columns.
+    """
+    a = [list(row) for row in tensor]
+    v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    step = most_steps
+    while step > 0:
+        p, q, r = max(((0, 1, 2), (0, 2, 1), (1, 2, 0)), key=lambda pqr: abs(a[pqr[0]][pqr[1]]))
+        largest = abs(a[p][q])
+        limit = threshold * (abs(a[0][0]) + abs(a[1][1]) + abs(a[2][2]))
+        if largest <= limit:
+            if largest <= _EPSILON * limit:
+                break
+            step = 1
+        theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q])
+        if theta**4 < 10.0 / _EPSILON:
+            t = 1.0 / (theta + sqrt(1.0 + theta * theta) if theta >= 0.0 else theta - sqrt(1.0 + theta * theta))
+            cosine = 1.0 / sqrt(1.0 + t * t)
+        else:
+            t = 1.0 / (theta * (2.0 + 0.5 / (theta * theta)))
+            cosine = 1.0 - 0.5 * t * t
+        sine = cosine * t
+        shift = t * a[p][q]
+        a[p][q] = a[q][p] = 0.0
+        a[p][p] -= shift
+        a[q][q] += shift
+        a[r][p], a[r][q] = cosine * a[r][p] - sine * a[r][q], cosine * a[r][q] + sine * a[r][p]
+        a[p][r], a[q][r] = a[r][p], a[r][q]
+        for row in v:
+            row[p], row[q] = cosine * row[p] - sine * row[q], cosine * row[q] + sine * row[p]
+        step -= 1
+    eigenvectors = ((v[0][0], v[0][1], v[0][2]), (v[1][0], v[1][1], v[1][2]), (v[2][0], v[2][1], v[2][2]))
+    return (a[0][0], a[1][1], a[2][2]), eigenvectors

@@ -1,0 +1,102 @@
+"""URDF_MERGE_FIXED_LINKS: what hangs on fixed joints becomes part of the link that carries it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from carom.description import Inertial, Joint, JointType, Link, Pose
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, dot, matrix_product, rotation_matrix, transposed
+from carom.model.inertia import diagonalize
+from carom.model.tree import TreeNode
+
+
+def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
+    """Merges every link on a fixed joint into its parent, in place, and numbers the nodes anew.
+
+    Shapes move over; contact parameters of merged links are lost, as are the inertial frames that links
+    had in the file: masses are joined as if each centre of mass lay at the origin of its link. All this is
+    what PyBullet does. The order of children follows it too: the last child takes the place of a merged one.
+
+    Args:
+        root: The tree.
+        fixed_base: The base will not move, so what is merged into it adds no mass.
+    """
+    pending = [root]
+    while pending:
+        node = pending.pop()
+        is_static = node is root and (fixed_base or root.link.inertial.mass == 0.0)
+        _merge_children(node, is_static)
+        pending.extend(node.children)
+    _number(root)
+
+
+def _merge_children(node: TreeNode, is_static: bool) -> None:
+    is_merged = False
+    i = 0
+    while i < len(node.children):
+        child = node.children[i]
+        joint = child.joint
+        if joint is None or joint.type is not JointType.FIXED:
+            i += 1
+            continue
+        own = node.link.inertial if is_merged else replace(node.link.inertial, frame=IDENTITY)
+        is_merged = True
+        inertial = own if is_static else _joined(own, child.link.inertial, joint.frame)
+        node.link = _with_shapes(node.link, child.link, joint.frame, inertial)
+        last = node.children.pop()
+        if last is not child:
+            node.children[i] = last
+        for grandchild in child.children:
+            grandchild.joint = _moved(grandchild.joint, joint.frame)
+            node.children.append(grandchild)
+
+
+def _with_shapes(link: Link, merged: Link, frame: Pose, inertial: Inertial) -> Link:
+    collisions = (replace(shape, frame=compose(frame, shape.frame)) for shape in merged.collisions)
+    visuals = (replace(shape, frame=compose(frame, shape.frame)) for shape in merged.visuals)
+    return replace(
+        link,
+        inertial=inertial,
+        collisions=(*link.collisions, *collisions),
+        visuals=(*link.visuals, *visuals),
+    )
+
+
+def _moved(joint: Joint | None, frame: Pose) -> Joint | None:
+    return None if joint is None else replace(joint, frame=compose(frame, joint.frame))
+
+
+def _joined(own: Inertial, merged: Inertial, frame: Pose) -> Inertial:
+    """Mass and principal moments of two bodies together; the second lies at the origin of `frame`."""
+    mass = own.mass + merged.mass
+    if mass == 0.0:
+        return own
+    bodies = ((own.mass, own.frame, own.tensor), (merged.mass, frame, merged.tensor))
+    x, y, z = (sum(m * pose.position[k] for m, pose, _ in bodies) / mass for k in range(3))
+    total = [[0.0] * 3 for _ in range(3)]
+    for m, pose, (ixx, ixy, ixz, iyy, iyz, izz) in bodies:
+        turn = rotation_matrix(pose.orientation)
+        tensor = ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
+        turned = matrix_product(matrix_product(turn, tensor), transposed(turn))
+        offset = (pose.position[0] - x, pose.position[1] - y, pose.position[2] - z)
+        for i in range(3):
+            for j in range(3):
+                parallel = (dot(offset, offset) if i == j else 0.0) - offset[i] * offset[j]
+                total[i][j] += turned[i][j] + m * parallel
+    rows = ((total[0][0], total[0][1], total[0][2]), (total[1][0], total[1][1], total[1][2]))
+    (a, b, c), _ = diagonalize((*rows, (total[2][0], total[2][1], total[2][2])), 1e-5, 20)
+    return Inertial(mass, Pose((x, y, z)), (a, 0.0, 0.0, b, 0.0, c))
+
+
+def _number(root: TreeNode) -> None:
+    """Numbers the children of a node in a row, before what they carry."""
+    root.index = 0
+    count = 1
+    pending = [root]
+    while pending:
+        node = pending.pop()
+        for child in node.children:
+            child.index = count
+            count += 1
+        pending.extend(reversed(node.children))

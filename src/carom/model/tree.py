@@ -1,0 +1,57 @@
+"""A robot as a tree that can be walked and changed."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, field
+
+from carom.description import Joint, Link, Robot
+
+
+@dataclass(slots=True, eq=False)
+class TreeNode:
+    """A link, the joint that carries it, and what it carries.
+
+    Attributes:
+        link: The link.
+        index: Its place in the file.
+        joint: The joint to its parent; None for the root.
+        children: Nodes carried by it, in the order of their joints in the file.
+    """
+
+    link: Link
+    index: int
+    joint: Joint | None = None
+    children: list[TreeNode] = field(default_factory=list)
+
+
+def make_tree(robot: Robot) -> TreeNode:
+    """The root of the tree of a robot."""
+    nodes = [TreeNode(link, index) for index, link in enumerate(robot.links)]
+    for joint in robot.joints:
+        nodes[joint.child].joint = joint
+        nodes[joint.parent].children.append(nodes[joint.child])
+    return nodes[robot.root]
+
+
+def depth_first(root: TreeNode) -> list[TreeNode]:
+    """All nodes, each before what it carries, a whole branch before the next."""
+    order: list[TreeNode] = []
+    pending = [root]
+    while pending:
+        node = pending.pop()
+        order.append(node)
+        pending.extend(reversed(node.children))
+    return order
+
+
+def file_order(root: TreeNode) -> list[TreeNode]:
+    """All nodes in the order of the file, except that each comes after what carries it."""
+    order: list[TreeNode] = []
+    ready = [(root.index, root)]
+    while ready:
+        _, node = heapq.heappop(ready)
+        order.append(node)
+        for child in node.children:
+            heapq.heappush(ready, (child.index, child))
+    return order
