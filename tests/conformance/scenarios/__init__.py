@@ -1,0 +1,1 @@
+"""The scenarios; every module registers its own on import."""
