@@ -102,7 +102,8 @@ def main(duration=2.0):
     record = {}
     for name in PHASES:
         wanted, measured = run_phase(robot, joints, name, duration)
-        record[name] = {"wanted": wanted, "measured": measured}
+        times = np.arange(1, len(wanted) + 1) * TIME_STEP
+        record[name] = {"time": times, "wanted": wanted, "measured": measured}
         error = np.abs(wanted - measured)[:, :7]
         print(f"{name:8}: at most {error.max():.4f} rad off the path, {error[-1].max():.5f} rad at its end")
     p.disconnect()

@@ -27,7 +27,7 @@ MAY_IMPORT = {
     "carom.joint": {*MODEL, *HANDLES},
     "carom.link": {*MODEL, *HANDLES},
     "carom": {*HANDLES, "carom.control", "carom.version"},
-    "carom.cli": {*ENGINE, *HANDLES, "carom.version"},
+    "carom.cli": {*ENGINE, *HANDLES, "carom.version", "pybullet_data"},
     "carom.__main__": {"carom.cli"},
     "pybullet": {*MODEL, *HANDLES, "carom.algorithms", "carom.version"},
     "pybullet_data": set(),

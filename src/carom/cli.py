@@ -1,0 +1,176 @@
+"""The command line: `python -m carom info robot.urdf`, `python -m carom warmup`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import pybullet_data
+from carom.description import Pose
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose
+from carom.errors import CaromError
+from carom.formats.search import AssetSearch
+from carom.formats.urdf import read_urdf
+from carom.model.assemble import assemble
+from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.flags import LoadFlags
+from carom.version import __version__
+
+OK, FAILED = 0, 1
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        arguments: Words of the command line; those of the process by default.
+
+    Returns:
+        Exit status: 0 when all went well, 1 when a file cannot be used. argparse itself ends the
+        process with 2 when it does not understand the command.
+    """
+    options = _parser().parse_args(arguments)
+    return options.command(options)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="carom", description="A robot simulator that runs PyBullet scripts."
+    )
+    parser.add_argument("--version", action="version", version=f"carom {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    info = commands.add_parser("info", help="print the joint and link tables of a robot file")
+    info.add_argument("file", type=Path, help="URDF file; one that pybullet_data ships is found by its name")
+    info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
+    info.add_argument("--fixed-base", action="store_true", help="nail the base to the world")
+    info.add_argument(
+        "--inertia-from-file", action="store_true", help="use <inertia>, not the collision shapes"
+    )
+    info.add_argument("--merge-fixed-links", action="store_true", help="merge links that cannot move")
+    info.set_defaults(command=_info)
+
+    warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
+    warmup.set_defaults(command=_warmup)
+    return parser
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
+    return value
+
+
+def _info(options: argparse.Namespace) -> int:
+    flags = LoadFlags.NONE
+    if options.inertia_from_file:
+        flags |= LoadFlags.USE_INERTIA_FROM_FILE
+    if options.merge_fixed_links:
+        flags |= LoadFlags.MERGE_FIXED_LINKS
+    search = AssetSearch(Path(pybullet_data.getDataPath()))
+    try:
+        robot = read_urdf(options.file, scale=options.scale, search=search)
+        spec = assemble(robot, flags=flags, fixed_base=options.fixed_base)
+    except (CaromError, OSError) as problem:
+        print(f"carom: {problem}", file=sys.stderr)
+        return FAILED
+    print(describe(spec))
+    return OK
+
+
+def _warmup(_options: argparse.Namespace) -> int:
+    from carom import physics
+
+    print("Preparing the physics kernels (compiled once for this machine) ...", end=" ", flush=True)
+    began = time.perf_counter()
+    physics.warmup()
+    print(f"ready after {time.perf_counter() - began:.1f} s.")
+    return OK
+
+
+def describe(spec: BodySpec) -> str:
+    """The joint table and the link table of a body, as text."""
+    movable = sum(link.joint_type.value != "fixed" for link in spec.links)
+    base = "fixed" if spec.fixed_base else "floating"
+    joints = "joint" if movable == 1 else "joints"
+    heading = f"{spec.name}: {len(spec.links) + 1} links, {movable} movable {joints}, {base} base"
+    return "\n\n".join([heading, _joint_table(spec), _link_table(spec)])
+
+
+def _joint_table(spec: BodySpec) -> str:
+    header = ["#", "joint", "type", "axis", "limits", "effort", "velocity", "damping", "friction", "parent"]
+    rows = []
+    for index, link in enumerate(spec.links):
+        movable = link.joint_type.value != "fixed"
+        drive = (link.effort, link.velocity, link.damping, link.friction)
+        rows.append(
+            [
+                str(index),
+                link.joint_name,
+                link.joint_type.value,
+                _numbers(link.joint_axis) if movable else "",
+                f"{link.lower:g} .. {link.upper:g}" if link.limited else "",
+                *(f"{value:g}" if movable else "" for value in drive),
+                _link(spec, link.parent).name,
+            ]
+        )
+    return (
+        _table(header, rows)
+        + "\nAxes are in the joint frame. Units: rad, N m, s, and for prismatic joints m, N, s."
+    )
+
+
+def _link_table(spec: BodySpec) -> str:
+    header = ["#", "link", "mass", "inertia", "centre of mass", "position", "orientation", "shapes"]
+    poses = link_poses(spec)
+    rows = [
+        [
+            str(index),
+            link.name,
+            f"{link.mass:g}",
+            _numbers(link.inertia),
+            _numbers(link.inertial_frame.position),
+            _numbers(poses[index].position),
+            _numbers(poses[index].orientation),
+            str(len(link.collisions)),
+        ]
+        for index, link in [(BASE, spec.base), *enumerate(spec.links)]
+    ]
+    return _table(header, rows) + (
+        "\nPrincipal inertia; centre of mass in the link frame; link frame in the base's, all joints at 0,"
+        "\norientation x y z w; number of collision shapes. Units: kg, m."
+    )
+
+
+def link_poses(spec: BodySpec) -> dict[int, Pose]:
+    """Link frames in the base's link frame with all joints at 0, by link index."""
+    poses = {BASE: IDENTITY}
+    for index, link in enumerate(spec.links):
+        poses[index] = compose(poses[link.parent], link.joint_frame)
+    return poses
+
+
+def _link(spec: BodySpec, index: int) -> LinkSpec:
+    return spec.base if index == BASE else spec.links[index]
+
+
+def _numbers(values: Iterable[float]) -> str:
+    # Adding 0 turns -0 into 0.
+    return " ".join(f"{value + 0.0:.4g}" for value in values)
+
+
+def _table(header: list[str], rows: list[list[str]]) -> str:
+    widths = [max(map(len, column)) for column in zip(header, *rows, strict=True)]
+    lines = [header, ["-" * width for width in widths], *rows]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )

@@ -1,0 +1,91 @@
+"""Every example runs, and shows what its text says it shows."""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture
+def example(monkeypatch):
+    """Imports an example as if it had been started from its own directory."""
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+
+    def load(name: str) -> Any:
+        return import_module(name)
+
+    return load
+
+
+def test_the_default_motor_holds_the_arm_and_without_it_the_arm_swings(example):
+    record = example("default_motors").main(duration=1.0)
+    assert np.allclose(record["default motor"], 1.0, atol=1e-6)
+    assert min(record["motor off"]) < -0.5
+
+
+def test_each_control_mode_does_what_it_is_for(example):
+    record = example("control_modes").main(duration=3.0)
+    assert record["POSITION"][-1] == pytest.approx(1.0, abs=1e-4)
+    speed = np.diff(record["VELOCITY"]) * 240
+    assert np.allclose(speed, 0.5, atol=1e-6)
+    # A spring of 60 N m/rad against gravity: 60 (1 - θ) = m g r sin θ with m g r = 9.81 N m.
+    angle = record["PD"][-1]
+    assert 60 * (1 - angle) == pytest.approx(9.81 * np.sin(angle), rel=1e-3)
+    assert max(record["TORQUE"]) > 1.0
+
+
+def test_the_arm_rests_where_torque_and_gravity_balance(example):
+    record = example("gravity_torque").main(duration=10.0)
+    assert record["angle"][-1] == pytest.approx(record["balance"][-1], abs=1e-4)
+
+
+def test_the_integral_closes_the_gap_that_pd_leaves(example):
+    record = example("one_joint_pid").main(duration=4.0)
+    assert record["PID"][-1] == pytest.approx(1.2, abs=1e-3)
+    assert record["PD"][-1] < 1.1
+    assert max(np.abs(record["torque of PID"])) <= 30.0
+
+
+def test_the_slider_example_runs_headless_and_follows_its_start_values(example):
+    record = example("pid_sliders").main(duration=2.0, real_time=False)
+    assert record["angle"][-1] == pytest.approx(1.2, abs=0.05)
+
+
+def test_the_panda_follows_its_path_under_every_kind_of_control(example):
+    record = example("panda_control").main(duration=1.0)
+    assert set(record) == {"effort", "velocity", "position"}
+    for phase in record.values():
+        assert np.abs(phase["wanted"] - phase["measured"])[:, :7].max() < 0.03
+        assert np.abs(phase["wanted"] - phase["measured"])[-1, :7].max() < 0.005
+
+
+def test_robot_info_lists_r2d2_and_lets_it_fall(example, capsys):
+    record = example("robot_info").main(duration=0.1)
+    output = capsys.readouterr().out
+    for name in ("right_front_wheel_joint", "gripper_extension", "head_swivel", "prismatic"):
+        assert name in output
+    assert len(record["height"]) == 15
+
+
+def test_the_modern_api_example_reaches_its_goal(example):
+    record = example("modern_api").main(duration=2.0)
+    assert record["shoulder"][-1] == pytest.approx(record["path"][-1], abs=0.01)
+
+
+def test_the_demo_writes_a_table_and_a_plot(example, tmp_path, capsys):
+    results, plot = example("demo").main(duration=0.25, output=tmp_path)
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    table = capsys.readouterr().out
+    for result in results:
+        assert result["name"] in table
+        assert np.isfinite(result["measured"]).all()
+
+
+def test_every_example_is_tested():
+    tested = Path(__file__).read_text(encoding="utf-8")
+    for script in EXAMPLES.glob("*.py"):
+        assert f'example("{script.stem}")' in tested
