@@ -109,29 +109,28 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
     Raises:
         DescriptionError: The file cannot be used.
     """
-    parts = [_scaled_bounds(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    corners = [_scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
     if mesh.concave:
-        return reduce(Bounds.joined, parts)
+        return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
     if mesh.path.suffix.lower() == ".obj":
-        hulls = reduce(Bounds.joined, (part.grown(MARGIN).grown(MARGIN) for part in parts))
-        return hulls.grown(MARGIN)
-    return _on_hull_grid(reduce(Bounds.joined, parts)).grown(MARGIN).grown(MARGIN)
+        hulls = (Bounds.between(*pair).grown(MARGIN).grown(MARGIN) for pair in corners)
+        return reduce(Bounds.joined, hulls).grown(MARGIN)
+    lows, highs = zip(*corners, strict=True)
+    axes = [_on_hull_grid(min(low), max(high)) for low, high in zip(zip(*lows), zip(*highs), strict=True)]
+    (x0, x1), (y0, y1), (z0, z1) = axes
+    return Bounds.between((x0, y0, z0), (x1, y1, z1)).grown(MARGIN).grown(MARGIN)
 
 
-def _scaled_bounds(vertices: np.ndarray, scale: Vector3) -> Bounds:
+def _scaled_corners(vertices: np.ndarray, scale: Vector3) -> tuple[Vector3, Vector3]:
+    """Lowest and highest corner of scaled vertices."""
     ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)]) * np.asarray(scale)
     low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
-    return Bounds.between((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
-def _on_hull_grid(bounds: Bounds) -> Bounds:
-    """Bounds of the hull's vertices after they are cut to the grid on which PyBullet builds it."""
-    low, high = [], []
-    for center, half in zip(bounds.center, bounds.half, strict=True):
-        bottom, top = center - half, center + half
-        cell = (top - bottom) / _HULL_GRID
-        per_cell = 1.0 / cell if cell != 0.0 else 0.0
-        middle = (bottom + top) * 0.5
-        low.append(trunc((bottom - middle) * per_cell) * cell + middle)
-        high.append(trunc((top - middle) * per_cell) * cell + middle)
-    return Bounds.between((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+def _on_hull_grid(low: float, high: float) -> tuple[float, float]:
+    """The ends of a hull along one axis after they are cut to the grid on which PyBullet builds it."""
+    cell = (high - low) * (1.0 / _HULL_GRID)
+    per_cell = 1.0 / cell if cell != 0.0 else 0.0
+    middle = (low + high) * 0.5
+    return trunc((low - middle) * per_cell) * cell + middle, trunc((high - middle) * per_cell) * cell + middle

@@ -168,7 +168,9 @@ def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vec
             step = 1
         theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q])
         if theta**4 < 10.0 / _EPSILON:
-            t = 1.0 / (theta + sqrt(1.0 + theta * theta) if theta >= 0.0 else theta - sqrt(1.0 + theta * theta))
+            t = 1.0 / (
+                theta + sqrt(1.0 + theta * theta) if theta >= 0.0 else theta - sqrt(1.0 + theta * theta)
+            )
             cosine = 1.0 / sqrt(1.0 + t * t)
         else:
             t = 1.0 / (theta * (2.0 + 0.5 / (theta * theta)))

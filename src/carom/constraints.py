@@ -1,0 +1,168 @@
+"""The joint constraints of a world, in the order in which the solver visits them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.description import JointType
+from carom.link_dynamics import DEFAULT_LIMIT_IMPULSE
+from carom.model.builder import WorldArrays
+from carom.model.codes import MAX_ROWS_PER_CONSTRAINT, ConstraintKind, JointCode
+from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+
+@dataclass(slots=True, eq=False)
+class JointConstraint:
+    """A motor or a limit on one joint.
+
+    Attributes:
+        body: The body it acts on.
+        joint: Index of the joint.
+        kind: What it does.
+        lower: Lower limit; swing range about x of a spherical joint [rad or m].
+        upper: Upper limit; swing range about y of a spherical joint [rad or m].
+        twist: Twist range of a spherical joint [rad].
+        max_impulse: Greatest impulse of a limit per substep.
+    """
+
+    body: Body
+    joint: int
+    kind: ConstraintKind
+    lower: float = 0.0
+    upper: float = 0.0
+    twist: float = 0.0
+    max_impulse: float = DEFAULT_LIMIT_IMPULSE
+
+
+@dataclass(frozen=True, slots=True)
+class Island:
+    """Constraints that are solved together.
+
+    Attributes:
+        tag: Number of the first of the solver's islands in it.
+        first: Its first constraint in the sorted list.
+        count: Number of constraints.
+        link_count: Number of moving links it holds.
+    """
+
+    tag: int
+    first: int
+    count: int
+    link_count: int
+
+
+class JointConstraints:
+    """All motors and limits of a world."""
+
+    def __init__(self) -> None:
+        self._constraints: list[JointConstraint] = []
+        self._tags = IslandTags()
+
+    def add_body(self, body: Body) -> None:
+        """Append the limits, then the motors, of a new body."""
+        self._tags.add(body.id, _moving_links(body))
+        for joint, link in enumerate(body.spec.links):
+            if link.joint_type == JointType.SPHERICAL:
+                if link.lower > 0.0 and link.upper > 0.0 and link.twist > 0.0 and link.effort > 0.0:
+                    self._constraints.append(
+                        JointConstraint(
+                            body,
+                            joint,
+                            ConstraintKind.SPHERICAL_LIMIT,
+                            link.lower,
+                            link.upper,
+                            link.twist,
+                            link.effort,
+                        )
+                    )
+            elif link.limited:
+                self._constraints.append(
+                    JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper)
+                )
+        for joint, code in enumerate(body.joint_types):
+            if code in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+                self._constraints.append(JointConstraint(body, joint, ConstraintKind.MOTOR))
+            elif code == JointCode.SPHERICAL:
+                self._constraints.append(JointConstraint(body, joint, ConstraintKind.SPHERICAL_MOTOR))
+
+    def remove_body(self, body: Body) -> None:
+        """Remove the constraints of a body, the last first."""
+        for constraint in reversed(self._constraints.copy()):
+            if constraint.body is body:
+                remove_unordered(self._constraints, constraint)
+        self._tags.remove(body.id, 1 + body.joint_count)
+
+    def set_limit(self, body: Body, joint: int, lower: float, upper: float) -> None:
+        """Set, add or (with lower > upper) remove the limit of a joint."""
+        limit = self.limit_of(body, joint)
+        if lower > upper:
+            if limit is not None:
+                remove_unordered(self._constraints, limit)
+        elif limit is None:
+            self._constraints.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
+        else:
+            limit.lower, limit.upper = lower, upper
+
+    def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
+        """The limit of a revolute or prismatic joint, if it has one."""
+        for constraint in self._constraints:
+            if constraint.body is body and constraint.joint == joint and constraint.kind == ConstraintKind.LIMIT:
+                return constraint
+        return None
+
+    def base_freedom_changed(self, body: Body) -> None:
+        """Number the islands anew after the base of a body was freed or held."""
+        self._tags.move_base_to_end(body.id, _moving_links(body))
+
+    def write(self, arrays: WorldArrays, minimum_island_size: int) -> tuple[list[Island], bool]:
+        """Write the sorted constraints and their islands to the model.
+
+        Args:
+            arrays: Where to.
+            minimum_island_size: Islands are solved together until they have more constraints.
+
+        Returns:
+            The islands, and whether arrays were replaced.
+        """
+        tags = self._tags.tags()
+        keys = [tags[constraint.body.id] for constraint in self._constraints]
+        order = quicksort_order(keys)
+        islands = batch_islands([keys[i] for i in order], minimum_island_size)
+        ordered = [self._constraints[i] for i in order]
+
+        arrays.used["constraint"] = arrays.used["island"] = arrays.used["row"] = 0
+        count = len(ordered)
+        grown = arrays.reserve(constraint=count, island=len(islands), row=count * MAX_ROWS_PER_CONSTRAINT)
+        arrays.used.update(constraint=count, island=len(islands), row=count * MAX_ROWS_PER_CONSTRAINT)
+        model = arrays.model.numpy
+        model["constraint_kind"][:count] = [constraint.kind for constraint in ordered]
+        model["constraint_tree"][:count] = [constraint.body.rows.tree for constraint in ordered]
+        model["constraint_link"][:count] = [
+            constraint.body.first_link + 1 + constraint.joint for constraint in ordered
+        ]
+        for name in ("lower", "upper", "twist", "max_impulse"):
+            model[f"constraint_{name}"][:count] = [getattr(constraint, name) for constraint in ordered]
+        trees = arrays.used["tree"]
+        model["tree_constraint_count"][:trees] = np.bincount(model["constraint_tree"][:count], minlength=trees)
+        result = []
+        for i, (first, length) in enumerate(islands):
+            model["island_first_constraint"][i] = first
+            model["island_constraint_count"][i] = length
+            members = {constraint.body.id: constraint.body for constraint in ordered[first : first + length]}
+            links = sum(sum(_moving_links(body)) for body in members.values())
+            result.append(Island(keys[order[first]], first, length, links))
+        return result, grown
+
+
+def _moving_links(body: Body) -> list[bool]:
+    """Which links, base first, are not rigidly tied to a fixed base."""
+    moving = [not body.fixed_base]
+    for link, code in zip(body.spec.links, body.joint_types, strict=True):
+        moving.append(moving[link.parent + 1] or code != JointCode.FIXED)
+    return moving

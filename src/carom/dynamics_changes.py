@@ -1,0 +1,97 @@
+"""Changing the inertia, the surface or the bounds of a body while it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from carom.model.body_spec import BASE
+from carom.model.flags import LoadFlags
+from carom.model.inertia import inertia_from_shapes
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+
+def change_body(body: Body, changes: Mapping[str, Any]) -> None:
+    """Change what holds for all links of a body."""
+    model = body.world.arrays.model.numpy
+    tree = body.rows.tree
+    fields = {
+        "linear_damping": "tree_linear_damping",
+        "angular_damping": "tree_angular_damping",
+        "max_joint_velocity": "tree_max_velocity",
+    }
+    for name, value in changes.items():
+        if name in fields:
+            model[fields[name]][tree] = value
+        else:
+            setattr(body.sleeping, name, value)
+
+
+def change_link(body: Body, link: int, changes: Mapping[str, Any]) -> None:
+    """Change one link and the joint that carries it."""
+    dynamics = body.dynamics(link)
+    changes = dict(changes)
+    if "mass" in changes:
+        _set_mass(body, link, changes.pop("mass"))
+    if "inertia" in changes:
+        _set_inertia(body, link, changes.pop("inertia"))
+    if "joint_damping" in changes and link != BASE:
+        _set_joint_damping(body, link, changes.pop("joint_damping"))
+    if ("joint_lower_limit" in changes or "joint_upper_limit" in changes) and link != BASE:
+        lower = changes.pop("joint_lower_limit", dynamics.joint_lower_limit)
+        upper = changes.pop("joint_upper_limit", dynamics.joint_upper_limit)
+        _set_limits(body, link, lower, upper)
+    if "joint_limit_force" in changes:
+        _set_limit_force(body, link, changes.pop("joint_limit_force"))
+    for name, value in changes.items():
+        setattr(dynamics, name, value)
+
+
+def _set_mass(body: Body, link: int, mass: float) -> None:
+    """Set the mass and the inertia the collision shapes have with it; a massless base is fixed."""
+    dynamics = body.dynamics(link)
+    dynamics.mass = mass
+    spec = body.link_spec(link)
+    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    dynamics.inertia = inertia_from_shapes(mass, spec.collisions, spec.inertial_frame, implicit_cylinder=implicit)
+    _write(body, link)
+    if link == BASE and (mass > 0.0) == body.fixed_base:
+        body.world.set_base_freedom(body, free=mass > 0.0)
+
+
+def _set_inertia(body: Body, link: int, inertia: tuple[float, float, float]) -> None:
+    body.dynamics(link).inertia = inertia
+    _write(body, link)
+
+
+def _write(body: Body, link: int) -> None:
+    dynamics = body.dynamics(link)
+    body.world.arrays.write_inertia(body.first_link + 1 + link, dynamics.mass, dynamics.inertia)
+
+
+def _set_joint_damping(body: Body, joint: int, damping: float) -> None:
+    body.dynamics(joint).joint_damping = damping
+    first = body.velocity_index[joint]
+    body.world.arrays.model.numpy["dof_damping"][first : first + body.velocity_count[joint]] = damping
+
+
+def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:
+    dynamics = body.dynamics(joint)
+    if lower > upper:
+        lower, upper = 1.0, -1.0
+    dynamics.joint_lower_limit, dynamics.joint_upper_limit = lower, upper
+    if body.velocity_count[joint] == 1:
+        body.world.constraints.set_limit(body, joint, lower, upper)
+        body.world.constraints_changed()
+
+
+def _set_limit_force(body: Body, joint: int, force: float) -> None:
+    """A limit's bound is an impulse: it keeps the substep at the time of the call."""
+    impulse = force * body.world.parameters.substep_time
+    limit = body.world.constraints.limit_of(body, joint)
+    if limit is not None:
+        limit.max_impulse = impulse
+        body.dynamics(joint).joint_limit_impulse = impulse
+        body.world.constraints_changed()

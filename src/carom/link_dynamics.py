@@ -1,0 +1,95 @@
+"""The numbers of one link that users can read and change while it runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from carom.description.pose import Vector3
+from carom.model.body_spec import LinkSpec
+
+DEFAULT_FRICTION = 0.5
+DEFAULT_COLLISION_MARGIN = 0.001
+DEFAULT_LIMIT_IMPULSE = 100.0
+DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
+UNSET = -1.0
+
+
+@dataclass(slots=True)
+class SleepSettings:
+    """When a body may fall asleep. Recorded for the day bodies sleep; see docs/status.
+
+    Attributes:
+        activation_state: Bits of PyBullet's ACTIVATION_STATE_* as last set.
+        sleep_threshold: Sum of squared velocities below which it may.
+    """
+
+    activation_state: int = 0
+    sleep_threshold: float = 0.05
+
+
+@dataclass(slots=True)
+class LinkDynamics:
+    """Inertia, surface and joint bounds of a link.
+
+    Attributes:
+        mass: [kg]; 0 for a fixed base.
+        inertia: Principal moments [kg m²].
+        lateral_friction: Coulomb coefficient.
+        rolling_friction: [m].
+        spinning_friction: [m].
+        restitution: Fraction of the normal speed that comes back.
+        contact_stiffness: [N/m]; -1 if unset.
+        contact_damping: [N s/m]; -1 if unset.
+        friction_anchor: Friction keeps a position anchor.
+        collision_margin: [m].
+        ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
+        contact_processing_threshold: Greatest distance of a contact that is solved [m].
+        anisotropic_friction: Factors on friction along the link's axes.
+        joint_damping: [N m s/rad or N s/m].
+        joint_lower_limit: [rad or m].
+        joint_upper_limit: Less than the lower limit means none.
+        joint_limit_impulse: Greatest impulse of a limit per substep [N m s or N s].
+    """
+
+    mass: float
+    inertia: Vector3
+    lateral_friction: float = DEFAULT_FRICTION
+    rolling_friction: float = 0.0
+    spinning_friction: float = 0.0
+    restitution: float = 0.0
+    contact_stiffness: float = UNSET
+    contact_damping: float = UNSET
+    friction_anchor: bool = False
+    collision_margin: float = DEFAULT_COLLISION_MARGIN
+    ccd_swept_sphere_radius: float = 0.0
+    contact_processing_threshold: float = DEFAULT_CONTACT_PROCESSING_THRESHOLD
+    anisotropic_friction: Vector3 = (1.0, 1.0, 1.0)
+    joint_damping: float = 0.0
+    joint_lower_limit: float = 0.0
+    joint_upper_limit: float = -1.0
+    joint_limit_impulse: float = DEFAULT_LIMIT_IMPULSE
+
+    @classmethod
+    def of(cls, link: LinkSpec) -> LinkDynamics:
+        """What a freshly loaded link has."""
+        contact = link.contact
+        dynamics = cls(
+            mass=link.mass,
+            inertia=link.inertia,
+            joint_damping=link.damping,
+            joint_lower_limit=link.lower,
+            joint_upper_limit=link.upper,
+            friction_anchor=contact.friction_anchor,
+        )
+        stated = {
+            "lateral_friction": contact.lateral_friction,
+            "rolling_friction": contact.rolling_friction,
+            "spinning_friction": contact.spinning_friction,
+            "restitution": contact.restitution,
+            "contact_stiffness": contact.stiffness,
+            "contact_damping": contact.damping,
+        }
+        for name, value in stated.items():
+            if value is not None:
+                setattr(dynamics, name, value)
+        return dynamics

@@ -1,0 +1,261 @@
+"""From `BodySpec` to rows of the flat arrays, and back out again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from carom.description import JointType
+from carom.description.pose import Pose, Vector3
+from carom.description.transform import conjugate, multiplied, rotate
+from carom.model.arrays import ArrayTable
+from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.codes import (
+    BASE_POSITIONS,
+    BASE_VELOCITIES,
+    DOF_COUNT,
+    JOINT_CODE,
+    MOTOR_DAMPING,
+    MOTOR_KD,
+    MOTOR_KP,
+    MOTOR_MAX_IMPULSE,
+    MOTOR_TARGET_W,
+    MOTOR_VELOCITY_CLAMP,
+    POSITION_COUNT,
+    JointCode,
+)
+from carom.model.structs import Model, Scratch, State
+
+# Bullet's default, a float32 in its source.
+DEFAULT_LINK_DAMPING = float(np.float32(0.04))
+DEFAULT_MAX_VELOCITY = 100.0
+DEFAULT_MOTOR_IMPULSE = 1.0
+DEFAULT_SPHERICAL_MOTOR_IMPULSE = 1000.0
+DEFAULT_SPHERICAL_MOTOR_GAIN = 0.2
+
+# Which axis the values of a model field count on; they move when rows of that axis are deleted.
+_INDEX_FIELDS = {
+    "tree_first_link": "link",
+    "tree_first_position": "position",
+    "tree_first_velocity": "dof",
+    "tree_first_dof": "dof",
+    "tree_first_block": "block",
+    "tree_first_delta": "delta",
+    "link_parent": "link",
+    "link_first_position": "position",
+    "link_first_dof": "dof",
+    "dof_parent": "dof",
+}
+
+
+@dataclass(slots=True)
+class TreeRows:
+    """Where a body is in the flat arrays."""
+
+    tree: int
+    first: dict[str, int] = field(default_factory=dict)
+    count: dict[str, int] = field(default_factory=dict)
+
+
+class WorldArrays:
+    """The arrays of all bodies of `world_count` equal worlds."""
+
+    def __init__(self, world_count: int = 1) -> None:
+        self.world_count = world_count
+        self.model = ArrayTable(Model, None)
+        self.state = ArrayTable(State, world_count)
+        self.scratch = ArrayTable(Scratch, world_count)
+        self.used = dict.fromkeys(
+            ("tree", "link", "position", "dof", "block", "delta", "constraint", "island", "row"), 0
+        )
+
+    @property
+    def tables(self) -> tuple[ArrayTable, ArrayTable, ArrayTable]:
+        """Model, state and scratch."""
+        return self.model, self.state, self.scratch
+
+    def reserve(self, **more: int) -> bool:
+        """Make room for more rows on the named axes; true if arrays were replaced."""
+        needed = {axis: self.used[axis] + count for axis, count in more.items()}
+        grown = [table.reserve(needed) for table in self.tables]
+        return any(grown)
+
+    def append(self, spec: BodySpec, base_pose: Pose) -> tuple[TreeRows, bool]:
+        """Add a body at rest, its joints at zero.
+
+        Args:
+            spec: The body.
+            base_pose: World pose of the base's inertial frame.
+
+        Returns:
+            Where it is, and whether arrays were replaced.
+        """
+        codes = [JOINT_CODE[link.joint_type] for link in spec.links]
+        joint_dofs = sum(DOF_COUNT[code] for code in codes)
+        dofs = BASE_VELOCITIES + joint_dofs
+        # Room for a free base even where it is fixed, so that it can be freed later.
+        blocks = (dofs + 3) // 4
+        count = {
+            "tree": 1,
+            "link": 1 + len(spec.links),
+            "position": BASE_POSITIONS + sum(POSITION_COUNT[code] for code in codes),
+            "dof": dofs,
+            "block": dofs * blocks,
+            "delta": blocks,
+        }
+        grown = self.reserve(**count)
+        rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
+        self._write_tree(rows)
+        self._write_links(rows, spec, codes)
+        self.set_base_freedom(rows, free=not spec.fixed_base)
+        self._write_start(rows, base_pose)
+        for axis, number in count.items():
+            self.used[axis] += number
+        return rows, grown
+
+    def _write_tree(self, rows: TreeRows) -> None:
+        model = self.model.numpy
+        tree, first = rows.tree, rows.first
+        model["tree_first_link"][tree] = first["link"]
+        model["tree_link_count"][tree] = rows.count["link"]
+        model["tree_first_position"][tree] = first["position"]
+        model["tree_first_velocity"][tree] = first["dof"]
+        model["tree_first_block"][tree] = first["block"]
+        model["tree_first_delta"][tree] = first["delta"]
+        model["tree_sensor_count"][tree] = 0
+        model["tree_constraint_count"][tree] = 0
+        model["tree_linear_damping"][tree] = DEFAULT_LINK_DAMPING
+        model["tree_angular_damping"][tree] = DEFAULT_LINK_DAMPING
+        model["tree_max_velocity"][tree] = DEFAULT_MAX_VELOCITY
+
+    def _write_links(self, rows: TreeRows, spec: BodySpec, codes: list[JointCode]) -> None:
+        model = self.model.numpy
+        first_link, first_dof = rows.first["link"], rows.first["dof"]
+        model["link_parent"][first_link] = -1
+        model["link_joint_type"][first_link] = JointCode.FIXED
+        model["link_first_position"][first_link] = rows.first["position"]
+        model["link_first_dof"][first_link] = first_dof
+        model["dof_damping"][first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
+
+        last_dof = {BASE: -1}
+        position = rows.first["position"] + BASE_POSITIONS
+        dof = first_dof + BASE_VELOCITIES
+        for j, (link, code) in enumerate(zip(spec.links, codes, strict=True)):
+            row = first_link + 1 + j
+            parent = spec.base if link.parent == BASE else spec.links[link.parent]
+            model["link_parent"][row] = first_link + 1 + link.parent
+            model["link_joint_type"][row] = code
+            model["link_first_position"][row] = position
+            model["link_first_dof"][row] = dof
+            model["link_dof_count"][row] = DOF_COUNT[code]
+            self.write_inertia(row, link.mass, link.inertia)
+            self._write_joint(row, link, parent, code)
+            last_dof[j] = last_dof[link.parent]
+            for _ in range(DOF_COUNT[code]):
+                model["dof_parent"][dof] = last_dof[j]
+                model["dof_damping"][dof] = link.damping
+                last_dof[j] = dof
+                self._reset_motor(dof, code)
+                dof += 1
+            if code == JointCode.SPHERICAL:
+                self._reset_spherical(row, position)
+            position += POSITION_COUNT[code]
+
+    def set_base_freedom(self, rows: TreeRows, *, free: bool) -> None:
+        """Let the base of a body move, or hold it where it is."""
+        model = self.model.numpy
+        tree, first, count = rows.tree, rows.first["dof"], rows.count["dof"]
+        joints = first + BASE_VELOCITIES
+        last_base_dof = joints - 1
+        parents = model["dof_parent"]
+        roots = [d for d in range(joints, first + count) if parents[d] in (-1, last_base_dof)]
+        parents[roots] = last_base_dof if free else -1
+        parents[first:joints] = np.arange(first - 1, last_base_dof)
+        parents[first] = -1
+        model["tree_fixed"][tree] = not free
+        model["tree_first_dof"][tree] = first if free else joints
+        model["tree_dof_count"][tree] = count if free else count - BASE_VELOCITIES
+        model["link_dof_count"][rows.first["link"]] = BASE_VELOCITIES if free else 0
+
+    def write_inertia(self, row: int, mass: float, inertia: Vector3) -> None:
+        """Set a link's mass [kg] and principal moments [kg m²]."""
+        self.model.numpy["link_mass"][row] = mass
+        self.model.numpy["link_inertia"][row] = inertia
+
+    def _write_joint(self, row: int, link: LinkSpec, parent: LinkSpec, code: JointCode) -> None:
+        model = self.model.numpy
+        to_parent_inertial = conjugate(parent.inertial_frame.orientation)
+        to_inertial = conjugate(link.inertial_frame.orientation)
+        from_parent_com = _difference(link.joint_frame.position, parent.inertial_frame.position)
+        axis = rotate(to_inertial, link.joint_axis)
+        model["link_joint_rotation"][row] = multiplied(
+            multiplied(to_parent_inertial, link.joint_frame.orientation), link.inertial_frame.orientation
+        )
+        model["link_pivot_in_parent"][row] = rotate(to_parent_inertial, from_parent_com)
+        model["link_com_from_pivot"][row] = rotate(to_inertial, link.inertial_frame.position)
+        model["link_axis"][row] = axis
+        if code == JointCode.PLANAR:
+            # Bullet's planar joint acts at the centre of mass.
+            model["link_com_from_pivot"][row] = 0.0
+            normal = np.asarray(axis) / np.linalg.norm(axis)
+            aside = np.array([0.0, 1.0, 0.0]) if normal[0] > 0.999 else np.array([1.0, 0.0, 0.0])
+            axis1 = np.cross(normal, aside)
+            axis1 /= np.linalg.norm(axis1)
+            model["link_axis"][row] = normal
+            model["link_planar_axis1"][row] = axis1
+            model["link_planar_axis2"][row] = np.cross(axis1, normal)
+
+    def _reset_motor(self, dof: int, code: JointCode) -> None:
+        """The motor each joint starts with: it holds its velocity at zero."""
+        spherical = code == JointCode.SPHERICAL
+        motor = self.state.numpy["dof_motor"][:, dof]
+        motor[:] = 0.0
+        motor[:, MOTOR_KP] = DEFAULT_SPHERICAL_MOTOR_GAIN if spherical else 0.0
+        motor[:, MOTOR_KD] = 1.0
+        motor[:, MOTOR_MAX_IMPULSE] = DEFAULT_SPHERICAL_MOTOR_IMPULSE if spherical else DEFAULT_MOTOR_IMPULSE
+        motor[:, MOTOR_VELOCITY_CLAMP] = np.inf
+        motor[:, MOTOR_DAMPING] = 1.0
+
+    def _reset_spherical(self, row: int, position: int) -> None:
+        """A spherical joint starts, and its motor aims, at no rotation."""
+        dof = self.model.numpy["link_first_dof"][row]
+        self.state.numpy["dof_motor"][:, dof, MOTOR_TARGET_W] = 1.0
+        self.state.numpy["position"][:, position + 3] = 1.0
+
+    def _write_start(self, rows: TreeRows, base_pose: Pose) -> None:
+        first = rows.first["position"]
+        start = self.state.numpy["position"][:, first : first + BASE_POSITIONS]
+        start[:] = (*base_pose.position, *base_pose.orientation)
+
+    def remove(self, rows: TreeRows, others: Iterable[TreeRows]) -> None:
+        """Take a body's rows out; the rows of the `others` are updated."""
+        model = self.model.numpy
+        for axis, count in rows.count.items():
+            start = rows.first[axis]
+            if count == 0:
+                continue
+            for table in self.tables:
+                if axis in table.capacity:
+                    table.delete(axis, start, count)
+            for name, target in _INDEX_FIELDS.items():
+                if target == axis:
+                    indices = model[name]
+                    indices[indices >= start + count] -= count
+            self.used[axis] -= count
+            for other in others:
+                if other.first[axis] > start:
+                    other.first[axis] -= count
+        for other in others:
+            other.tree = other.first["tree"]
+
+    def structs(self, device: str) -> tuple[Any, Any, Any]:
+        """Warp structs of model, state and scratch over the present arrays."""
+        return self.model.struct(device), self.state.struct(device), self.scratch.struct(device)
+
+
+def _difference(a: Vector3, b: Vector3) -> Vector3:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])

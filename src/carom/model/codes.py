@@ -1,0 +1,69 @@
+"""Integer codes that kernels and Python share."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import warp as wp
+
+from carom.description import JointType
+
+
+class JointCode(IntEnum):
+    """Kinds of joint as the engine sees them; the values are PyBullet's."""
+
+    REVOLUTE = 0
+    PRISMATIC = 1
+    SPHERICAL = 2
+    PLANAR = 3
+    FIXED = 4
+
+
+class ConstraintKind(IntEnum):
+    """Constraints that act on the joints of one tree."""
+
+    MOTOR = 0
+    LIMIT = 1
+    SPHERICAL_MOTOR = 2
+    SPHERICAL_LIMIT = 3
+
+
+JOINT_CODE = {
+    JointType.REVOLUTE: JointCode.REVOLUTE,
+    JointType.CONTINUOUS: JointCode.REVOLUTE,
+    JointType.PRISMATIC: JointCode.PRISMATIC,
+    JointType.SPHERICAL: JointCode.SPHERICAL,
+    JointType.PLANAR: JointCode.PLANAR,
+    JointType.FIXED: JointCode.FIXED,
+    JointType.FLOATING: JointCode.FIXED,
+}
+DOF_COUNT = {
+    JointCode.REVOLUTE: 1,
+    JointCode.PRISMATIC: 1,
+    JointCode.SPHERICAL: 3,
+    JointCode.PLANAR: 3,
+    JointCode.FIXED: 0,
+}
+POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
+
+BASE_POSITIONS = 7
+BASE_VELOCITIES = 6
+
+# What one constraint can add to the solver at most: three axes of a spherical joint.
+MAX_ROWS_PER_CONSTRAINT = 3
+
+# Columns of a motor's settings (`State.dof_motor`) and of an explicit PD drive (`State.dof_pd`).
+MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
+MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
+PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
+
+# Kernels read codes as Warp constants.
+REVOLUTE = wp.constant(int(JointCode.REVOLUTE))
+PRISMATIC = wp.constant(int(JointCode.PRISMATIC))
+SPHERICAL = wp.constant(int(JointCode.SPHERICAL))
+PLANAR = wp.constant(int(JointCode.PLANAR))
+FIXED = wp.constant(int(JointCode.FIXED))
+MOTOR = wp.constant(int(ConstraintKind.MOTOR))
+LIMIT = wp.constant(int(ConstraintKind.LIMIT))
+SPHERICAL_MOTOR = wp.constant(int(ConstraintKind.SPHERICAL_MOTOR))
+SPHERICAL_LIMIT = wp.constant(int(ConstraintKind.SPHERICAL_LIMIT))

@@ -1,0 +1,102 @@
+"""Replaying a kernel launch at the least cost.
+
+`wp.launch` costs tens of microseconds in Python and even a recorded launch about four. On CPU a
+recorded launch is in the end one C call with two pointers, so that call is kept and made directly.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import warp as wp
+
+_NOTICE_AFTER_SECONDS = 1.5
+
+
+class Launch:
+    """A kernel with its arguments, ready to run again and again.
+
+    Arrays are kept alive, scalars and structs are copied; `replace` changes a scalar argument.
+    On CPU calling it returns when the kernel is done.
+    """
+
+    __slots__ = ("_bounds", "_command", "_entry_point", "_keep_alive", "_packed", "_pointer")
+
+    def __init__(self, kernel: Any, count: int, arguments: Sequence[Any], device: str = "cpu") -> None:
+        """Compile or load `kernel` if need be and pack its arguments.
+
+        Args:
+            kernel: The kernel.
+            count: Number of threads; for the engine's kernels one per world.
+            arguments: Its arguments.
+            device: Warp device name.
+        """
+        with _CompilationNotice():
+            self._command = wp.launch(
+                kernel, dim=count, inputs=list(arguments), device=device, record_cmd=True
+            )
+        self._keep_alive = arguments
+        self._entry_point = None
+        if self._command.device.is_cpu and self._command.block_dim <= 1:
+            values = self._command.params[1:]
+            fields = [(f"p{i}", type(value)) for i, value in enumerate(values)]
+            self._packed = type("PackedArguments", (ctypes.Structure,), {"_fields_": fields})(*values)
+            self._entry_point = self._command.hooks.forward
+            self._bounds = ctypes.byref(self._command.params[0])
+            self._pointer = ctypes.byref(self._packed)
+
+    def __call__(self) -> None:
+        """Run the kernel."""
+        if self._entry_point is None:
+            self._command.launch()
+        else:
+            self._entry_point(self._bounds, self._pointer)
+
+    def replace(self, index: int, value: int) -> None:
+        """Change a scalar argument for all later runs."""
+        if self._entry_point is None:
+            self._command.set_param_at_index(index, value)
+        else:
+            setattr(self._packed, f"p{index}", value)
+
+    @property
+    def function(self) -> Callable[[], None]:
+        """The run as a plain function with the least overhead."""
+        if self._entry_point is None:
+            return self._command.launch
+        return functools.partial(self._entry_point, self._bounds, self._pointer)
+
+
+class _CompilationNotice:
+    """Tells the user what is going on when a first use compiles kernels, and that it happens once."""
+
+    def __init__(self) -> None:
+        self._timer = threading.Timer(_NOTICE_AFTER_SECONDS, self._announce)
+        self._timer.daemon = True
+        self._announced = False
+        self._started = 0.0
+
+    def __enter__(self) -> None:
+        self._started = time.perf_counter()
+        self._timer.start()
+
+    def __exit__(self, *_exception: object) -> None:
+        self._timer.cancel()
+        if self._announced:
+            elapsed = time.perf_counter() - self._started
+            print(f"carom: kernels compiled in {elapsed:.0f} s.", file=sys.stderr, flush=True)
+
+    def _announce(self) -> None:
+        self._announced = True
+        print(
+            "carom: compiling the physics kernels for this machine (about half a minute, once; "
+            "the result is cached) ...",
+            file=sys.stderr,
+            flush=True,
+        )

@@ -1,0 +1,122 @@
+"""The order in which the solver visits constraints.
+
+A Gauss-Seidel sweep that stops early depends on the order of its rows, so trajectories equal to
+Bullet's need Bullet's order. It keeps one list of all constraints in order of creation; removing
+one puts the last in its place. Before each step the list is sorted by island with a quicksort that
+does not keep the order of equals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+def remove_unordered(items: list[T], item: T) -> None:
+    """Remove `item` and put the last item in its place."""
+    index = items.index(item)
+    items[index] = items[-1]
+    items.pop()
+
+
+def quicksort_order(keys: Sequence[int]) -> list[int]:
+    """Permutation that sorts `keys` by Hoare's quicksort around the middle element.
+
+    Unlike a stable sort it also moves equal keys; the result is a function of the keys alone.
+
+    Returns:
+        Indices into `keys` in sorted order.
+    """
+    order = list(range(len(keys)))
+    ranges = [(0, len(keys) - 1)] if len(keys) > 1 else []
+    while ranges:
+        low, high = ranges.pop()
+        i, j = low, high
+        pivot = keys[order[(low + high) // 2]]
+        while i <= j:
+            while keys[order[i]] < pivot:
+                i += 1
+            while pivot < keys[order[j]]:
+                j -= 1
+            if i <= j:
+                order[i], order[j] = order[j], order[i]
+                i += 1
+                j -= 1
+        if low < j:
+            ranges.append((low, j))
+        if i < high:
+            ranges.append((i, high))
+    return order
+
+
+def batch_islands(tags: Sequence[int], minimum_size: int) -> list[tuple[int, int]]:
+    """Group sorted constraints into the runs that are solved together.
+
+    Args:
+        tags: Island of each constraint, ascending.
+        minimum_size: Islands are joined until a run has more constraints than this.
+
+    Returns:
+        First index and length of each run.
+    """
+    runs: list[tuple[int, int]] = []
+    start = 0
+    for end in range(1, len(tags) + 1):
+        island_ends = end == len(tags) or tags[end] != tags[end - 1]
+        if island_ends and (end - start > minimum_size or end == len(tags)):
+            runs.append((start, end - start))
+            start = end
+    return runs
+
+
+class IslandTags:
+    """Numbers of the islands of bodies that touch nothing.
+
+    Bullet numbers its moving collision objects (one per link) in list order and names an island
+    after the number of its last link; removed objects are replaced by the last of the list.
+    """
+
+    def __init__(self) -> None:
+        self._objects: list[tuple[Hashable, bool]] = []
+
+    def add(self, body: Hashable, moving: Sequence[bool]) -> None:
+        """Append the links of a body, base first; `moving` tells those that are not static."""
+        self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))
+
+    def remove(self, body: Hashable, link_count: int) -> None:
+        """Take out the links of a body, base first."""
+        index = {key: i for i, (key, _) in enumerate(self._objects)}
+        for link in range(link_count):
+            i = index.pop((body, link))
+            last_key, last_moves = self._objects.pop()
+            if i < len(self._objects):
+                self._objects[i] = (last_key, last_moves)
+                index[last_key] = i
+
+    def move_base_to_end(self, body: Hashable, moving: Sequence[bool]) -> None:
+        """Take the base of a body out and append it again; `moving` renews which links move."""
+        keys = [key for key, _ in self._objects]
+        index = keys.index((body, 0))
+        last = self._objects.pop()
+        if index < len(self._objects):
+            self._objects[index] = last
+        self._objects.append(((body, 0), moving[0]))
+        for i, (key, _) in enumerate(self._objects):
+            owner, link = key  # type: ignore[misc]
+            if owner == body:
+                self._objects[i] = (key, moving[link])
+
+    def tags(self) -> dict[Hashable, int]:
+        """Island number of each body that has a moving link."""
+        numbers: dict[Hashable, tuple[int, int]] = {}
+        number = 0
+        for key, moves in self._objects:
+            if not moves:
+                continue
+            body, link = key  # type: ignore[misc]
+            if body not in numbers or link > numbers[body][0]:
+                numbers[body] = (link, number)
+            number += 1
+        return {body: tag for body, (_, tag) in numbers.items()}

@@ -1,0 +1,176 @@
+"""Forces on the links and joint accelerations before constraints.
+
+Recursive Newton-Euler in spatial vectors gives the generalized bias force; the composite rigid
+body algorithm and the factorisation of `mass_matrix` turn generalized force into acceleration.
+Notation and method: R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5, 6 and 8.
+"""
+
+import warp as wp
+
+from carom.model.real import Int32, Matrix3, Vector3, Vector6, func, real
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.kinematics import base_omega, base_velocity
+from carom.physics.rotation import rotation_matrix
+
+
+@func
+def link_inertias(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Rotational inertia of each link in world axes, and its spatial inertia as composite seed."""
+    base = model.tree_first_link[tree]
+    for link in range(base, base + model.tree_link_count[tree]):
+        rotation = scratch.link_rotation[world, link]
+        moments = model.link_inertia[link]
+        about_com = rotation * wp.diag(moments) * wp.transpose(rotation)
+        mass = model.link_mass[link]
+        c = scratch.link_offset[world, link]
+        scratch.link_com_inertia[world, link] = about_com
+        scratch.link_composite_mass[world, link] = mass
+        scratch.link_composite_first[world, link] = mass * c
+        scratch.link_composite_inertia[world, link] = about_com + mass * parallel_axis(c)
+
+
+@func
+def parallel_axis(c: Vector3) -> Matrix3:
+    """Inertia of a unit point mass at `c`."""
+    xx, yy, zz = c[0] * c[0], c[1] * c[1], c[2] * c[2]
+    xy, xz, yz = c[0] * c[1], c[0] * c[2], c[1] * c[2]
+    return Matrix3(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy)
+
+
+@func
+def damping_rate(coefficient: real, speed: real) -> real:
+    """Decay rate of a damped velocity: `coefficient` both per second and per unit of speed."""
+    return coefficient + coefficient * speed
+
+
+@func
+def external_force(state: State, settings: Settings, mass: real, world: Int32, link: Int32) -> Vector3:
+    """Gravity and the force the user applied, at the centre of mass [N]."""
+    wrench = state.link_wrench[world, link]
+    return settings.gravity * mass + Vector3(wrench[0], wrench[1], wrench[2])
+
+
+@func
+def external_torque(state: State, world: Int32, link: Int32) -> Vector3:
+    """Torque the user applied [N m]."""
+    wrench = state.link_wrench[world, link]
+    return Vector3(wrench[3], wrench[4], wrench[5])
+
+
+@func
+def link_bias_forces(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, feedback: Int32
+):
+    """Velocities of the links, and the force each needs to move on without joint acceleration.
+
+    With `feedback` 0 the forces are those of the step: gravity, what the user applied, damping,
+    gyroscopic and Coriolis terms. With 1 they are those of Bullet's second pass for force-torque
+    sensors: constraint forces in place of gravity and applied forces, and no centripetal force of
+    the links.
+    """
+    base = model.tree_first_link[tree]
+    linear_damping = model.tree_linear_damping[tree]
+    angular_damping = model.tree_angular_damping[tree]
+
+    for link in range(base, base + model.tree_link_count[tree]):
+        omega = base_omega(model, state, world, tree)
+        velocity = base_velocity(model, state, world, tree)
+        alpha = Vector3(0.0, 0.0, 0.0)
+        acceleration = Vector3(0.0, 0.0, 0.0)
+        if link > base:
+            parent = model.link_parent[link]
+            omega = scratch.link_omega[world, parent]
+            velocity = scratch.link_velocity[world, parent]
+            alpha = scratch.link_alpha[world, parent]
+            acceleration = scratch.link_acceleration[world, parent]
+            joint_omega = Vector3(0.0, 0.0, 0.0)
+            joint_velocity = Vector3(0.0, 0.0, 0.0)
+            first = model.link_first_dof[link]
+            for dof in range(first, first + model.link_dof_count[link]):
+                rate = state.dof_velocity[world, dof]
+                joint_omega += scratch.dof_angular[world, dof] * rate
+                joint_velocity += scratch.dof_linear[world, dof] * rate
+            omega += joint_omega
+            velocity += joint_velocity
+            # The motion subspace turns with the link: spatial cross product of both velocities.
+            alpha += wp.cross(omega, joint_omega)
+            acceleration += wp.cross(omega, joint_velocity) + wp.cross(velocity, joint_omega)
+        elif model.tree_fixed[tree] == 0:
+            # The base keeps its velocity; its spatial acceleration is that minus omega x velocity.
+            acceleration = -wp.cross(omega, velocity)
+        scratch.link_omega[world, link] = omega
+        scratch.link_velocity[world, link] = velocity
+        scratch.link_alpha[world, link] = alpha
+        scratch.link_acceleration[world, link] = acceleration
+
+        mass = model.link_mass[link]
+        c = scratch.link_offset[world, link]
+        about_com = scratch.link_com_inertia[world, link]
+        com_velocity = velocity + wp.cross(omega, c)
+        spin = about_com * omega
+
+        # Newton and Euler at the centre of mass.
+        com_acceleration = acceleration + wp.cross(alpha, c) + wp.cross(omega, com_velocity)
+        force = mass * com_acceleration
+        torque = about_com * alpha + wp.cross(omega, spin)
+
+        if linear_damping != 0.0:
+            force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
+        if angular_damping != 0.0:
+            torque += spin * damping_rate(angular_damping, wp.length(omega))
+
+        if feedback == 0:
+            force -= external_force(state, settings, mass, world, link)
+            torque -= external_torque(state, world, link)
+        else:
+            force -= scratch.link_constraint_force[world, link]
+            torque -= scratch.link_constraint_torque[world, link]
+            if link > base:
+                force -= mass * wp.cross(omega, com_velocity)
+
+        scratch.link_force[world, link] = force
+        scratch.link_moment[world, link] = torque + wp.cross(c, force)
+
+
+@func
+def generalized_forces(
+    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, feedback: Int32
+):
+    """Gather link forces towards the root; leaves in `dof_force` what is free to accelerate dofs."""
+    base = model.tree_first_link[tree]
+    count = model.tree_link_count[tree]
+    for i in range(count):
+        link = base + count - 1 - i
+        force = scratch.link_force[world, link]
+        moment = scratch.link_moment[world, link]
+        first = model.link_first_dof[link]
+        for dof in range(first, first + model.link_dof_count[link]):
+            needed = wp.dot(scratch.dof_angular[world, dof], moment) + wp.dot(
+                scratch.dof_linear[world, dof], force
+            )
+            applied = 0.0 * needed
+            if feedback == 0:
+                applied = state.dof_torque[world, dof]
+            scratch.dof_force[world, dof] = applied - needed
+        if link > base:
+            parent = model.link_parent[link]
+            scratch.link_force[world, parent] += force
+            scratch.link_moment[world, parent] += moment
+
+    if model.tree_fixed[tree] == 0:
+        first = model.tree_first_velocity[tree]
+        for axis in range(3):
+            scratch.dof_force[world, first + axis] = -scratch.link_moment[world, base][axis]
+            scratch.dof_force[world, first + 3 + axis] = -scratch.link_force[world, base][axis]
+
+
+@func
+def update_velocities(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Velocities after the step if nothing constrained them; `dof_force` holds accelerations."""
+    bound = model.tree_max_velocity[tree]
+    first = model.tree_first_dof[tree]
+    for dof in range(first, first + model.tree_dof_count[tree]):
+        velocity = state.dof_velocity[world, dof] + settings.time_step * scratch.dof_force[world, dof]
+        state.dof_velocity[world, dof] = wp.clamp(velocity, -bound, bound)

@@ -1,0 +1,68 @@
+"""Positions after a step, from the velocities the step ended with (semi-implicit Euler)."""
+
+import warp as wp
+
+from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.model.real import Int32, Quaternion, Vector3, func, real
+from carom.model.structs import Model, State
+from carom.physics.kinematics import base_omega, base_velocity
+from carom.physics.rotation import axis_rotation, rotation_step
+
+
+@func
+def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
+    """The quaternion stored from coordinate `q` on."""
+    return Quaternion(
+        state.position[world, q],
+        state.position[world, q + 1],
+        state.position[world, q + 2],
+        state.position[world, q + 3],
+    )
+
+
+@func
+def store_quaternion(state: State, world: Int32, q: Int32, value: Quaternion):
+    """Store `value`, normalised, from coordinate `q` on."""
+    unit = wp.normalize(value)
+    for i in range(4):
+        state.position[world, q + i] = unit[i]
+
+
+@func
+def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, dt: real):
+    """Advance the coordinates of a tree by `dt`.
+
+    The base's orientation turns in world axes, a spherical joint's in the axes of its link; the
+    translations of a planar joint are given along axes of the link.
+    """
+    base = model.tree_first_link[tree]
+    q = model.tree_first_position[tree]
+    velocity = base_velocity(model, state, world, tree)
+    for axis in range(3):
+        state.position[world, q + axis] += dt * velocity[axis]
+    turn = rotation_step(base_omega(model, state, world, tree), dt)
+    store_quaternion(state, world, q + 3, turn * load_quaternion(state, world, q + 3))
+
+    for link in range(base + 1, base + model.tree_link_count[tree]):
+        joint_type = model.link_joint_type[link]
+        q = model.link_first_position[link]
+        dof = model.link_first_dof[link]
+        if joint_type == REVOLUTE or joint_type == PRISMATIC:
+            state.position[world, q] += dt * state.dof_velocity[world, dof]
+        elif joint_type == SPHERICAL:
+            rate = Vector3(
+                state.dof_velocity[world, dof], state.dof_velocity[world, dof + 1], state.dof_velocity[world, dof + 2]
+            )
+            current = load_quaternion(state, world, q)
+            store_quaternion(state, world, q, rotation_step(wp.quat_rotate(current, rate), dt) * current)
+        elif joint_type == PLANAR:
+            angle = state.position[world, q] + dt * state.dof_velocity[world, dof]
+            state.position[world, q] = angle
+            axis1 = model.link_planar_axis1[link]
+            axis2 = model.link_planar_axis2[link]
+            slide = wp.quat_rotate(
+                axis_rotation(model.link_axis[link], angle),
+                axis1 * state.dof_velocity[world, dof + 1] + axis2 * state.dof_velocity[world, dof + 2],
+            )
+            state.position[world, q + 1] += dt * wp.dot(axis1, slide)
+            state.position[world, q + 2] += dt * wp.dot(axis2, slide)

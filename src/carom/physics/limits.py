@@ -1,0 +1,137 @@
+"""Joint limits: one-sided rows that exist while the limit is reached or passed."""
+
+import math
+
+import warp as wp
+
+from carom.model.real import Int32, Quaternion, Vector3, func, real
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.motors import euler_xyz, joint_quaternion
+from carom.physics.rotation import rotation_matrix
+from carom.physics.rows import add_row, joint_axis_inverse_diagonal, unit_inverse_diagonal
+
+_EPSILON = real(2.220446049250313e-16)
+_PI = real(math.pi)
+# Share of a spherical joint's excess that one step takes back, before the error reduction.
+_SPHERICAL_GAIN = real(0.2)
+
+
+@func
+def limit_rows(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the rows of the bounds that a revolute or prismatic joint has reached.
+
+    A violation within the split threshold is taken back at the joint's error reduction rate; a
+    deeper one only stops growing.
+    """
+    link = model.constraint_link[constraint]
+    dof = model.link_first_dof[link]
+    tree = model.constraint_tree[constraint]
+    position = state.position[world, model.link_first_position[link]]
+    velocity = state.dof_velocity[world, dof]
+    for side in range(2):
+        sign = real(1.0)
+        gap = position - model.constraint_lower[constraint]
+        if side == 1:
+            sign = real(-1.0)
+            gap = model.constraint_upper[constraint] - position
+        if gap <= 0.0:
+            change = -sign * velocity
+            if settings.split_impulse == 0 or gap > settings.split_threshold:
+                change -= gap * settings.joint_erp / settings.time_step
+            inverse_diagonal = unit_inverse_diagonal(model, scratch, world, tree, dof)
+            row = add_row(
+                model,
+                scratch,
+                world,
+                constraint,
+                row,
+                dof,
+                sign,
+                change,
+                inverse_diagonal,
+                0.0,
+                model.constraint_max_impulse[constraint],
+            )
+    return row
+
+
+@func
+def swing_and_twist(current: Quaternion) -> Vector3:
+    """Angles of a spherical joint away from its twist axis z (x, y) and about it (z) [rad]."""
+    up = Vector3(0.0, 0.0, 1.0)
+    cone = wp.normalize(wp.quat_rotate(current, up))
+    across = wp.cross(up, cone)
+    along = wp.dot(up, cone)
+    swing = Quaternion(1.0, 0.0, 0.0, 0.0)
+    if along >= -1.0 + _EPSILON:
+        s = wp.sqrt((1.0 + along) * 2.0)
+        swing = wp.normalize(Quaternion(across[0] / s, across[1] / s, across[2] / s, s * 0.5))
+    twist = wp.normalize(wp.quat_inverse(swing) * current)
+    angles = euler_xyz(rotation_matrix(wp.quat_inverse(twist) * current))
+
+    twist_angle = 2.0 * wp.acos(wp.clamp(twist[3], -1.0, 1.0))
+    axis_z = twist[2]
+    if twist_angle > _PI:
+        twist_angle = 2.0 * wp.acos(wp.clamp(-twist[3], -1.0, 1.0))
+        axis_z = -axis_z
+    if axis_z < 0.0:
+        twist_angle = -twist_angle
+    return Vector3(angles[0], angles[1], twist_angle)
+
+
+@func
+def spherical_limit_rows(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the rows of the swing and twist ranges that a spherical joint has left."""
+    link = model.constraint_link[constraint]
+    first = model.link_first_dof[link]
+    angles = swing_and_twist(joint_quaternion(model, state, world, link))
+    ranges = Vector3(
+        model.constraint_lower[constraint], model.constraint_upper[constraint], model.constraint_twist[constraint]
+    )
+    bound = model.constraint_max_impulse[constraint]
+    inverse_diagonal = joint_axis_inverse_diagonal(model, scratch, world, model.constraint_tree[constraint], link)
+    for axis in range(3):
+        excess = real(0.0)
+        if angles[axis] >= ranges[axis]:
+            excess = angles[axis] - ranges[axis]
+        elif angles[axis] <= -ranges[axis]:
+            excess = angles[axis] + ranges[axis]
+        error = _SPHERICAL_GAIN * excess
+        if wp.abs(error) > _EPSILON:
+            change = -state.dof_velocity[world, first + axis]
+            change -= error * settings.joint_erp / settings.time_step
+            lower = real(0.0)
+            upper = bound
+            if error > 0.0:
+                lower = -bound
+                upper = real(0.0)
+            row = add_row(
+                model,
+                scratch,
+                world,
+                constraint,
+                row,
+                first + axis,
+                1.0,
+                change,
+                inverse_diagonal[axis],
+                lower,
+                upper,
+            )
+    return row

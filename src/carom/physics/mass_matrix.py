@@ -1,0 +1,154 @@
+"""The joint-space inertia of a tree, its factorisation and its inverse.
+
+Matrices over the n active dofs of a tree are stored by rows of ceil(n/4) four-wide blocks, so that
+row operations run four columns at a time. Dofs are numbered from the root, so the factorisation
+H = Lᵀ D L fills nothing in: an entry is zero unless one dof carries the other
+(R. Featherstone, Efficient factorization of the joint-space inertia matrix for branched kinematic
+trees, IJRR 2005). Its pivots D are the articulated inertias of the dofs.
+"""
+
+import warp as wp
+
+from carom.model.real import Int32, Vector4, func, real
+from carom.model.structs import Model, Scratch
+
+# A dof with less articulated inertia than this cannot be accelerated (double precision epsilon).
+LEAST_PIVOT = real(2.220446049250313e-16)
+
+
+@func
+def entry_block(row_start: Int32, column: Int32) -> Int32:
+    """Block that holds `column` of the row that starts at block `row_start`."""
+    return row_start + column // 4
+
+
+@func
+def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Fill `block_factor` with the joint-space inertia matrix (its lower triangle).
+
+    Composite rigid body algorithm: each link carries the inertia of its whole subtree.
+    """
+    base = model.tree_first_link[tree]
+    count = model.tree_link_count[tree]
+    first = model.tree_first_dof[tree]
+    blocks = (model.tree_dof_count[tree] + 3) // 4
+    matrix = model.tree_first_block[tree]
+
+    for i in range(count):
+        link = base + count - 1 - i
+        mass = scratch.link_composite_mass[world, link]
+        moment = scratch.link_composite_first[world, link]
+        inertia = scratch.link_composite_inertia[world, link]
+
+        first_dof = model.link_first_dof[link]
+        for dof in range(first_dof, first_dof + model.link_dof_count[link]):
+            angular = scratch.dof_angular[world, dof]
+            linear = scratch.dof_linear[world, dof]
+            # Momentum of the subtree for a unit rate of this dof.
+            spin = inertia * angular + wp.cross(moment, linear)
+            push = mass * linear - wp.cross(moment, angular)
+
+            row = matrix + (dof - first) * blocks
+            for block in range(row, row + blocks):
+                scratch.block_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
+            other = dof
+            while other >= 0:
+                column = other - first
+                scratch.block_factor[world, row + column // 4][column % 4] = wp.dot(
+                    scratch.dof_angular[world, other], spin
+                ) + wp.dot(scratch.dof_linear[world, other], push)
+                other = model.dof_parent[other]
+
+        if link > base:
+            parent = model.link_parent[link]
+            scratch.link_composite_mass[world, parent] += mass
+            scratch.link_composite_first[world, parent] += moment
+            scratch.link_composite_inertia[world, parent] += inertia
+
+
+@func
+def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Turn the joint-space inertia in `block_factor` into L, and its pivots into inverses."""
+    first = model.tree_first_dof[tree]
+    count = model.tree_dof_count[tree]
+    blocks = (count + 3) // 4
+    matrix = model.tree_first_block[tree]
+    for step in range(count):
+        k = count - 1 - step
+        row = matrix + k * blocks
+        pivot = scratch.block_factor[world, row + k // 4][k % 4]
+        inverse = real(0.0)
+        if pivot >= LEAST_PIVOT:
+            inverse = 1.0 / pivot
+        scratch.dof_inverse_pivot[world, first + k] = inverse
+        for i in range(k):
+            entry = scratch.block_factor[world, row + i // 4][i % 4]
+            if entry != 0.0:
+                ratio = entry * inverse
+                target = matrix + i * blocks
+                for block in range(i // 4 + 1):
+                    scratch.block_factor[world, target + block] -= ratio * scratch.block_factor[world, row + block]
+        # The row of L; done last because every entry above needs the unscaled row.
+        for block in range(k // 4 + 1):
+            scratch.block_factor[world, row + block] = inverse * scratch.block_factor[world, row + block]
+
+
+@func
+def solve(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Replace the generalized forces in `dof_force` by the accelerations they cause."""
+    first = model.tree_first_dof[tree]
+    count = model.tree_dof_count[tree]
+    blocks = (count + 3) // 4
+    matrix = model.tree_first_block[tree]
+    for step in range(count):
+        k = count - 1 - step
+        force = scratch.dof_force[world, first + k]
+        row = matrix + k * blocks
+        for i in range(k):
+            scratch.dof_force[world, first + i] -= scratch.block_factor[world, row + i // 4][i % 4] * force
+    for k in range(count):
+        acceleration = scratch.dof_force[world, first + k] * scratch.dof_inverse_pivot[world, first + k]
+        row = matrix + k * blocks
+        for i in range(k):
+            acceleration -= scratch.block_factor[world, row + i // 4][i % 4] * scratch.dof_force[world, first + i]
+        scratch.dof_force[world, first + k] = acceleration
+
+
+@func
+def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Fill `block_inverse_mass` with the inverse of the joint-space inertia, L⁻¹ D⁻¹ L⁻ᵀ."""
+    first = model.tree_first_dof[tree]
+    count = model.tree_dof_count[tree]
+    blocks = (count + 3) // 4
+    matrix = model.tree_first_block[tree]
+
+    # Row k of X = L⁻ᵀ is zero left of column k.
+    for step in range(count):
+        k = count - 1 - step
+        row = matrix + k * blocks
+        for block in range(row, row + blocks):
+            scratch.block_inverse_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
+        scratch.block_inverse_factor[world, row + k // 4][k % 4] = 1.0
+        for i in range(k + 1, count):
+            entry = scratch.block_factor[world, matrix + i * blocks + k // 4][k % 4]
+            if entry != 0.0:
+                source = matrix + i * blocks
+                for block in range(i // 4, blocks):
+                    scratch.block_inverse_factor[world, row + block] -= (
+                        entry * scratch.block_inverse_factor[world, source + block]
+                    )
+
+    # H⁻¹ = Xᵀ D⁻¹ X.
+    for i in range(count):
+        row = matrix + i * blocks
+        for block in range(row, row + blocks):
+            scratch.block_inverse_mass[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
+        for k in range(i + 1):
+            source = matrix + k * blocks
+            entry = scratch.block_inverse_factor[world, source + i // 4][i % 4]
+            if entry != 0.0:
+                weight = entry * scratch.dof_inverse_pivot[world, first + k]
+                for block in range(k // 4, blocks):
+                    scratch.block_inverse_mass[world, row + block] += (
+                        weight * scratch.block_inverse_factor[world, source + block]
+                    )

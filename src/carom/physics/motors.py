@@ -1,0 +1,149 @@
+"""Joint motors: velocity-level constraint rows with gains and a bound on their impulse.
+
+A motor asks for a joint rate after the step; the solver gives the impulse that reaches it, as far
+as the motor's greatest impulse allows. Explicit drives (PD, joint damping) are forces instead.
+"""
+
+import warp as wp
+
+from carom.model.codes import (
+    MOTOR_DAMPING,
+    MOTOR_KD,
+    MOTOR_KP,
+    MOTOR_MAX_IMPULSE,
+    MOTOR_POSITION,
+    MOTOR_TARGET_W,
+    MOTOR_VELOCITY,
+    MOTOR_VELOCITY_CLAMP,
+    PD_KD,
+    PD_KP,
+    PD_MAX_FORCE,
+    PD_POSITION,
+    PD_VELOCITY,
+)
+from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, real
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.rotation import rotation_matrix
+from carom.physics.rows import add_row, joint_axis_inverse_diagonal, unit_inverse_diagonal
+
+
+@func
+def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
+    """Viscous joint friction as an explicit torque at the rates before the step."""
+    first = model.tree_first_dof[tree]
+    for dof in range(first, first + model.tree_dof_count[tree]):
+        state.dof_torque[world, dof] -= model.dof_damping[dof] * state.dof_velocity[world, dof]
+
+
+@func
+def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
+    """Torque of proportional-derivative drives; it adds up over the substeps of one step."""
+    base = model.tree_first_link[tree]
+    for link in range(base + 1, base + model.tree_link_count[tree]):
+        if model.link_dof_count[link] == 1:
+            dof = model.link_first_dof[link]
+            drive = state.dof_pd[world, dof]
+            if drive[PD_MAX_FORCE] > 0.0:
+                position = state.position[world, model.link_first_position[link]]
+                force = drive[PD_KP] * (drive[PD_POSITION] - position) + drive[PD_KD] * (
+                    drive[PD_VELOCITY] - state.dof_velocity[world, dof]
+                )
+                state.dof_torque[world, dof] += wp.clamp(force, -drive[PD_MAX_FORCE], drive[PD_MAX_FORCE])
+
+
+@func
+def motor_row(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the row of a revolute or prismatic motor; returns the next free row."""
+    link = model.constraint_link[constraint]
+    dof = model.link_first_dof[link]
+    motor = state.dof_motor[world, dof]
+    bound = motor[MOTOR_MAX_IMPULSE]
+    if bound == 0.0:
+        return row
+    velocity = state.dof_velocity[world, dof]
+    position_error = motor[MOTOR_POSITION] - state.position[world, model.link_first_position[link]]
+    wanted = (
+        motor[MOTOR_KP] * position_error / settings.time_step
+        + velocity
+        + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - velocity)
+    )
+    wanted = wp.clamp(wanted, -motor[MOTOR_VELOCITY_CLAMP], motor[MOTOR_VELOCITY_CLAMP])
+    inverse_diagonal = unit_inverse_diagonal(model, scratch, world, model.constraint_tree[constraint], dof)
+    return add_row(
+        model, scratch, world, constraint, row, dof, 1.0, wanted - velocity, inverse_diagonal, -bound, bound
+    )
+
+
+@func
+def euler_xyz(r: Matrix3) -> Vector3:
+    """Angles (x, y, z) with R = Rx(x) Ry(y) Rz(z); at gimbal lock z is 0."""
+    half_pi = 0.5 * 3.14159265358979323846
+    s = r[0, 2]
+    if s >= 1.0:
+        return Vector3(wp.atan2(r[1, 0], r[1, 1]), half_pi, 0.0)
+    if s <= -1.0:
+        return Vector3(-wp.atan2(r[1, 0], r[1, 1]), -half_pi, 0.0)
+    return Vector3(wp.atan2(-r[1, 2], r[2, 2]), wp.asin(s), wp.atan2(-r[0, 1], r[0, 0]))
+
+
+@func
+def joint_quaternion(model: Model, state: State, world: Int32, link: Int32) -> Quaternion:
+    """Position of a spherical joint."""
+    q = model.link_first_position[link]
+    return Quaternion(
+        state.position[world, q],
+        state.position[world, q + 1],
+        state.position[world, q + 2],
+        state.position[world, q + 3],
+    )
+
+
+@func
+def spherical_motor_rows(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the three rows of a spherical motor: kp of the orientation error per step, rate damped."""
+    link = model.constraint_link[constraint]
+    first = model.link_first_dof[link]
+    x = state.dof_motor[world, first]
+    y = state.dof_motor[world, first + 1]
+    z = state.dof_motor[world, first + 2]
+    if x[MOTOR_MAX_IMPULSE] == 0.0 and y[MOTOR_MAX_IMPULSE] == 0.0 and z[MOTOR_MAX_IMPULSE] == 0.0:
+        return row
+    target = Quaternion(x[MOTOR_POSITION], y[MOTOR_POSITION], z[MOTOR_POSITION], x[MOTOR_TARGET_W])
+    current = joint_quaternion(model, state, world, link)
+    error = euler_xyz(rotation_matrix(wp.quat_inverse(target) * current))
+    inverse_diagonal = joint_axis_inverse_diagonal(model, scratch, world, model.constraint_tree[constraint], link)
+    for axis in range(3):
+        motor = state.dof_motor[world, first + axis]
+        bound = motor[MOTOR_MAX_IMPULSE]
+        change = -motor[MOTOR_DAMPING] * state.dof_velocity[world, first + axis]
+        change -= motor[MOTOR_KP] * error[axis] * settings.joint_erp / settings.time_step
+        row = add_row(
+            model,
+            scratch,
+            world,
+            constraint,
+            row,
+            first + axis,
+            1.0,
+            change,
+            inverse_diagonal[axis],
+            -bound,
+            bound,
+        )
+    return row

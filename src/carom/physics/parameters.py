@@ -1,0 +1,78 @@
+"""Parameters of the engine, with PyBullet's defaults."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+DEFAULT_TIME_STEP = 1.0 / 240.0
+
+
+@dataclass(slots=True)
+class EngineParameters:
+    """What `setPhysicsEngineParameter` and its relatives set.
+
+    After changing a field call `World.apply_parameters`.
+
+    Attributes:
+        time_step: Duration of one step [s].
+        substeps: Parts a step is solved in; 0 is the same as 1.
+        gravity: [m/s²] in world axes.
+        solver_iterations: Greatest number of sweeps over the constraint rows.
+        solver_residual_threshold: Sweeps end when no row changed its velocity by more, squared.
+        erp: Share of a joint limit's or user constraint's error taken back per step.
+        contact_erp: The same for penetrations.
+        friction_erp: The same for friction anchors.
+        global_cfm: Softness of all constraints.
+        contact_breaking_threshold: Distance at which a contact point is given up [m].
+        contact_slop: Penetration that is left alone [m].
+        restitution_velocity_threshold: Slower impacts do not bounce [m/s].
+        split_impulse: Deep errors are not turned into velocity.
+        split_impulse_penetration_threshold: What counts as deep (negative) [rad or m].
+        cone_friction: Friction is bounded by a cone, not by a box.
+        deterministic_overlapping_pairs: Pairs are kept in a fixed order.
+        joint_feedback_mode: Bit 1: force-torque sensors in world axes; bit 2: about the joint.
+        allowed_ccd_penetration: Depth that continuous collision detection allows [m].
+        warm_starting_factor: Share of last step's contact impulses the solver starts from.
+        noncontact_inner_iterations: Passes over joint rows per sweep.
+        minimum_island_size: Islands are solved together until they have more constraints.
+        report_solver_analytics: `stepSimulation` returns solver statistics.
+        constraint_solver: 1 sequential impulses, 2 projected Gauss-Seidel, 3 Dantzig.
+        sat: Separating axis test for polyhedra.
+        collision_filter_mode: 0 both bodies must accept each other, 1 one is enough.
+    """
+
+    time_step: float = DEFAULT_TIME_STEP
+    substeps: int = 0
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    solver_iterations: int = 50
+    solver_residual_threshold: float = 1e-7
+    erp: float = 0.2
+    contact_erp: float = 0.08
+    friction_erp: float = 0.2
+    global_cfm: float = 0.0
+    contact_breaking_threshold: float = 0.02
+    contact_slop: float = 1e-5
+    restitution_velocity_threshold: float = 0.2
+    split_impulse: bool = True
+    split_impulse_penetration_threshold: float = -0.04
+    cone_friction: bool = True
+    deterministic_overlapping_pairs: bool = False
+    joint_feedback_mode: int = 0
+    allowed_ccd_penetration: float = 0.04
+    warm_starting_factor: float = 0.1
+    noncontact_inner_iterations: int = 1
+    minimum_island_size: int = 0
+    report_solver_analytics: int = 0
+    constraint_solver: int = 1
+    sat: bool = False
+    collision_filter_mode: int = 1
+
+    @property
+    def substep_count(self) -> int:
+        """Number of substeps, at least one."""
+        return max(1, self.substeps)
+
+    @property
+    def substep_time(self) -> float:
+        """Duration of one substep [s]."""
+        return self.time_step / self.substep_count

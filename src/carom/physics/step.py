@@ -1,0 +1,71 @@
+"""One step of a world: every stage in order, in one kernel launch."""
+
+import warp as wp
+
+from carom.model.real import Int32, Vector6, func, kernel, real
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
+from carom.physics.feedback import (
+    clear_constraint_forces,
+    constraint_feedback,
+    measure_joint_wrenches,
+)
+from carom.physics.integration import integrate_positions
+from carom.physics.kinematics import forward_kinematics, motion_subspaces
+from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
+from carom.physics.motors import explicit_pd, joint_damping
+from carom.physics.solver import apply_delta_velocities, clear_delta_velocities, solve_island
+
+
+@func
+def free_motion(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Velocities after the substep if there were no constraints."""
+    explicit_pd(model, state, world, tree)
+    forward_kinematics(model, state, state.link_pose, world, tree)
+    motion_subspaces(model, state.link_pose, scratch, world, tree)
+    link_inertias(model, scratch, world, tree)
+    link_bias_forces(model, settings, state, scratch, world, tree, 0)
+    generalized_forces(model, state, scratch, world, tree, 0)
+    composite_inertia(model, scratch, world, tree)
+    factorise(model, scratch, world, tree)
+    solve(model, scratch, world, tree)
+    if model.tree_sensor_count[tree] > 0:
+        measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
+        clear_constraint_forces(model, scratch, world, tree)
+    update_velocities(model, settings, state, scratch, world, tree)
+    if model.tree_constraint_count[tree] > 0:
+        invert(model, scratch, world, tree)
+    clear_delta_velocities(model, scratch, world, tree)
+
+
+@func
+def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
+    """Applied forces and torques last for one step."""
+    base = model.tree_first_link[tree]
+    for link in range(base, base + model.tree_link_count[tree]):
+        state.link_wrench[world, link] = Vector6()
+    first = model.tree_first_dof[tree]
+    for dof in range(first, first + model.tree_dof_count[tree]):
+        state.dof_torque[world, dof] = 0.0
+
+
+@kernel
+def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, substeps: Int32):
+    """Advance each world by one step of `substeps` substeps."""
+    world = wp.tid()
+    for tree in range(settings.tree_count):
+        joint_damping(model, state, world, tree)
+
+    for _substep in range(substeps):
+        for tree in range(settings.tree_count):
+            free_motion(model, settings, state, scratch, world, tree)
+        for island in range(settings.island_count):
+            solve_island(model, settings, state, scratch, world, island)
+        for tree in range(settings.tree_count):
+            if model.tree_sensor_count[tree] > 0:
+                constraint_feedback(model, settings, state, scratch, world, tree)
+            apply_delta_velocities(model, state, scratch, world, tree)
+            integrate_positions(model, state, world, tree, settings.time_step)
+
+    for tree in range(settings.tree_count):
+        clear_forces(model, state, world, tree)

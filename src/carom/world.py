@@ -1,0 +1,307 @@
+"""A world: bodies, gravity and time, and the flat arrays that hold their state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from carom.body import Body
+from carom.constraints import Island, JointConstraints
+from carom.description.pose import Pose
+from carom.description.transform import compose
+from carom.model.body_spec import BodySpec
+from carom.model.builder import WorldArrays
+from carom.model.launch import Launch
+from carom.model.structs import Settings
+from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
+from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.physics.step import step_kernel
+
+_DEVICE = "cpu"
+_SUBSTEPS_ARGUMENT = 4
+# Flat arrays of the state that users read or write: attribute of `World`, field of `State`.
+_VIEWS = {
+    "position": "position",
+    "velocity": "dof_velocity",
+    "motor": "dof_motor",
+    "pd": "dof_pd",
+    "joint_torque": "dof_torque",
+    "motor_impulse": "dof_motor_impulse",
+    "link_pose": "link_pose",
+    "link_velocity": "link_twist",
+    "link_force": "link_wrench",
+    "joint_reaction": "link_reaction",
+}
+
+
+class World:
+    """Bodies that move under gravity, motors and limits.
+
+    The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
+    of the state, and `position_memory` and so on the same memory as flat `memoryview` of doubles.
+    They may be replaced when bodies are added or removed.
+
+    Args:
+        time_step: Duration of one step [s].
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    motor: np.ndarray
+    pd: np.ndarray
+    joint_torque: np.ndarray
+    motor_impulse: np.ndarray
+    link_pose: np.ndarray
+    link_velocity: np.ndarray
+    link_force: np.ndarray
+    joint_reaction: np.ndarray
+    position_memory: memoryview
+    velocity_memory: memoryview
+    motor_memory: memoryview
+    pd_memory: memoryview
+    joint_torque_memory: memoryview
+    motor_impulse_memory: memoryview
+    link_pose_memory: memoryview
+    link_velocity_memory: memoryview
+    link_force_memory: memoryview
+    joint_reaction_memory: memoryview
+
+    def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
+        self.parameters = EngineParameters(time_step=time_step)
+        self.bodies: dict[int, Body] = {}
+        self.time = 0.0
+        self._start_empty()
+
+    def _start_empty(self) -> None:
+        self.bodies.clear()
+        self.arrays = WorldArrays()
+        self.constraints = JointConstraints()
+        self._free_ids: list[int] = []
+        self._next_id = 0
+        self._unspent_time = 0.0
+        self._step: Callable[[], None] | None = None
+        self._islands: list[Island] = []
+        self._take_arrays()
+
+    def __enter__(self) -> World:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._start_empty()
+
+    # Bodies
+
+    def load(
+        self,
+        spec: BodySpec,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+    ) -> Body:
+        """Add a body at rest.
+
+        Args:
+            spec: The body.
+            position: Of the base's link frame [m].
+            orientation: Of the base's link frame, quaternion (x, y, z, w).
+
+        Returns:
+            Its handle. The number it gets is that of the body removed last, if any.
+        """
+        px, py, pz = position
+        qx, qy, qz, qw = orientation
+        pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
+        rows, grown = self.arrays.append(spec, pose)
+        body_id = self._free_ids.pop() if self._free_ids else self._next_id
+        self._next_id = max(self._next_id, body_id + 1)
+        body = Body(self, body_id, spec, rows)
+        self.bodies[body_id] = body
+        self.constraints.add_body(body)
+        if grown:
+            self._take_arrays()
+        self.constraints_changed()
+        body.update_link_poses()
+        return body
+
+    def load_urdf(
+        self,
+        path: str | Path,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+        *,
+        fixed_base: bool = False,
+        scale: float = 1.0,
+        flags: int = 0,
+    ) -> Body:
+        """Add the robot a URDF file describes.
+
+        Args:
+            path: The file.
+            position: Of the base's link frame [m].
+            orientation: Of the base's link frame, quaternion (x, y, z, w).
+            fixed_base: Hold the base where it is.
+            scale: Factor on all lengths.
+            flags: Loading flags, see `carom.model.flags.LoadFlags`.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.formats.search import AssetSearch
+        from carom.formats.urdf import read_urdf
+        from carom.model.assemble import assemble
+        from carom.model.flags import LoadFlags
+
+        robot = read_urdf(Path(path), scale=scale, search=AssetSearch())
+        return self.load(assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base), position, orientation)
+
+    def remove(self, body_id: int) -> None:
+        """Take a body out of the world.
+
+        Raises:
+            KeyError: There is no such body.
+        """
+        body = self.bodies.pop(body_id)
+        self.constraints.remove_body(body)
+        self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
+        for other in self.bodies.values():
+            other.relocate()
+        self._free_ids.append(body_id)
+        self.constraints_changed()
+
+    def reset(self) -> None:
+        """Remove all bodies and set all parameters back, but for the time step and the substeps."""
+        kept = self.parameters
+        self.parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
+        self._start_empty()
+
+    def set_base_freedom(self, body: Body, *, free: bool) -> None:
+        """Let the base of a body move, or hold it where it is."""
+        self.arrays.set_base_freedom(body.rows, free=free)
+        body.fixed_base = not free
+        self.constraints.base_freedom_changed(body)
+        self.constraints_changed()
+
+    # Parameters
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """Gravity in world axes [m/s²], shape (3,)."""
+        return np.array(self.parameters.gravity)
+
+    @gravity.setter
+    def gravity(self, value: Sequence[float]) -> None:
+        x, y, z = (float(component) for component in value)
+        self.parameters.gravity = (x, y, z)
+        self.apply_parameters()
+
+    def apply_parameters(self) -> None:
+        """Make changes of `parameters` take effect."""
+        self._step = None
+
+    def constraints_changed(self) -> None:
+        """Sort and number the constraints again before the next step."""
+        self._step = None
+
+    # Time
+
+    def step(self, count: int = 1) -> None:
+        """Advance the world by `count` time steps."""
+        for _ in range(count):
+            step = self._step or self._prepare_step()
+            step()
+        self.time += count * self.parameters.time_step
+
+    def _prepare_step(self) -> Callable[[], None]:
+        """The function that performs one step with the bodies and parameters there are."""
+        self._islands, grown = self.constraints.write(self.arrays, self.parameters.minimum_island_size)
+        if grown:
+            self._take_arrays()
+        launch = Launch(step_kernel, 1, [self._settings(), *self._structs, 1], _DEVICE)
+        if self.parameters.substeps > 1:
+            self._step = partial(self._step_in_parts, launch)
+        else:
+            self._unspent_time = 0.0
+            self._step = launch.function
+        return self._step
+
+    def _step_in_parts(self, launch: Launch) -> None:
+        """One step in substeps.
+
+        Like Bullet's clock it performs as many as fit the time that has passed, which rounding can
+        make one fewer, then one more, than asked for; never more.
+        """
+        part = self.parameters.substep_time
+        self._unspent_time += self.parameters.time_step
+        count = int(self._unspent_time / part)
+        self._unspent_time -= count * part
+        launch.replace(_SUBSTEPS_ARGUMENT, min(count, self.parameters.substeps))
+        launch()
+
+    def _settings(self) -> Any:
+        p = self.parameters
+        settings = Settings()
+        settings.time_step = p.substep_time
+        settings.gravity = p.gravity
+        settings.iterations = p.solver_iterations
+        settings.inner_iterations = p.noncontact_inner_iterations
+        settings.residual_threshold = p.solver_residual_threshold
+        settings.joint_erp = p.erp
+        settings.split_impulse = int(p.split_impulse)
+        settings.split_threshold = p.split_impulse_penetration_threshold
+        settings.feedback_in_world = p.joint_feedback_mode & 1
+        settings.feedback_in_joint = p.joint_feedback_mode >> 1 & 1
+        settings.tree_count = self.arrays.used["tree"]
+        settings.island_count = len(self._islands)
+        return settings
+
+    def analytics(self) -> list[dict[str, float]]:
+        """What the solver did in the last substep, for each group of bodies solved together.
+
+        Returns:
+            Dictionaries with `islandId`, `numBodies` (links), `numIterationsUsed` and
+            `remainingResidual` (greatest squared change of a row's velocity in the last sweep).
+        """
+        state = self.arrays.state.numpy
+        return [
+            {
+                "islandId": island.tag,
+                "numBodies": island.link_count,
+                "numIterationsUsed": int(state["island_iterations"][0, i]),
+                "remainingResidual": float(state["island_residual"][0, i]),
+            }
+            for i, island in enumerate(self._islands)
+        ]
+
+    # Memory
+
+    def _take_arrays(self) -> None:
+        """Make views and launches for the present arrays."""
+        self._structs = self.arrays.structs(_DEVICE)
+        self._step = None
+        self._pose_launch: Launch | None = None
+        self._twist_launch: Launch | None = None
+        for name, field in _VIEWS.items():
+            view = self.arrays.state.numpy[field][0]
+            setattr(self, name, view)
+            setattr(self, f"{name}_memory", memoryview(view.reshape(-1)))
+
+    def update_link_poses(self, body: Body) -> None:
+        """Bring `link_pose` up to date with the coordinates of a body."""
+        if self._pose_launch is None:
+            model, state, _ = self._structs
+            self._pose_launch = Launch(forward_kinematics_kernel, 1, [model, state, 0], _DEVICE)
+        self._pose_launch.replace(2, body.rows.tree)
+        self._pose_launch()
+
+    def update_link_velocities(self, body: Body) -> None:
+        """Fill `link_velocity` for the present coordinates of a body."""
+        if self._twist_launch is None:
+            self._twist_launch = Launch(link_twist_kernel, 1, [*self._structs, 0], _DEVICE)
+        self._twist_launch.replace(3, body.rows.tree)
+        self._twist_launch()
