@@ -120,7 +120,7 @@ def panda_held_and_released(p: Any) -> dict[str, Any]:
         if step == 120:
             release_motors(p, panda)
 
-    return simulate(p, 1.25, lambda: _observe(p, panda), control)
+    return simulate(p, 2.0, lambda: _observe(p, panda), control)
 
 
 @scenario()

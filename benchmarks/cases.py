@@ -1,0 +1,46 @@
+"""What is measured, and what we want to see: data, the same for every engine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Case:
+    """One thing to time.
+
+    Attributes:
+        key: Name of the function in an engine's module that prepares it.
+        title: Its row in the table.
+        speedup: PyBullet's time over Carom's that we want at least, if any.
+        seconds: Time Carom may take at most, if any.
+    """
+
+    key: str
+    title: str
+    speedup: float | None = None
+    seconds: float | None = None
+
+
+IN_PROCESS = (
+    Case("step_panda", "stepSimulation, Panda, default motors", speedup=5.0),
+    Case("step_panda_free", "stepSimulation, Panda, motors off", speedup=5.0),
+    Case("step_kuka", "stepSimulation, KUKA, default motors", speedup=3.0),
+    Case("step_kuka_free", "stepSimulation, KUKA, motors off", speedup=3.0),
+    Case("control_loop", "control loop: 9 targets by one call, step, read 9 joints", speedup=3.0),
+    Case("get_joint_state", "getJointState", speedup=1.0),
+    Case("get_joint_states", "getJointStates, 9 joints"),
+    Case("get_link_state", "getLinkState with velocity"),
+    Case("set_motor", "setJointMotorControl2", speedup=1.0),
+    Case("set_motors", "setJointMotorControlArray, 9 targets"),
+    Case("reset_joint", "resetJointState"),
+    Case("inverse_dynamics", "calculateInverseDynamics, Panda"),
+    Case("jacobian", "calculateJacobian, Panda"),
+    Case("mass_matrix", "calculateMassMatrix, Panda"),
+    Case("load_panda", "loadURDF, our Panda", speedup=1.0),
+    Case("load_original_panda", "loadURDF, the original Panda with its meshes", speedup=1.0),
+)
+
+IMPORT = Case("import", "import pybullet", seconds=0.5)
+FIRST_STEP = Case("first_step", "new process to its first finished Panda step", seconds=1.5)
+COLD_BUILD = Case("cold_build", "the same on a fresh machine: all kernels are built first", seconds=60.0)

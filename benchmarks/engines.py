@@ -1,0 +1,77 @@
+"""The engines: an interpreter each, and the module that knows how to drive them."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+HERE = Path(__file__).resolve().parent
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine in an interpreter of its own.
+
+    Attributes:
+        name: Its column in the table.
+        interpreter: Python that has the engine installed.
+        module: Module in this directory that prepares its cases.
+        environment: Variables set for its processes.
+        runs_scripts: It has PyBullet's interface, so process timings apply.
+    """
+
+    name: str
+    interpreter: Path
+    module: str
+    environment: dict[str, str] = field(default_factory=dict)
+    runs_scripts: bool = True
+
+    def time_cases(self, keys: Sequence[str], seconds: float, original_data: str) -> dict[str, float]:
+        """Time the cases in one new process; cases the engine does not have are left out."""
+        command = [str(self.interpreter), str(HERE / "worker.py"), self.module, *keys]
+        command += ["--seconds", str(seconds), "--original-data", original_data]
+        output = subprocess.run(
+            command, check=True, env=self._environment(), cwd=ROOT, stdout=subprocess.PIPE, text=True
+        )
+        results = [json.loads(line) for line in output.stdout.splitlines() if line.startswith('{"case"')]
+        return {result["case"]: result["seconds"] for result in results}
+
+    def time_first_step(self) -> tuple[float, float]:
+        """Seconds of `import pybullet`, and from the start of a process to its first finished step."""
+        return self._first_step(self._environment())
+
+    def time_cold_build(self) -> float:
+        """Seconds from the start of a process to its first step with an empty kernel cache."""
+        with tempfile.TemporaryDirectory() as cache:
+            return self._first_step(self._environment() | {"WARP_CACHE_PATH": cache})[1]
+
+    def _first_step(self, environment: dict[str, str]) -> tuple[float, float]:
+        command = [str(self.interpreter), str(HERE / "first_step.py")]
+        start = time.perf_counter()
+        with subprocess.Popen(
+            command, env=environment, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        ) as process:
+            assert process.stdout is not None
+            for line in process.stdout:
+                if line.startswith("import "):
+                    finished = time.perf_counter() - start
+                    process.stdout.read()
+                    return float(line.split()[1]), finished
+        raise RuntimeError(f"{self.name} did not finish its first step")
+
+    def _environment(self) -> dict[str, str]:
+        inherited = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        return inherited | self.environment
+
+
+def original_data_directory(oracle: Path) -> str:
+    """Where the original pybullet_data lies."""
+    command = [str(oracle), "-c", "import pybullet_data; print(pybullet_data.getDataPath())"]
+    return subprocess.run(command, check=True, cwd=HERE, capture_output=True, text=True).stdout.strip()

@@ -1,0 +1,147 @@
+"""The cases for engines with PyBullet's interface: Carom and PyBullet itself.
+
+Every function prepares a world and returns the call to be timed, or a pair of that call and what
+has to be done, untimed, with its result.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pybullet as p
+
+ASSETS = Path(__file__).resolve().parents[1] / "src" / "pybullet_data"
+PANDA = str(ASSETS / "franka_panda" / "panda.urdf")
+KUKA = str(ASSETS / "kuka_iiwa" / "model.urdf")
+MOVABLE = [0, 1, 2, 3, 4, 5, 6, 9, 10]
+HOME = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02]
+
+Timed = Callable[[], Any]
+Prepared = Timed | tuple[Timed, Callable[[Any], None]]
+
+
+def _world() -> None:
+    if not p.isConnected():
+        p.connect(p.DIRECT)
+    p.resetSimulation()
+    p.setGravity(0, 0, -9.81)
+
+
+def _panda() -> int:
+    _world()
+    panda = p.loadURDF(PANDA, useFixedBase=True)
+    for joint, position in zip(MOVABLE, HOME, strict=True):
+        p.resetJointState(panda, joint, position)
+    return panda
+
+
+def _kuka() -> int:
+    _world()
+    return p.loadURDF(KUKA, useFixedBase=True)
+
+
+def _release(body: int, joints: list[int]) -> None:
+    for joint in joints:
+        p.setJointMotorControl2(body, joint, p.VELOCITY_CONTROL, force=0)
+
+
+def step_panda(original_data: str) -> Prepared:
+    _panda()
+    return p.stepSimulation
+
+
+def step_panda_free(original_data: str) -> Prepared:
+    _release(_panda(), MOVABLE)
+    return p.stepSimulation
+
+
+def step_kuka(original_data: str) -> Prepared:
+    _kuka()
+    return p.stepSimulation
+
+
+def step_kuka_free(original_data: str) -> Prepared:
+    _release(_kuka(), list(range(7)))
+    return p.stepSimulation
+
+
+def control_loop(original_data: str) -> Prepared:
+    panda = _panda()
+    targets = [[q + 0.1 * math.sin(0.02 * step) for q in HOME] for step in range(314)]
+    forces = [87.0] * 4 + [12.0] * 3 + [20.0] * 2
+    step = 0
+
+    def loop() -> None:
+        nonlocal step
+        step = (step + 1) % len(targets)
+        p.setJointMotorControlArray(
+            panda, MOVABLE, p.POSITION_CONTROL, targetPositions=targets[step], forces=forces
+        )
+        p.stepSimulation()
+        p.getJointStates(panda, MOVABLE)
+
+    return loop
+
+
+def get_joint_state(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.getJointState(panda, 3)
+
+
+def get_joint_states(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.getJointStates(panda, MOVABLE)
+
+
+def get_link_state(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.getLinkState(panda, 11, computeLinkVelocity=1)
+
+
+def set_motor(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.setJointMotorControl2(panda, 3, p.POSITION_CONTROL, targetPosition=-1.9, force=87.0)
+
+
+def set_motors(original_data: str) -> Prepared:
+    panda = _panda()
+    forces = [87.0] * 9
+    return lambda: p.setJointMotorControlArray(
+        panda, MOVABLE, p.POSITION_CONTROL, targetPositions=HOME, forces=forces
+    )
+
+
+def reset_joint(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.resetJointState(panda, 3, -1.9)
+
+
+def inverse_dynamics(original_data: str) -> Prepared:
+    panda = _panda()
+    velocities, accelerations = [0.1] * 9, [0.5] * 9
+    return lambda: p.calculateInverseDynamics(panda, HOME, velocities, accelerations)
+
+
+def jacobian(original_data: str) -> Prepared:
+    panda = _panda()
+    zeros = [0.0] * 9
+    return lambda: p.calculateJacobian(panda, 11, [0.0, 0.0, 0.0], HOME, zeros, zeros)
+
+
+def mass_matrix(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.calculateMassMatrix(panda, HOME)
+
+
+def load_panda(original_data: str) -> Prepared:
+    _world()
+    return lambda: p.loadURDF(PANDA, useFixedBase=True), p.removeBody
+
+
+def load_original_panda(original_data: str) -> Prepared:
+    _world()
+    file = str(Path(original_data) / "franka_panda" / "panda.urdf")
+    return lambda: p.loadURDF(file, useFixedBase=True), p.removeBody

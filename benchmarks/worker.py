@@ -1,0 +1,81 @@
+"""Times the cases of one engine in this interpreter; `run.py` starts it.
+
+Prints one JSON line per case: its key and the median time of a call in seconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+BATCH_SECONDS = 0.01
+
+
+def time_call(call: Callable[[], Any], budget: float) -> float:
+    """Median time of a call over batches long enough for the clock."""
+    call()
+    count, elapsed = 1, 0.0
+    while True:
+        elapsed = _batch(call, count)
+        if elapsed >= BATCH_SECONDS:
+            break
+        count = max(2 * count, int(count * BATCH_SECONDS / max(elapsed, 1e-9)))
+    times = []
+    end = time.perf_counter() + budget
+    while not times or time.perf_counter() < end:
+        times.append(_batch(call, count) / count)
+    return statistics.median(times)
+
+
+def time_with_cleanup(call: Callable[[], Any], cleanup: Callable[[Any], None], budget: float) -> float:
+    """Median time of a call whose result has to be disposed of, untimed, before the next."""
+    cleanup(call())
+    times = []
+    end = time.perf_counter() + budget
+    while not times or time.perf_counter() < end:
+        start = time.perf_counter()
+        result = call()
+        times.append(time.perf_counter() - start)
+        cleanup(result)
+    return statistics.median(times)
+
+
+def _batch(call: Callable[[], Any], count: int) -> float:
+    repetitions = range(count)
+    start = time.perf_counter()
+    for _ in repetitions:
+        call()
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    """Time the cases named on the command line."""
+    parser = argparse.ArgumentParser(description="Time the benchmark cases of one engine.")
+    parser.add_argument("module", help="module with the engine's cases")
+    parser.add_argument("cases", nargs="+")
+    parser.add_argument("--seconds", type=float, default=0.3, help="time spent on each case")
+    parser.add_argument("--original-data", default="", help="directory of the original pybullet_data")
+    arguments = parser.parse_args()
+    module = importlib.import_module(arguments.module)
+    for key in arguments.cases:
+        prepare = getattr(module, key, None)
+        if prepare is None:
+            continue
+        prepared = prepare(arguments.original_data)
+        if isinstance(prepared, tuple):
+            call, cleanup = prepared
+            seconds = time_with_cleanup(call, cleanup, arguments.seconds)
+        else:
+            seconds = time_call(prepared, arguments.seconds)
+        sys.stdout.write(json.dumps({"case": key, "seconds": seconds}) + "\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()
