@@ -1,6 +1,15 @@
 """What a robot is, whatever file it came from: frozen dataclasses that know no physics."""
 
-from carom.description.geometry import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
+from carom.description.geometry import (
+    Box,
+    Capsule,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Plane,
+    SignedDistanceField,
+    Sphere,
+)
 from carom.description.joint import Joint, JointLimit, JointType, Mimic, SafetyController
 from carom.description.link import Collision, ContactParameters, Inertial, Link, Material, Visual
 from carom.description.pose import Pose

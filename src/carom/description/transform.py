@@ -54,13 +54,17 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
     sr, cr = sin(roll / 2.0), cos(roll / 2.0)
     sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
     sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
-    raw = (
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
-    )
-    return quaternion_from_matrix(rotation_matrix(raw))
+    x = sr * cp * cy - cr * sp * sy
+    y = cr * sp * cy + sr * cp * sy
+    z = cr * cp * sy - sr * sp * cy
+    w = cr * cp * cy + sr * sp * sy
+    # Only the sign may change here: going through the matrix and back would cost the last digits, and with
+    # them the test whether two frames of a file are the same.
+    unit = 1.0 / sqrt(x * x + y * y + z * z + w * w)
+    x, y, z, w = x * unit, y * unit, z * unit, w * unit
+    has_positive_trace = w * w > 0.25  # the trace of the matrix is 4 w² - 1
+    is_flipped = (w if has_positive_trace else max((x, y, z), key=abs)) < 0.0
+    return (-x, -y, -z, -w) if is_flipped else (x, y, z, w)
 
 
 def transposed(m: Matrix3) -> Matrix3:

@@ -13,6 +13,7 @@ from carom.description import Collision, ContactParameters, JointType, Mimic, Po
 from carom.description.pose import IDENTITY, Vector3
 
 BASE = -1
+DEFAULT_CONTACT = ContactParameters()
 
 
 @dataclass(slots=True)
@@ -66,7 +67,7 @@ class LinkSpec:
     friction: float = 0.0
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
-    contact: ContactParameters = ContactParameters()
+    contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     user_data: dict[str, str] = field(default_factory=dict)
 

@@ -115,9 +115,10 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
     if mesh.path.suffix.lower() == ".obj":
         hulls = (Bounds.between(*pair).grown(MARGIN).grown(MARGIN) for pair in corners)
         return reduce(Bounds.joined, hulls).grown(MARGIN)
-    lows, highs = zip(*corners, strict=True)
-    axes = [_on_hull_grid(min(low), max(high)) for low, high in zip(zip(*lows), zip(*highs), strict=True)]
-    (x0, x1), (y0, y1), (z0, z1) = axes
+    (x0, x1), (y0, y1), (z0, z1) = (
+        _on_hull_grid(min(low[axis] for low, _ in corners), max(high[axis] for _, high in corners))
+        for axis in range(3)
+    )
     return Bounds.between((x0, y0, z0), (x1, y1, z1)).grown(MARGIN).grown(MARGIN)
 
 

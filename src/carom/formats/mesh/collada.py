@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.mesh.part import MeshPart, make_part
+from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 from carom.formats.xml_tree import Element, parse_xml
 
 MAX_PARTS = 4096
@@ -76,9 +76,7 @@ class _ColladaReader:
             return 1.0
         return float(np.float32(self._numbers(unit, unit.attributes["meter"], 1)[0]))
 
-    def _nodes(
-        self, node: Element, parent: NDArray[np.float64]
-    ) -> Iterator[tuple[str, NDArray[np.float64]]]:
+    def _nodes(self, node: Element, parent: NDArray[np.float64]) -> Iterator[tuple[str, NDArray[np.float64]]]:
         placement = parent @ self._local_transform(node)
         for instance in node.all("instance_geometry"):
             identifier = instance.attributes.get("url", "")[1:]
@@ -132,7 +130,7 @@ class _ColladaReader:
         return np.concatenate(positions), np.concatenate(corners)
 
     def _position_input(self, mesh: Element, primitive: Element) -> tuple[NDArray[np.float64], int, int]:
-        """Positions (k, 3), the offset of their index among the indices of a corner, and how many those are."""
+        """Positions (k, 3), the place of their index among those of a corner, and how many those are."""
         stride, offset, vertices_id = 1, None, ""
         for entry in primitive.all("input"):
             here = int(self._numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
@@ -180,7 +178,7 @@ class _ColladaReader:
                 sizes = np.empty(0, dtype=np.int64) if counts is None else self._integers(counts)
             if sizes.sum() != len(corners) or (sizes < 0).any():
                 raise self.error(run, f"{len(corners)} corners do not fit the polygons announced")
-            fans.append(_fans(corners, sizes))
+            fans.append(cut_into_fans(corners, sizes))
         return np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
 
     def _integers(self, element: Element) -> NDArray[np.int64]:
@@ -199,19 +197,6 @@ class _ColladaReader:
         if not np.isfinite(values).all():
             raise self.error(element, "it must hold finite numbers")
         return values
-
-
-def _fans(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Polygons of the given sizes, one after the other in `corners`, as triangles."""
-    if (sizes == 3).all():
-        return corners.reshape(-1, 3)
-    triangles: list[tuple[int, int, int]] = []
-    start = 0
-    for size in sizes.tolist():
-        first, *rest = corners[start : start + size].tolist() or [0]
-        triangles.extend((first, rest[i], rest[i + 1]) for i in range(len(rest) - 1))
-        start += size
-    return np.array(triangles, dtype=np.int64).reshape(-1, 3)
 
 
 def _rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:

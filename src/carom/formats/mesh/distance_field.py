@@ -26,6 +26,7 @@ def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
     if len(header) < _DOMAIN.size:
         raise DescriptionError("cut off before the bounds of the grid", file=path)
     x0, y0, z0, x1, y1, z1 = _DOMAIN.unpack(header)
-    if not all(isfinite(low) and isfinite(high) and low <= high for low, high in ((x0, x1), (y0, y1), (z0, z1))):
+    sides = ((x0, x1), (y0, y1), (z0, z1))
+    if not all(isfinite(low) and isfinite(high) and low <= high for low, high in sides):
         raise DescriptionError("the bounds of the grid make no box", file=path)
     return (x0, y0, z0), (x1, y1, z1)

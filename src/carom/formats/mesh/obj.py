@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.mesh.part import MeshPart, make_part
+from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 
 _AFTER_SLASH = re.compile(rb"/\S*")
 
@@ -87,28 +87,27 @@ def _read_positions(lines: list[tuple[int, bytes]], file: Path) -> NDArray[np.fl
 
 def _read_corners(group: _Group, vertex_count: int, file: Path) -> NDArray[np.int64]:
     """Triangles as (m, 3) vertex indices from 0."""
-    faces = [face.split() for face in _AFTER_SLASH.sub(b"", b"\n".join(group.faces)).split(b"\n")]
+    if not group.faces:
+        return np.empty((0, 3), dtype=np.int64)
+    faces = _AFTER_SLASH.sub(b"", b"\n".join(group.faces)).split(b"\n")
+    sizes = np.array([len(face.split()) for face in faces])
     try:
-        polygons = [list(map(int, face)) for face in faces]
-    except ValueError:
-        line = next(line for face, line in zip(faces, group.lines, strict=True) if not _all_integers(face))
+        indices = np.array(list(map(int, b" ".join(faces).split())), dtype=np.int64)
+    except (ValueError, OverflowError):
+        line = next(line for face, line in zip(faces, group.lines, strict=True) if not _is_integers(face))
         raise DescriptionError("a face needs whole numbers", file=file, line=line) from None
-    triangles: list[tuple[int, int, int]] = []
-    for polygon, known, line in zip(polygons, group.vertex_counts, group.lines, strict=False):
-        if min(polygon, default=1) < 0:
-            polygon = [known + index + 1 if index < 0 else index for index in polygon]
-        if polygon and not 1 <= min(polygon) <= max(polygon) <= vertex_count:
-            raise DescriptionError(
-                f"a face names a vertex outside 1..{vertex_count}", file=file, line=line
-            )
-        first, *rest = polygon or [0]
-        triangles.extend((first, rest[i], rest[i + 1]) for i in range(len(rest) - 1))
-    return np.array(triangles, dtype=np.int64).reshape(-1, 3) - 1
+    # Negative indices count back from the vertices known at the face.
+    indices = np.where(indices < 0, indices + np.repeat(group.vertex_counts, sizes), indices - 1)
+    outside = (indices < 0) | (indices >= vertex_count)
+    if outside.any():
+        line = int(np.repeat(group.lines, sizes)[outside.argmax()])
+        raise DescriptionError(f"a face names a vertex outside 1..{vertex_count}", file=file, line=line)
+    return cut_into_fans(indices, sizes)
 
 
-def _all_integers(words: list[bytes]) -> bool:
+def _is_integers(face: bytes) -> bool:
     try:
-        list(map(int, words))
-    except ValueError:
+        np.array(list(map(int, face.split())), dtype=np.int64)
+    except (ValueError, OverflowError):
         return False
     return True

@@ -50,3 +50,22 @@ def make_part(
     vertices.setflags(write=False)
     triangles.setflags(write=False)
     return MeshPart(vertices, triangles, name)
+
+
+def cut_into_fans(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Polygons as triangles that all share the first corner; polygons of fewer than three corners vanish.
+
+    Args:
+        corners: Corner indices of all polygons, one after the other.
+        sizes: Number of corners of each polygon; they add up to the length of `corners`.
+
+    Returns:
+        (m, 3) corner indices.
+    """
+    if (sizes == 3).all():
+        return corners.reshape(-1, 3)
+    counts = np.maximum(sizes - 2, 0)
+    starts = np.repeat(np.cumsum(sizes) - sizes, counts)
+    # 0, 1, 2, ... within each polygon
+    steps = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    return corners[np.stack([starts, starts + steps + 1, starts + steps + 2], axis=1)]

@@ -30,7 +30,8 @@ def read_stl(data: bytes, file: Path) -> list[MeshPart]:
     if data.lstrip()[:5].lower() == b"solid":
         return _read_ascii(data, file)
     raise DescriptionError(
-        f"not an STL file, or cut off: {len(data)} bytes do not fit the triangle count in the header", file=file
+        f"not an STL file, or cut off: {len(data)} bytes do not fit the triangle count in the header",
+        file=file,
     )
 
 

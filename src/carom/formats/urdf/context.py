@@ -1,4 +1,4 @@
-"""What every part of the URDF reader needs at hand: the file, the scale, and numbers read with good errors."""
+"""What every part of the URDF reader needs at hand: file, scale, and numbers read with good errors."""
 
 from __future__ import annotations
 
@@ -98,8 +98,7 @@ class UrdfContext:
     def _leading_number(self, element: Element, attribute: str, text: str) -> float:
         match = _LEADING_NUMBER.match(text.strip())
         if match is None:
-            hint = " (unexpanded xacro?)" if "$" in text else ""
-            raise self.error(element, f"{attribute}={text!r} is not a number{hint}")
+            raise self.error(element, f"{attribute}={text!r} is not a number")
         self.warn(element, f"{attribute}={text!r} is read as {match.group()}")
         return float(match.group())
 
@@ -108,31 +107,33 @@ class UrdfContext:
         words = element.attributes[attribute].split()
         if len(words) < 3:
             return None
-        x, y, z = words[:3]
         try:
-            vector = (float(x), float(y), float(z))
+            vector = (float(words[0]), float(words[1]), float(words[2]))
         except ValueError:
-            vector = (
-                self.parse_number(element, attribute, x),
-                self.parse_number(element, attribute, y),
-                self.parse_number(element, attribute, z),
-            )
-        # One test for all three: a NaN or an infinity makes the sum non-finite, and so does overflow.
+            x, y, z = (self._component(element, attribute, word) for word in words[:3])
+            vector = (x, y, z)
+        # One test for all three: NaN and infinity both fail it.
         if not abs(vector[0]) + abs(vector[1]) + abs(vector[2]) <= MAX_MAGNITUDE:
             raise self.error(
                 element, f"{attribute}={element.attributes[attribute]!r} is not finite or out of range"
             )
         return vector
 
+    def _component(self, element: Element, attribute: str, word: str) -> float:
+        """One number of a vector. Robot files in use hold unexpanded xacro, which PyBullet reads as zeros."""
+        if "$" in element.attributes[attribute] and _LEADING_NUMBER.match(word) is None:
+            self.warn(element, f"{attribute}: {word!r} is read as 0 (unexpanded xacro?)")
+            return 0.0
+        return self.parse_number(element, attribute, word)
+
     def vector_or_zero(self, element: Element, attribute: str) -> Vector3:
         """Three numbers; zeros where the attribute is missing, or, with a warning, holds fewer."""
-        if attribute not in element.attributes:
+        text = element.attributes.get(attribute)
+        if text is None:
             return (0.0, 0.0, 0.0)
         vector = self.vector(element, attribute)
         if vector is None:
-            self.warn(
-                element, f"{attribute}={element.attributes[attribute]!r} needs three numbers; read as zeros"
-            )
+            self.warn(element, f"{attribute}={text!r} needs three numbers; read as zeros")
             return (0.0, 0.0, 0.0)
         return vector
 
