@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from carom.checks import Array, finite, not_negative, positive
+
 Limits = tuple[ArrayLike, ArrayLike]
 
 UNLIMITED: Limits = (-np.inf, np.inf)
@@ -76,10 +77,9 @@ class PID:
         self._integral_limits = _ordered(integral_limits, "integral_limits")
         if derivative_on not in ("measurement", "error"):
             raise ValueError(f"derivative_on must be 'measurement' or 'error', not {derivative_on!r}")
-        if not (np.isfinite(derivative_filter) and derivative_filter >= 0.0):
-            raise ValueError(f"derivative_filter must be a time constant >= 0 s, not {derivative_filter!r}")
-        if tracking_time is not None and not (np.isfinite(tracking_time) and tracking_time > 0.0):
-            raise ValueError(f"tracking_time must be a time constant > 0 s or None, not {tracking_time!r}")
+        not_negative(finite(derivative_filter, "derivative_filter"), "derivative_filter")
+        if tracking_time is not None:
+            positive(tracking_time, "tracking_time")
         self._derivative_sign = 1.0 if derivative_on == "error" else -1.0
         self._derivative_filter = derivative_filter
         self._tracking_time = tracking_time
@@ -92,7 +92,7 @@ class PID:
 
     @kp.setter
     def kp(self, gain: ArrayLike) -> None:
-        self._kp = _finite(gain, "kp")
+        self._kp = finite(gain, "kp")
 
     @property
     def ki(self) -> Array:
@@ -101,7 +101,7 @@ class PID:
 
     @ki.setter
     def ki(self, gain: ArrayLike) -> None:
-        self._ki = _finite(gain, "ki")
+        self._ki = finite(gain, "ki")
 
     @property
     def kd(self) -> Array:
@@ -110,7 +110,7 @@ class PID:
 
     @kd.setter
     def kd(self, gain: ArrayLike) -> None:
-        self._kd = _finite(gain, "kd")
+        self._kd = finite(gain, "kd")
 
     @property
     def integral(self) -> Array:
@@ -119,7 +119,7 @@ class PID:
 
     def reset(self, integral: ArrayLike = 0.0) -> None:
         """Forget the past and start from the given integral term, clipped to its limits."""
-        self._integral = np.clip(_finite(integral, "integral"), *self._integral_limits)
+        self._integral = np.clip(finite(integral, "integral"), *self._integral_limits)
         self._previous: Array | None = None
         self._derivative = np.float64(0.0)
 
@@ -131,8 +131,8 @@ class PID:
         Resets, then chooses the integral term, as far as `integral_limits` allow, such that the next
         update with the same signals gives `output` plus only what it integrates itself.
         """
-        error = _finite(setpoint, "setpoint") - _finite(measurement, "measurement")
-        rest = _finite(output, "output") - self._kp * error - _finite(feed_forward, "feed_forward")
+        error = finite(setpoint, "setpoint") - finite(measurement, "measurement")
+        rest = finite(output, "output") - self._kp * error - finite(feed_forward, "feed_forward")
         self.reset(rest)
 
     def update(
@@ -153,11 +153,10 @@ class PID:
         Raises:
             ValueError: `dt` is not positive or a signal is not finite; the memory is unchanged.
         """
-        if not (np.isfinite(dt) and dt > 0.0):
-            raise ValueError(f"dt must be a time > 0 s, not {dt!r}")
-        measurement = _finite(measurement, "measurement")
-        error = _finite(setpoint, "setpoint") - measurement
-        feed_forward = _finite(feed_forward, "feed_forward")
+        positive(dt, "dt")
+        measurement = finite(measurement, "measurement")
+        error = finite(setpoint, "setpoint") - measurement
+        feed_forward = finite(feed_forward, "feed_forward")
 
         differentiated = error if self._derivative_sign > 0.0 else measurement
         if self._previous is not None:
@@ -181,13 +180,6 @@ class PID:
             return np.where(excess * step > 0.0, self._integral, integral)
         bled_off = integral - excess * min(1.0, dt / self._tracking_time)
         return np.clip(bled_off, *self._integral_limits)
-
-
-def _finite(value: ArrayLike, name: str) -> Array:
-    array = np.array(value, dtype=np.float64)
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite, not {value!r}")
-    return array
 
 
 def _ordered(limits: Limits, name: str) -> tuple[Array, Array]:

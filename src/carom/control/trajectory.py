@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from carom.checks import Array, finite, positive
 
 
 class Sample(NamedTuple):
@@ -40,7 +40,7 @@ class QuinticTrajectory:
             ValueError: Positions are not finite or differ in shape, or the duration is not positive.
         """
         self.start, self.goal = _end_points(start, goal)
-        self.duration = float(_positive(duration, "duration"))
+        self.duration = float(positive(duration, "duration"))
 
     def sample(self, time: ArrayLike) -> Sample:
         """Position, velocity and acceleration at `time` [s]; at rest before 0 and after `duration`."""
@@ -79,8 +79,8 @@ class TrapezoidalTrajectory:
             ValueError: Positions are not finite or differ in shape, or a bound is not positive.
         """
         self.start, self.goal = _end_points(start, goal)
-        velocity = _positive(max_velocity, "max_velocity")
-        acceleration = _positive(max_acceleration, "max_acceleration")
+        velocity = positive(max_velocity, "max_velocity")
+        acceleration = positive(max_acceleration, "max_acceleration")
         distance = np.abs(self.goal - self.start)
         # Bounds on the rate and acceleration of the share of the way done, which all joints have in common.
         slowest = float(np.max(distance / velocity, initial=0.0))
@@ -113,19 +113,10 @@ class TrapezoidalTrajectory:
 
 
 def _end_points(start: ArrayLike, goal: ArrayLike) -> tuple[Array, Array]:
-    first, last = np.array(start, dtype=np.float64), np.array(goal, dtype=np.float64)
+    first, last = finite(start, "start"), finite(goal, "goal")
     if first.shape != last.shape:
         raise ValueError(f"start has shape {first.shape} but goal has shape {last.shape}")
-    if not (np.isfinite(first).all() and np.isfinite(last).all()):
-        raise ValueError(f"start and goal must be finite, not {start!r} and {goal!r}")
     return first, last
-
-
-def _positive(value: ArrayLike, name: str) -> Array:
-    array = np.array(value, dtype=np.float64)
-    if not (np.isfinite(array).all() and (array > 0.0).all()):
-        raise ValueError(f"{name} must be finite and > 0, not {value!r}")
-    return array
 
 
 def _times(time: ArrayLike, joint_axes: int) -> Array:

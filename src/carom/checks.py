@@ -1,0 +1,56 @@
+"""Numbers from users, as arrays, refused where they make no sense."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def finite(value: ArrayLike, name: str) -> Array:
+    """A copy of `value` as an array of finite doubles.
+
+    Raises:
+        ValueError: Something in it is NaN or infinite; the message calls it `name`.
+    """
+    array = np.array(value, dtype=np.float64)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, not {value!r}")
+    return array
+
+
+def vector(value: ArrayLike, length: int, name: str) -> Array:
+    """A copy of `value` as `length` finite doubles.
+
+    Raises:
+        ValueError: It has another shape, or something in it is NaN or infinite.
+    """
+    array = finite(value, name)
+    if array.shape != (length,):
+        raise ValueError(f"{name} must have shape ({length},), not {array.shape}")
+    return array
+
+
+def positive(value: ArrayLike, name: str) -> Array:
+    """A copy of `value` as an array of finite doubles greater than 0.
+
+    Raises:
+        ValueError: Something in it is not.
+    """
+    array = np.array(value, dtype=np.float64)
+    if not (np.isfinite(array).all() and (array > 0.0).all()):
+        raise ValueError(f"{name} must be finite and > 0, not {value!r}")
+    return array
+
+
+def not_negative(value: ArrayLike, name: str) -> Array:
+    """A copy of `value` as an array of doubles >= 0; infinity is allowed.
+
+    Raises:
+        ValueError: Something in it is not.
+    """
+    array = np.array(value, dtype=np.float64)
+    if not (array >= 0.0).all():
+        raise ValueError(f"{name} must be >= 0, not {value!r}")
+    return array

@@ -1,0 +1,65 @@
+"""A sequence whose items can be looked up by name as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Generic, Protocol, TypeVar
+
+
+class HasName(Protocol):
+    """Something with a name."""
+
+    @property
+    def name(self) -> str:
+        """The name."""
+        ...
+
+
+Item = TypeVar("Item", bound=HasName)
+
+
+class Named(Generic[Item]):
+    """Items by index or by name."""
+
+    def __init__(self, kind: str, items: Sequence[Item], first: int = 0) -> None:
+        """Number the items.
+
+        Args:
+            kind: What an item is called in messages.
+            items: In order; of equal names the first counts.
+            first: Index of the first item.
+        """
+        self._kind = kind
+        self._items = list(items)
+        self._first = first
+        self._by_name = {item.name: item for item in reversed(self._items)}
+
+    def __getitem__(self, key: int | str) -> Item:
+        """The item with an index or a name.
+
+        Raises:
+            IndexError: There is no such index; negative ones do not count from the end.
+            KeyError: There is no such name.
+        """
+        if isinstance(key, str):
+            if key not in self._by_name:
+                raise KeyError(f"no {self._kind} is called {key!r}; there are {', '.join(self.names)}")
+            return self._by_name[key]
+        if not 0 <= key - self._first < len(self._items):
+            last = self._first + len(self._items) - 1
+            raise IndexError(f"{self._kind} {key} is out of range: indices are {self._first} to {last}")
+        return self._items[key - self._first]
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __iter__(self) -> Iterator[Item]:
+        return iter(self._items)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._by_name
+
+    @property
+    def names(self) -> list[str]:
+        """All names, in order."""
+        return [item.name for item in self._items]
