@@ -178,6 +178,44 @@ def random_tree_moves(p: Any) -> dict[str, Any]:
 
 
 @scenario()
+def loading_flags_move(p: Any) -> dict[str, Any]:
+    """The floating tree scaled, with merged links, and in the file's link order, thrown."""
+    results: dict[str, Any] = {}
+    loadings = {
+        "scaled": {"globalScaling": 0.6},
+        "merged": {"flags": p.URDF_MERGE_FIXED_LINKS | p.URDF_USE_INERTIA_FROM_FILE},
+        "file order": {"flags": p.URDF_MAINTAIN_LINK_ORDER},
+    }
+    for name, options in loadings.items():
+        p.resetSimulation()
+        p.setGravity(0, 0, -9.81)
+        body = load(p, "tree.urdf", basePosition=[0, 0, 4], **options)
+        release_motors(p, body)
+        joints = movable_joints(p, body)
+        for joint in joints:
+            p.changeDynamics(body, joint, jointDamping=0.05)
+        p.resetBaseVelocity(body, [0.2, 0.0, 2.0], [0.5, -0.4, 0.3])
+
+        def observe(body: int = body, joints: list[int] = joints) -> dict[str, Any]:
+            return base_motion(p, body) | joint_motion(p, body, joints)
+
+        results |= under(name, simulate(p, 2.0, observe, stride=16))
+    return results
+
+
+@scenario()
+def odd_shapes_swing(p: Any) -> dict[str, Any]:
+    """Links of every shape swing about their own axes: inertias from shapes, in motion."""
+    p.setGravity(3.0, 2.0, -9.81)
+    body = load(p, "shapes.urdf", useFixedBase=True)
+    release_motors(p, body)
+    joints = movable_joints(p, body)
+    for joint in joints:
+        p.resetJointState(body, joint, 0.3, 1.0)
+    return simulate(p, 2.0, lambda: joint_motion(p, body, joints), stride=16)
+
+
+@scenario()
 def fast_spin(p: Any) -> dict[str, Any]:
     """A free body spins fast about its middle axis: gyroscopic terms and large rotations per step."""
     body = load(p, "slider.urdf", basePosition=[0, 0, 1])

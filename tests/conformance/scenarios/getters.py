@@ -189,6 +189,12 @@ def getters_of_planar_body(p: Any) -> dict[str, Any]:
 
 
 @scenario(Kind.INFO, SINGLE_PRECISION)
+def getters_of_shapes(p: Any) -> dict[str, Any]:
+    """All getters on links of every shape: primitives, compounds, meshes, and none."""
+    return everything(p, lambda **options: load(p, "shapes.urdf", **options), 12)
+
+
+@scenario(Kind.INFO, SINGLE_PRECISION)
 def getters_of_panda(p: Any) -> dict[str, Any]:
     """All getters on the shipped Panda."""
     return everything(p, lambda **options: load_asset(p, "franka_panda/panda.urdf", **options), 7)

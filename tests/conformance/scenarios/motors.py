@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..scenario import joint_motion, load, scenario, simulate, under
+from ..scenario import joint_motion, load, movable_joints, scenario, simulate, under
 
 SHOULDER = 1
 
@@ -169,6 +169,33 @@ def prismatic_motors(p: Any) -> dict[str, Any]:
         p.setJointMotorControl2(body, 0, p.TORQUE_CONTROL, force=11.0 if step < 240 else 4.0)
 
     return results | under("force", _move(p, body, 0, act=push))
+
+
+@scenario()
+def fingers_close(p: Any) -> dict[str, Any]:
+    """Fingers of a few grams close to their limits and open again, on a fixed and a free palm."""
+    results: dict[str, Any] = {}
+    for name, fixed in (("fixed", True), ("free", False)):
+        p.resetSimulation()
+        p.setGravity(0, 0, -9.81)
+        hand = load(p, "hand.urdf", basePosition=[0, 0, 5], useFixedBase=fixed)
+        joints = movable_joints(p, hand)
+
+        def control(step: int, hand: int = hand, joints: list[int] = joints) -> None:
+            if step % 240 == 0:
+                target = 1.8 if step == 0 else -0.1
+                p.setJointMotorControlArray(
+                    hand,
+                    joints,
+                    p.POSITION_CONTROL,
+                    targetPositions=[target] * len(joints),
+                    forces=[0.02] * len(joints),
+                )
+
+        results |= under(
+            name, simulate(p, 2.0, lambda h=hand, j=joints: joint_motion(p, h, j), control, stride=16)
+        )
+    return results
 
 
 @scenario()

@@ -5,7 +5,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..scenario import joint_motion, load_asset, release_motors, scenario, simulate, under
+from ..scenario import (
+    base_motion,
+    joint_motion,
+    load_asset,
+    movable_joints,
+    release_motors,
+    scenario,
+    simulate,
+    under,
+)
 
 ARM = list(range(7))
 FINGERS = [9, 10]
@@ -171,3 +180,31 @@ def cartpole_balances(p: Any) -> dict[str, Any]:
         p.setJointMotorControl2(cartpole, 0, p.TORQUE_CONTROL, force=force)
 
     return simulate(p, 3.0, lambda: joint_motion(p, cartpole, [0, 1]), control)
+
+
+@scenario()
+def r2d2_in_the_air(p: Any) -> dict[str, Any]:
+    """R2D2, thrown, spins its wheels, turns its head and works its gripper."""
+    p.setGravity(0, 0, -9.81)
+    r2d2 = load_asset(p, "r2d2.urdf", basePosition=[0, 0, 20])
+    joints = movable_joints(p, r2d2)
+    for joint in joints:
+        name = p.getJointInfo(r2d2, joint)[1].decode()
+        if "wheel" in name:
+            p.setJointMotorControl2(r2d2, joint, p.VELOCITY_CONTROL, targetVelocity=12.0, force=10)
+        elif "head" in name:
+            p.setJointMotorControl2(r2d2, joint, p.POSITION_CONTROL, targetPosition=0.8, force=5)
+    p.resetBaseVelocity(r2d2, [1.0, 0.0, 2.0], [0.2, 0.3, 0.5])
+    return simulate(p, 2.0, lambda: base_motion(p, r2d2) | joint_motion(p, r2d2, joints), stride=16)
+
+
+@scenario()
+def rrbot_swings(p: Any) -> dict[str, Any]:
+    """RRBot's two joints swing freely."""
+    p.setGravity(0, 0, -9.81)
+    rrbot = load_asset(p, "rrbot.urdf", useFixedBase=True)
+    release_motors(p, rrbot)
+    joints = movable_joints(p, rrbot)
+    for joint in joints:
+        p.resetJointState(rrbot, joint, 0.6)
+    return simulate(p, 2.0, lambda: joint_motion(p, rrbot, joints))
