@@ -1,0 +1,341 @@
+"""The Franka Emika Panda arm with its hand.
+
+Frames follow the maker's modified Denavit-Hartenberg table. Bounds are those PyBullet reports for the
+links of its own file; our shapes span the same, so that the default inertias agree.
+"""
+
+from __future__ import annotations
+
+from tools.assets.envelope import Envelope
+from tools.assets.fields import Field, ball, blend, block, drum, rod
+from tools.assets.parts import (
+    QUARTER_TURN,
+    ZERO,
+    Box,
+    Cylinder,
+    Inertial,
+    Joint,
+    Link,
+    Mesh,
+    Paint,
+    Robot,
+    Shape,
+    Vector3,
+    diagonal,
+)
+
+WHITE = Paint("panda_white", (0.93, 0.94, 0.95, 1.0), (0.4, 0.4, 0.4))
+DARK = Paint("panda_dark", (0.17, 0.18, 0.2, 1.0), (0.3, 0.3, 0.3))
+METAL = Paint("panda_metal", (0.62, 0.64, 0.67, 1.0), (0.6, 0.6, 0.6))
+ALONG_X: Vector3 = (0.0, QUARTER_TURN, 0.0)
+ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
+FINGER_CONTACT = {
+    "friction_anchor": None,
+    "stiffness": 30000.0,
+    "damping": 1000.0,
+    "spinning_friction": 0.1,
+    "lateral_friction": 1.0,
+}
+
+BOUNDS = {
+    "link0": Envelope((-0.15807900, -0.09861370, -0.00403249), (0.07556700, 0.09867040, 0.14400299)),
+    "link1": Envelope((-0.05898700, -0.13337299, -0.19600400), (0.05916120, 0.05919230, 0.05897310)),
+    "link2": Envelope((-0.05915340, -0.19801003, -0.05909660), (0.05898490, 0.05922002, 0.13348900)),
+    "link3": Envelope((-0.05864580, -0.05891720, -0.12501800), (0.14156099, 0.11520300, 0.05915642)),
+    "link4": Envelope((-0.14160699, -0.05914974, -0.05920660), (0.05913951, 0.12800896, 0.11505200)),
+    "link5": Envelope((-0.05901650, -0.05912790, -0.26855397), (0.05908340, 0.13390400, 0.05616832)),
+    "link6": Envelope((-0.05192200, -0.05520898, -0.04824200), (0.13630900, 0.08564806, 0.06039600)),
+    "link7": Envelope((-0.04803460, -0.04802960, 0.04799050), (0.08530609, 0.08518730, 0.11083698)),
+    "hand": Envelope((-0.03563590, -0.10799000, -0.02992481), (0.03561580, 0.10442600, 0.06996220)),
+    "leftfinger": Envelope((-0.01447950, -0.00413264, -0.00386834), (0.01449480, 0.03040340, 0.05784899)),
+    "rightfinger": Envelope((-0.01449480, -0.03040340, -0.00386834), (0.01447950, 0.00413264, 0.05784899)),
+}
+
+
+def _touching() -> dict[str, tuple[Shape, ...]]:
+    """Collision shapes: capsules along the tubes and housings, boxes for foot, flange and gripper."""
+    foot, one, two, three, four = (BOUNDS[f"link{number}"] for number in range(5))
+    five, six, seven = (BOUNDS[f"link{number}"] for number in range(5, 8))
+    hand, left, right = BOUNDS["hand"], BOUNDS["leftfinger"], BOUNDS["rightfinger"]
+    tube = one.width("x") / 2.0
+    bar = two.width("x") / 2.0
+    forearm = five.width("x") / 2.0
+    return {
+        "link0": (
+            foot.box(z=(None, 0.06)),
+            foot.box(x=(-0.07, 0.07), y=(-0.07, 0.07), z=(0.06, None)),
+        ),
+        "link1": (
+            one.capsule("z", tube, x="low", y="high"),
+            one.capsule("y", tube, x="low", z="high"),
+        ),
+        "link2": (
+            two.capsule("y", bar, x="low", z="low"),
+            two.capsule("z", bar, x="low", y="high"),
+        ),
+        "link3": (
+            three.capsule("z", 0.058, x="low", y="low", stop=0.05),
+            three.capsule("y", 0.058, x="high", z="high"),
+        ),
+        "link4": (
+            four.capsule("y", 0.058, x="low", z="low"),
+            four.capsule("z", 0.058, x="high", y="low"),
+        ),
+        "link5": (
+            five.capsule("z", forearm, x="low", y="low", stop=-0.06),
+            five.capsule("z", 0.04, x=0.0, y="high", start=-0.2),
+        ),
+        "link6": (
+            six.capsule("z", 0.05, x="low", y=0.0),
+            six.capsule("y", 0.046, x="high", z=0.006),
+        ),
+        "link7": (
+            seven.box(x=(None, 0.045), y=(None, 0.045)),
+            seven.box(x=(0.0, None), y=(0.0, None), z=(0.06, 0.1)),
+        ),
+        "hand": (hand.box(),),
+        "leftfinger": (
+            left.box(z=(None, 0.035)),
+            left.box(x=(-0.0105, 0.0105), y=(None, 0.0115), z=(0.03, None)),
+        ),
+        "rightfinger": (
+            right.box(z=(None, 0.035)),
+            right.box(x=(-0.0105, 0.0105), y=(-0.0115, None), z=(0.03, None)),
+        ),
+    }
+
+
+def fields() -> dict[str, tuple[Field, Vector3, Vector3]]:
+    """The cast housings: a field for each, in its link frame, and the corners of a box around it."""
+    return {
+        "link0": (
+            blend(
+                drum((0.0, 0.0, 0.002), (0.0, 0.0, 0.139), 0.088, 0.012, 0.058),
+                block((-0.085, 0.0, 0.045), (0.13, 0.15, 0.086), 0.02),
+                width=0.05,
+            ),
+            (-0.17, -0.11, -0.01),
+            (0.1, 0.11, 0.15),
+        ),
+        "link1": (_shoulder(1.0, "z"), (-0.08, -0.14, -0.2), (0.08, 0.06, 0.07)),
+        "link2": (_shoulder(-1.0, "y"), (-0.08, -0.21, -0.07), (0.08, 0.07, 0.14)),
+        "link3": (
+            blend(
+                drum((0.0, 0.0, -0.122), (0.0, 0.0, -0.075), 0.056, 0.008),
+                rod((0.0, 0.0, -0.075), (0.05, 0.035, -0.01), 0.052, 0.045),
+                drum((0.0825, 0.004, 0.0), (0.0825, 0.108, 0.0), 0.056, 0.02),
+                width=0.045,
+            ),
+            (-0.07, -0.07, -0.13),
+            (0.15, 0.12, 0.07),
+        ),
+        "link4": (
+            blend(
+                drum((-0.0825, 0.075, 0.0), (-0.0825, 0.125, 0.0), 0.056, 0.008),
+                rod((-0.0825, 0.075, 0.0), (-0.035, 0.01, 0.035), 0.052, 0.045),
+                drum((0.0, 0.0, 0.004), (0.0, 0.0, 0.108), 0.056, 0.02),
+                width=0.045,
+            ),
+            (-0.15, -0.07, -0.07),
+            (0.07, 0.13, 0.12),
+        ),
+        "link5": (
+            blend(
+                drum((0.0, 0.0, -0.256), (0.0, 0.0, -0.19), 0.057, 0.008, 0.06),
+                rod((0.0, 0.01, -0.19), (0.0, 0.07, -0.08), 0.052, 0.042),
+                rod((0.0, 0.075, -0.08), (0.0, 0.087, 0.0), 0.042, 0.038),
+                drum((0.0, 0.06, 0.0), (0.0, 0.125, 0.0), 0.05, 0.015),
+                width=0.04,
+            ),
+            (-0.07, -0.07, -0.27),
+            (0.07, 0.14, 0.07),
+        ),
+        "link6": (
+            blend(
+                drum((0.0, 0.0, -0.045), (0.0, 0.0, 0.056), 0.049, 0.018),
+                drum((0.088, -0.05, 0.0), (0.088, 0.078, 0.0), 0.047, 0.012, 0.045),
+                ball((0.045, 0.01, 0.004), 0.045),
+                width=0.03,
+            ),
+            (-0.07, -0.07, -0.07),
+            (0.15, 0.1, 0.07),
+        ),
+        "hand": (
+            blend(
+                block((0.0, 0.0, 0.028), (0.062, 0.205, 0.068), 0.022),
+                drum((0.0, 0.0, 0.0), (0.0, 0.0, 0.03), 0.034, 0.005),
+                width=0.02,
+            ),
+            (-0.05, -0.12, -0.02),
+            (0.05, 0.12, 0.08),
+        ),
+    }
+
+
+def _shoulder(side: float, up: str) -> Field:
+    """Half of the shoulder: a column that runs into a housing beside it on the joint axis."""
+
+    def place(column: float, housing: float) -> Vector3:
+        return (0.0, -housing, column) if up == "z" else (0.0, column, housing)
+
+    reach = 0.192 if up == "z" else 0.194
+    start = -reach
+    return blend(
+        drum(place(start, 0.0), place(start + 0.06, 0.0), 0.056, 0.008),
+        rod(place(start + 0.06, 0.0), place(-0.035, 0.045), 0.053, 0.046),
+        drum(place(0.0, 0.003), place(0.0, 0.128), 0.056, 0.024),
+        width=0.05,
+    )
+
+
+def _housing(name: str) -> Shape:
+    return Shape(Mesh(f"meshes/{name}.obj"), paint=WHITE)
+
+
+def _disc(radius: float, length: float, xyz: Vector3, rpy: Vector3 = ZERO, paint: Paint = DARK) -> Shape:
+    return Shape(Cylinder(radius, length), xyz, rpy, paint)
+
+
+def _seen() -> dict[str, tuple[Shape, ...]]:
+    """What the links look like: housings with dark caps and seams at the joints."""
+    return {
+        "link0": (
+            _housing("link0"),
+            _disc(0.0555, 0.012, (0.0, 0.0, 0.136)),
+            Shape(Box((0.012, 0.1, 0.05)), (-0.148, 0.0, 0.045), paint=DARK),
+        ),
+        "link1": (_housing("link1"), _disc(0.036, 0.01, (0.0, -0.1255, 0.0), ALONG_Y)),
+        "link2": (
+            _housing("link2"),
+            _disc(0.0535, 0.01, (0.0, 0.0, 0.0), paint=DARK),
+            _disc(0.036, 0.01, (0.0, 0.0, 0.1255), paint=DARK),
+            _disc(0.0535, 0.006, (0.0, -0.1945, 0.0), ALONG_Y),
+        ),
+        "link3": (
+            _housing("link3"),
+            _disc(0.058, 0.03, (0.0825, 0.072, 0.0), ALONG_Y),
+            _disc(0.036, 0.01, (0.0825, 0.106, 0.0), ALONG_Y, METAL),
+            _disc(0.0545, 0.008, (0.0825, 0.0, 0.0), ALONG_Y),
+        ),
+        "link4": (
+            _housing("link4"),
+            _disc(0.058, 0.03, (0.0, 0.0, 0.072)),
+            _disc(0.036, 0.01, (0.0, 0.0, 0.106), paint=METAL),
+        ),
+        "link5": (
+            _housing("link5"),
+            _disc(0.0555, 0.01, (0.0, 0.0, -0.258)),
+            _disc(0.0515, 0.022, (0.0, 0.1, 0.0), ALONG_Y),
+            _disc(0.03, 0.012, (0.0, 0.1225, 0.0), ALONG_Y, METAL),
+        ),
+        "link6": (
+            _housing("link6"),
+            _disc(0.035, 0.012, (0.0, 0.0, 0.053)),
+            _disc(0.037, 0.014, (0.088, 0.075, 0.0), ALONG_Y),
+            _disc(0.045, 0.006, (0.088, -0.0515, 0.0), ALONG_Y),
+        ),
+        "link7": (
+            _disc(0.046, 0.03, (0.0, 0.0, 0.07), paint=WHITE),
+            Shape(Box((0.07, 0.055, 0.026)), (0.042, 0.042, 0.071), (0.0, 0.0, QUARTER_TURN / 2.0), WHITE),
+            _disc(0.034, 0.022, (0.0, 0.0, 0.096), paint=METAL),
+        ),
+        "hand": (
+            _housing("hand"),
+            Shape(Box((0.064, 0.13, 0.018)), (0.0, 0.0, 0.03), paint=DARK),
+            Shape(Box((0.03, 0.178, 0.006)), (0.0, 0.0, 0.0615), paint=DARK),
+        ),
+        "leftfinger": _finger(1.0),
+        "rightfinger": _finger(-1.0),
+    }
+
+
+def _finger(side: float) -> tuple[Shape, ...]:
+    """A finger whose pad faces the plane y = 0; `side` is where it stands."""
+    return (
+        Shape(Box((0.02, 0.022, 0.016)), (0.0, side * 0.0165, 0.007), paint=METAL),
+        Shape(Box((0.018, 0.0095, 0.03)), (0.0, side * 0.0175, 0.026), (side * 0.22, 0.0, 0.0), METAL),
+        Shape(Box((0.019, 0.0125, 0.018)), (0.0, side * 0.0075, 0.0465), paint=DARK),
+    )
+
+
+def _arm_joint(
+    number: int,
+    xyz: Vector3,
+    roll: float,
+    limits: tuple[float, float],
+    soft: tuple[float, float],
+    drive: tuple[float, float],
+) -> Joint:
+    return Joint(
+        f"panda_joint{number}",
+        "revolute",
+        f"panda_link{number - 1}",
+        f"panda_link{number}",
+        xyz,
+        (roll, 0.0, 0.0),
+        (0.0, 0.0, 1.0),
+        {"lower": limits[0], "upper": limits[1], "effort": drive[0], "velocity": drive[1]},
+        soft_limits=(soft[0], soft[1], 100.0, 40.0),
+    )
+
+
+def _finger_joint(number: int, link: str, side: float, mimic: str | None) -> Joint:
+    limit = {"lower": 0.0, "upper": 0.04, "effort": 20.0, "velocity": 0.2}
+    return Joint(
+        f"panda_finger_joint{number}",
+        "prismatic",
+        "panda_hand",
+        link,
+        (0.0, 0.0, 0.0584),
+        axis=(0.0, side, 0.0),
+        limit=limit,
+        mimic=mimic,
+    )
+
+
+def panda() -> Robot:
+    """Seven turning joints, a flange, and a hand with two sliding fingers."""
+    masses: dict[str, tuple[float, Vector3]] = {
+        "link0": (2.9, (0.0, 0.0, 0.05)),
+        "link1": (2.7, (0.0, -0.04, -0.05)),
+        "link2": (2.73, (0.0, -0.04, 0.06)),
+        "link3": (2.04, (0.01, 0.01, -0.05)),
+        "link4": (2.08, (-0.03, 0.03, 0.02)),
+        "link5": (3.0, (0.0, 0.04, -0.12)),
+        "link6": (1.3, (0.04, 0.0, 0.0)),
+        "link7": (0.2, (0.0, 0.0, 0.08)),
+        "link8": (0.0, ZERO),
+        "hand": (0.81, (0.0, 0.0, 0.04)),
+        "leftfinger": (0.1, (0.0, 0.01, 0.02)),
+        "rightfinger": (0.1, (0.0, -0.01, 0.02)),
+        "grasptarget": (0.0, ZERO),
+    }
+    seen, touching = _seen(), _touching()
+    links = tuple(
+        Link(
+            f"panda_{name}",
+            Inertial(mass, centre, tensor=diagonal(0.1, 0.1, 0.1)),
+            seen.get(name, ()),
+            touching.get(name, ()),
+            FINGER_CONTACT if "finger" in name else {},
+        )
+        for name, (mass, centre) in masses.items()
+    )
+    wide, strong, quick = (-2.9671, 2.9671), (87.0, 2.175), (12.0, 2.61)
+    soft = (-2.8973, 2.8973)
+    joints = (
+        _arm_joint(1, (0.0, 0.0, 0.333), 0.0, wide, soft, strong),
+        _arm_joint(2, ZERO, -QUARTER_TURN, (-1.8326, 1.8326), (-1.7628, 1.7628), strong),
+        _arm_joint(3, (0.0, -0.316, 0.0), QUARTER_TURN, wide, soft, strong),
+        _arm_joint(4, (0.0825, 0.0, 0.0), QUARTER_TURN, (-3.1416, 0.0), (-3.0718, -0.0698), strong),
+        _arm_joint(5, (-0.0825, 0.384, 0.0), -QUARTER_TURN, wide, soft, quick),
+        _arm_joint(6, ZERO, QUARTER_TURN, (-0.0873, 3.8223), (-0.0175, 3.7525), quick),
+        _arm_joint(7, (0.088, 0.0, 0.0), QUARTER_TURN, wide, soft, quick),
+        Joint("panda_joint8", "fixed", "panda_link7", "panda_link8", (0.0, 0.0, 0.107), axis=ZERO),
+        Joint("panda_hand_joint", "fixed", "panda_link8", "panda_hand", rpy=(0.0, 0.0, -0.785398163397)),
+        _finger_joint(1, "panda_leftfinger", 1.0, None),
+        _finger_joint(2, "panda_rightfinger", -1.0, "panda_finger_joint1"),
+        Joint("panda_grasptarget_hand", "fixed", "panda_hand", "panda_grasptarget", (0.0, 0.0, 0.105)),
+    )
+    about = "Franka Emika Panda with hand: seven turning joints and two sliding fingers."
+    return Robot("panda", about, links, joints)
