@@ -35,7 +35,7 @@ MAY_IMPORT = {
     "carom.physics": {"carom.errors", "carom.model"},
     "carom.algorithms": {"carom.errors", "carom.model", "carom.physics"},
     "carom.control": {"carom.checks"},
-    **dict.fromkeys(WORLD, {*ENGINE, *HELPERS, *WORLD}),
+    **{part: {*ENGINE, *HELPERS, *WORLD} for part in WORLD},
     "carom": {*WORLD, "carom.control", "carom.version"},
     "carom.cli": {*ENGINE, *WORLD, "carom.version", "pybullet_data"},
     "carom.__main__": {"carom.cli"},
