@@ -11,8 +11,8 @@ import carom
 from carom import World
 from carom.description import JointType
 
-# The solver stops when no row changes its velocity by more than this (its squared default is 1e-7).
-SOLVED = 4e-4
+# The solver stops when no row changes its velocity by more than 3e-4 in a sweep; about this much is left.
+SOLVED = 1e-3
 
 ROBOT = """<robot name="robot">
   <link name="base">
@@ -320,7 +320,7 @@ def test_handles_stay_valid_while_other_bodies_come_and_go(world, load):
     assert joint.position == 0.7
     joint.set_velocity_target(0.3, max_force=1e4)
     world.step(3)
-    assert joint.velocity == pytest.approx(0.3, abs=2 * SOLVED)
+    assert joint.velocity == pytest.approx(0.3, abs=SOLVED)
     assert_allclose(others[0].joints.positions, 0.0, atol=1e-2)
 
 
