@@ -17,7 +17,13 @@ if TYPE_CHECKING:
     from carom.link import Links
     from carom.world import World
 
-_WHOLE_BODY = ("linear_damping", "angular_damping", "max_joint_velocity", "activation_state", "sleep_threshold")
+_WHOLE_BODY = (
+    "linear_damping",
+    "angular_damping",
+    "max_joint_velocity",
+    "activation_state",
+    "sleep_threshold",
+)
 
 
 class Body:

@@ -112,7 +112,11 @@ class JointConstraints:
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
         for constraint in self._constraints:
-            if constraint.body is body and constraint.joint == joint and constraint.kind == ConstraintKind.LIMIT:
+            if (
+                constraint.body is body
+                and constraint.joint == joint
+                and constraint.kind == ConstraintKind.LIMIT
+            ):
                 return constraint
         return None
 
@@ -149,7 +153,9 @@ class JointConstraints:
         for name in ("lower", "upper", "twist", "max_impulse"):
             model[f"constraint_{name}"][:count] = [getattr(constraint, name) for constraint in ordered]
         trees = arrays.used["tree"]
-        model["tree_constraint_count"][:trees] = np.bincount(model["constraint_tree"][:count], minlength=trees)
+        model["tree_constraint_count"][:trees] = np.bincount(
+            model["constraint_tree"][:count], minlength=trees
+        )
         result = []
         for i, (first, length) in enumerate(islands):
             model["island_first_constraint"][i] = first

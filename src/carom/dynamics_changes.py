@@ -55,7 +55,9 @@ def _set_mass(body: Body, link: int, mass: float) -> None:
     dynamics.mass = mass
     spec = body.link_spec(link)
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-    dynamics.inertia = inertia_from_shapes(mass, spec.collisions, spec.inertial_frame, implicit_cylinder=implicit)
+    dynamics.inertia = inertia_from_shapes(
+        mass, spec.collisions, spec.inertial_frame, implicit_cylinder=implicit
+    )
     _write(body, link)
     if link == BASE and (mass > 0.0) == body.fixed_base:
         body.world.set_base_freedom(body, free=mass > 0.0)

@@ -158,7 +158,9 @@ class World:
         from carom.model.flags import LoadFlags
 
         robot = read_urdf(Path(path), scale=scale, search=AssetSearch())
-        return self.load(assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base), position, orientation)
+        return self.load(
+            assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base), position, orientation
+        )
 
     def remove(self, body_id: int) -> None:
         """Take a body out of the world.

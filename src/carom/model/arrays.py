@@ -48,15 +48,21 @@ def fields_of(struct: Any) -> dict[str, Field]:
 class ArrayTable:
     """Arrays by name, grouped by axis, with an optional leading world axis."""
 
-    def __init__(self, struct: Any, world_count: int | None) -> None:
+    def __init__(
+        self, struct: Any, world_count: int | None, entry_views: Mapping[str, str] | None = None
+    ) -> None:
         """Make the arrays with the least capacity.
 
         Args:
             struct: Warp struct class whose fields are all arrays.
             world_count: Length of the leading world axis; None for arrays shared by all worlds.
+            entry_views: Fields that show the vectors of another field scalar by scalar.
         """
         self._struct = struct
-        self._fields = fields_of(struct)
+        self._entry_views = dict(entry_views or {})
+        self._fields = {
+            name: field for name, field in fields_of(struct).items() if name not in self._entry_views
+        }
         self._world_count = world_count
         self.capacity = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
         self.numpy: dict[str, np.ndarray] = {}
@@ -103,6 +109,11 @@ class ArrayTable:
         struct = self._struct()
         for name, field in self._fields.items():
             setattr(struct, name, wp.array(self.numpy[name], dtype=field.dtype, device=device, copy=False))
+        for name, source in self._entry_views.items():
+            array = self.numpy[source]
+            entries = array.reshape(*array.shape[:-2], -1)
+            dtype = fields_of(self._struct)[name].dtype
+            setattr(struct, name, wp.array(entries, dtype=dtype, device=device, copy=False))
         return struct
 
     def clear(self) -> None:

@@ -10,6 +10,7 @@ from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.flags import LoadFlags
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
+from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
 
 _log = logging.getLogger(__name__)
@@ -42,7 +43,7 @@ def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: boo
     for node in order:
         for child in node.children:
             _attach(links[index_of[id(child)]], child, index_of[id(node)])
-    return BodySpec(
+    body = BodySpec(
         robot.name,
         base,
         links,
@@ -51,6 +52,9 @@ def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: boo
         source=robot.source,
         user_data=dict(robot.user_data),
     )
+    if flags & LoadFlags.PRINT_URDF_INFO:
+        _log.info("%s", outline(body))
+    return body
 
 
 def _link_spec(link: Link, flags: LoadFlags, *, is_massless: bool = False) -> LinkSpec:

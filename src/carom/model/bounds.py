@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
 from carom.description.pose import Vector3
-from carom.description.transform import Matrix3
+from carom.description.transform import NO_ROTATION, Matrix3
 from carom.formats.mesh import read_field_bounds, read_mesh
 
 MARGIN = 0.001
@@ -68,6 +68,20 @@ class Bounds:
             for a, h, b, k in zip(self.center, self.half, other.center, other.half, strict=True)
         ]
         return Bounds.between((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def placed_bounds(
+    geometry: Geometry, rotation: Matrix3, position: Vector3, *, implicit_cylinder: bool
+) -> Bounds:
+    """Bounds of a shape after it is turned and moved; those of all but balls and planes are boxes turned.
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder)
+    if isinstance(geometry, Plane):
+        return bounds
+    return bounds.placed(NO_ROTATION if isinstance(geometry, Sphere) else rotation, position)
 
 
 def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:

@@ -27,7 +27,7 @@ from carom.model.codes import (
     POSITION_COUNT,
     JointCode,
 )
-from carom.model.structs import Model, Scratch, State
+from carom.model.structs import ENTRY_VIEWS, Model, Scratch, State
 
 # Bullet's default, a float32 in its source.
 DEFAULT_LINK_DAMPING = float(np.float32(0.04))
@@ -67,7 +67,7 @@ class WorldArrays:
         self.world_count = world_count
         self.model = ArrayTable(Model, None)
         self.state = ArrayTable(State, world_count)
-        self.scratch = ArrayTable(Scratch, world_count)
+        self.scratch = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.used = dict.fromkeys(
             ("tree", "link", "position", "dof", "block", "delta", "constraint", "island", "row"), 0
         )

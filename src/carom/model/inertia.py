@@ -22,6 +22,7 @@ from carom.description import (
 )
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
+    NO_ROTATION,
     Matrix3,
     matrix_product,
     matrix_vector,
@@ -29,7 +30,7 @@ from carom.description.transform import (
     rotation_matrix,
     transposed,
 )
-from carom.model.bounds import MARGIN, Bounds, shape_bounds
+from carom.model.bounds import MARGIN, Bounds, placed_bounds, shape_bounds
 
 _log = logging.getLogger(__name__)
 
@@ -37,8 +38,6 @@ _TWELFTH = 0.08333333
 """The twelfth PyBullet uses for capsules and hulls, so that figures agree to the last digit."""
 
 _EPSILON = 2.220446049250313e-16
-
-_UNIT: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def inertia_from_shapes(
@@ -62,10 +61,10 @@ def inertia_from_shapes(
         DescriptionError: The file of a mesh cannot be used.
     """
     placements = [_placement(inertial_frame, collision.frame) for collision in collisions]
-    if len(collisions) == 1 and placements[0] == (_UNIT, (0.0, 0.0, 0.0)):
+    if len(collisions) == 1 and placements[0] == (NO_ROTATION, (0.0, 0.0, 0.0)):
         return _shape_moments(mass, collisions[0].geometry, implicit_cylinder)
     boxes = [
-        shape_bounds(collision.geometry, implicit_cylinder=implicit_cylinder).placed(*placement)
+        placed_bounds(collision.geometry, *placement, implicit_cylinder=implicit_cylinder)
         for collision, placement in zip(collisions, placements, strict=True)
     ]
     nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -126,7 +125,7 @@ def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose
         Moments [kg m²] along the axes of the returned frame, and that frame in the link frame.
     """
     ixx, ixy, ixz, iyy, iyz, izz = inertial.tensor
-    axes = _UNIT
+    axes = NO_ROTATION
     moments = (ixx, iyy, izz)
     if ixy != 0.0 or ixz != 0.0 or iyz != 0.0:
         moments, axes = diagonalize(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)), 1e-6, 30)
@@ -134,7 +133,7 @@ def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose
     if min(moments) < 0.0 or x > y + z or y > x + z or z > x + y:
         _log.warning("link %r: no body has the inertia tensor %s; zero is used", link_name, inertial.tensor)
         return (0.0, 0.0, 0.0), inertial.frame
-    if axes is _UNIT:
+    if axes is NO_ROTATION:
         return moments, inertial.frame
     turned = matrix_product(rotation_matrix(inertial.frame.orientation), axes)
     return moments, Pose(inertial.frame.position, quaternion_from_matrix(turned))

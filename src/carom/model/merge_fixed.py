@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from carom.description import Inertial, Joint, JointType, Link, Pose
 from carom.description.pose import IDENTITY
-from carom.description.transform import compose, dot, matrix_product, rotation_matrix, transposed
+from carom.description.transform import compose, dot
 from carom.model.inertia import diagonalize
 from carom.model.tree import TreeNode
 
@@ -14,9 +14,10 @@ from carom.model.tree import TreeNode
 def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
     """Merges every link on a fixed joint into its parent, in place, and numbers the nodes anew.
 
-    Shapes move over; contact parameters of merged links are lost, as are the inertial frames that links
-    had in the file: masses are joined as if each centre of mass lay at the origin of its link. All this is
-    what PyBullet does. The order of children follows it too: the last child takes the place of a merged one.
+    All of it follows PyBullet, so that masses and link order agree. Shapes move over; contact parameters of
+    merged links are lost. Inertial frames of the file are lost too: masses are joined as if each centre of
+    mass lay at the origin of its link, and tensors are added as if all links were parallel. The last child
+    takes the place of a merged one.
 
     Args:
         root: The tree.
@@ -76,14 +77,12 @@ def _joined(own: Inertial, merged: Inertial, frame: Pose) -> Inertial:
     x, y, z = (sum(m * pose.position[k] for m, pose, _ in bodies) / mass for k in range(3))
     total = [[0.0] * 3 for _ in range(3)]
     for m, pose, (ixx, ixy, ixz, iyy, iyz, izz) in bodies:
-        turn = rotation_matrix(pose.orientation)
         tensor = ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
-        turned = matrix_product(matrix_product(turn, tensor), transposed(turn))
         offset = (pose.position[0] - x, pose.position[1] - y, pose.position[2] - z)
         for i in range(3):
             for j in range(3):
                 parallel = (dot(offset, offset) if i == j else 0.0) - offset[i] * offset[j]
-                total[i][j] += turned[i][j] + m * parallel
+                total[i][j] += tensor[i][j] + m * parallel
     rows = ((total[0][0], total[0][1], total[0][2]), (total[1][0], total[1][1], total[1][2]))
     (a, b, c), _ = diagonalize((*rows, (total[2][0], total[2][1], total[2][2])), 1e-5, 20)
     return Inertial(mass, Pose((x, y, z)), (a, 0.0, 0.0, b, 0.0, c))

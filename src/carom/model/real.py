@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     Reals = Any
     Vectors3 = Any
     Quaternions = Any
+    Index4 = Any
     IntRows = Any
+    Index4Rows = Any
     RealRows = Any
     Vector3Rows = Any
     Vector4Rows = Any
@@ -53,6 +55,7 @@ if PRECISION not in _PRECISIONS:
 if not TYPE_CHECKING:
     real, _ = _PRECISIONS[PRECISION]
     Int32 = wp.int32
+    Index4 = wp.types.vector(4, wp.int32)
     Vector3 = wp.types.vector(3, real)
     Vector4 = wp.types.vector(4, real)
     Vector6 = wp.types.vector(6, real)
@@ -69,6 +72,7 @@ if not TYPE_CHECKING:
 
     # The same with a leading world axis.
     IntRows = wp.array2d(dtype=Int32)
+    Index4Rows = wp.array2d(dtype=Index4)
     RealRows = wp.array2d(dtype=real)
     Vector3Rows = wp.array2d(dtype=Vector3)
     Vector4Rows = wp.array2d(dtype=Vector4)
@@ -106,6 +110,8 @@ def func(function: _F) -> _F:
         doc=function.__doc__ or "",
         code_transformers=[_RealLiterals()],
         scope_locals={},
+        # Warp passes structs by value; only inlined calls spare copying all their arrays.
+        inline_hint="forceinline",
     )
     return functools.update_wrapper(module.functions[key], function)  # type: ignore[return-value]
 

@@ -11,6 +11,7 @@ floating tree, all but the base's six of a fixed one; `tree_first_dof` is the fi
 import warp as wp
 
 from carom.model.real import (
+    Index4Rows,
     Int32,
     IntRows,
     Ints,
@@ -147,18 +148,26 @@ class Scratch:
     dof_force: RealRows
     dof_inverse_pivot: RealRows
 
-    # Matrices over the active dofs of a tree, rows padded to whole blocks of four columns.
+    # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
+    # columns, and the `entry_` arrays show the same memory column by column.
     block_factor: Vector4Rows
     block_inverse_factor: Vector4Rows
     block_inverse_mass: Vector4Rows
     delta_velocity: Vector4Rows
+    entry_factor: RealRows
+    entry_inverse_factor: RealRows
+    entry_inverse_mass: RealRows
+    entry_delta_velocity: RealRows
 
     row_constraint: IntRows
-    row_tree: IntRows
-    row_dof: IntRows  # dof within the tree's active ones
-    row_sign: RealRows
-    row_target: RealRows
-    row_inverse_diagonal: RealRows
-    row_lower: RealRows
-    row_upper: RealRows
-    row_impulse: RealRows
+    row_place: Index4Rows  # see the PLACE_ columns in `codes`
+    row_terms: Vector8Rows  # see the ROW_ columns in `codes`
+
+
+# Scratch arrays that show another array's blocks entry by entry.
+ENTRY_VIEWS = {
+    "entry_factor": "block_factor",
+    "entry_inverse_factor": "block_inverse_factor",
+    "entry_inverse_mass": "block_inverse_mass",
+    "entry_delta_velocity": "delta_velocity",
+}

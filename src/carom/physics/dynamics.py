@@ -19,14 +19,28 @@ def link_inertias(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     base = model.tree_first_link[tree]
     for link in range(base, base + model.tree_link_count[tree]):
         rotation = scratch.link_rotation[world, link]
-        moments = model.link_inertia[link]
-        about_com = rotation * wp.diag(moments) * wp.transpose(rotation)
+        about_com = turned_inertia(rotation, model.link_inertia[link])
         mass = model.link_mass[link]
         c = scratch.link_offset[world, link]
         scratch.link_com_inertia[world, link] = about_com
         scratch.link_composite_mass[world, link] = mass
         scratch.link_composite_first[world, link] = mass * c
         scratch.link_composite_inertia[world, link] = about_com + mass * parallel_axis(c)
+
+
+@func
+def turned_inertia(r: Matrix3, moments: Vector3) -> Matrix3:
+    """The inertia R diag(moments) Rᵀ."""
+    ax, ay, az = r[0, 0] * moments[0], r[0, 1] * moments[1], r[0, 2] * moments[2]
+    bx, by, bz = r[1, 0] * moments[0], r[1, 1] * moments[1], r[1, 2] * moments[2]
+    cx, cy, cz = r[2, 0] * moments[0], r[2, 1] * moments[1], r[2, 2] * moments[2]
+    xx = ax * r[0, 0] + ay * r[0, 1] + az * r[0, 2]
+    xy = ax * r[1, 0] + ay * r[1, 1] + az * r[1, 2]
+    xz = ax * r[2, 0] + ay * r[2, 1] + az * r[2, 2]
+    yy = bx * r[1, 0] + by * r[1, 1] + bz * r[1, 2]
+    yz = bx * r[2, 0] + by * r[2, 1] + bz * r[2, 2]
+    zz = cx * r[2, 0] + cy * r[2, 1] + cz * r[2, 2]
+    return Matrix3(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 
 
 @func
@@ -59,7 +73,13 @@ def external_torque(state: State, world: Int32, link: Int32) -> Vector3:
 
 @func
 def link_bias_forces(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, feedback: Int32
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    feedback: Int32,
 ):
     """Velocities of the links, and the force each needs to move on without joint acceleration.
 

@@ -6,10 +6,12 @@ second motion which only the constraint forces drive.
 
 import warp as wp
 
+from carom.model.codes import ROW_IMPULSE
 from carom.model.real import Int32, Vector3, Vector6, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, parallel_axis
 from carom.physics.mass_matrix import solve
+from carom.physics.rows import row_dof
 
 
 @func
@@ -27,12 +29,12 @@ def gather_constraint_forces(
 ):
     """Turn the impulses of rows [first, last) into forces on the joint's link and on its parent."""
     for row in range(first, last):
-        tree = scratch.row_tree[world, row]
-        if model.tree_sensor_count[tree] > 0:
-            link = model.constraint_link[scratch.row_constraint[world, row]]
+        constraint = scratch.row_constraint[world, row]
+        if model.tree_sensor_count[model.constraint_tree[constraint]] > 0:
+            link = model.constraint_link[constraint]
             parent = model.link_parent[link]
-            dof = model.tree_first_dof[tree] + scratch.row_dof[world, row]
-            size = scratch.row_sign[world, row] * scratch.row_impulse[world, row] / settings.time_step
+            dof = row_dof(model, scratch, world, row)
+            size = scratch.row_terms[world, row][ROW_IMPULSE] / settings.time_step
             angular = scratch.dof_angular[world, dof]
             if wp.dot(angular, angular) > 0.0:
                 scratch.link_constraint_torque[world, link] += angular * size

@@ -51,7 +51,9 @@ def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, d
             state.position[world, q] += dt * state.dof_velocity[world, dof]
         elif joint_type == SPHERICAL:
             rate = Vector3(
-                state.dof_velocity[world, dof], state.dof_velocity[world, dof + 1], state.dof_velocity[world, dof + 2]
+                state.dof_velocity[world, dof],
+                state.dof_velocity[world, dof + 1],
+                state.dof_velocity[world, dof + 2],
             )
             current = load_quaternion(state, world, q)
             store_quaternion(state, world, q, rotation_step(wp.quat_rotate(current, rate), dt) * current)

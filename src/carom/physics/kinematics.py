@@ -34,7 +34,9 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
         joint_type = model.link_joint_type[link]
         q = model.link_first_position[link]
         if joint_type == REVOLUTE:
-            child_orientation = child_orientation * axis_rotation(model.link_axis[link], state.position[world, q])
+            child_orientation = child_orientation * axis_rotation(
+                model.link_axis[link], state.position[world, q]
+            )
         elif joint_type == PRISMATIC:
             slide = model.link_axis[link] * state.position[world, q]
         elif joint_type == SPHERICAL:
@@ -51,9 +53,11 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
                 model.link_planar_axis1[link] * state.position[world, q + 1]
                 + model.link_planar_axis2[link] * state.position[world, q + 2],
             )
-            child_orientation = child_orientation * axis_rotation(model.link_axis[link], state.position[world, q])
+            child_orientation = child_orientation * axis_rotation(
+                model.link_axis[link], state.position[world, q]
+            )
 
-        child_orientation = canonical(wp.normalize(child_orientation))
+        child_orientation = canonical(child_orientation)
         offset = wp.quat_rotate(child_orientation, model.link_com_from_pivot[link] + slide)
         poses[world, link] = Transform(pivot + offset, child_orientation)
 
@@ -115,14 +119,18 @@ def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world
 def base_omega(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Angular velocity of a tree's base [rad/s]."""
     v = model.tree_first_velocity[tree]
-    return Vector3(state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2])
+    return Vector3(
+        state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
+    )
 
 
 @func
 def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Velocity of the centre of mass of a tree's base [m/s]."""
     v = model.tree_first_velocity[tree] + 3
-    return Vector3(state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2])
+    return Vector3(
+        state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
+    )
 
 
 @func

@@ -8,12 +8,20 @@ from carom.model.real import Int32, Quaternion, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.motors import euler_xyz, joint_quaternion
 from carom.physics.rotation import rotation_matrix
-from carom.physics.rows import add_row, joint_axis_inverse_diagonal, unit_inverse_diagonal
+from carom.physics.rows import add_row, axis_effective_masses, dof_effective_mass
 
 _EPSILON = real(2.220446049250313e-16)
 _PI = real(math.pi)
 # Share of a spherical joint's excess that one step takes back, before the error reduction.
 _SPHERICAL_GAIN = real(0.2)
+
+
+@func
+def limit_change(settings: Settings, violation: real) -> real:
+    """Speed at which a joint returns into its range from `violation` outside."""
+    if settings.split_impulse == 0 or -violation > settings.split_threshold:
+        return violation * settings.joint_erp / settings.time_step
+    return real(0.0)
 
 
 @func
@@ -36,30 +44,16 @@ def limit_rows(
     tree = model.constraint_tree[constraint]
     position = state.position[world, model.link_first_position[link]]
     velocity = state.dof_velocity[world, dof]
-    for side in range(2):
-        sign = real(1.0)
-        gap = position - model.constraint_lower[constraint]
-        if side == 1:
-            sign = real(-1.0)
-            gap = model.constraint_upper[constraint] - position
-        if gap <= 0.0:
-            change = -sign * velocity
-            if settings.split_impulse == 0 or gap > settings.split_threshold:
-                change -= gap * settings.joint_erp / settings.time_step
-            inverse_diagonal = unit_inverse_diagonal(model, scratch, world, tree, dof)
-            row = add_row(
-                model,
-                scratch,
-                world,
-                constraint,
-                row,
-                dof,
-                sign,
-                change,
-                inverse_diagonal,
-                0.0,
-                model.constraint_max_impulse[constraint],
-            )
+    bound = model.constraint_max_impulse[constraint]
+    effective_mass = dof_effective_mass(model, scratch, world, tree, dof)
+    below = model.constraint_lower[constraint] - position
+    if below >= 0.0:
+        change = limit_change(settings, below) - velocity
+        row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, 0.0, bound)
+    above = position - model.constraint_upper[constraint]
+    if above >= 0.0:
+        change = -limit_change(settings, above) - velocity
+        row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, 0.0)
     return row
 
 
@@ -102,10 +96,12 @@ def spherical_limit_rows(
     first = model.link_first_dof[link]
     angles = swing_and_twist(joint_quaternion(model, state, world, link))
     ranges = Vector3(
-        model.constraint_lower[constraint], model.constraint_upper[constraint], model.constraint_twist[constraint]
+        model.constraint_lower[constraint],
+        model.constraint_upper[constraint],
+        model.constraint_twist[constraint],
     )
     bound = model.constraint_max_impulse[constraint]
-    inverse_diagonal = joint_axis_inverse_diagonal(model, scratch, world, model.constraint_tree[constraint], link)
+    effective_mass = axis_effective_masses(model, scratch, world, model.constraint_tree[constraint], link)
     for axis in range(3):
         excess = real(0.0)
         if angles[axis] >= ranges[axis]:
@@ -128,9 +124,8 @@ def spherical_limit_rows(
                 constraint,
                 row,
                 first + axis,
-                1.0,
                 change,
-                inverse_diagonal[axis],
+                effective_mass[axis],
                 lower,
                 upper,
             )

@@ -17,12 +17,6 @@ LEAST_PIVOT = real(2.220446049250313e-16)
 
 
 @func
-def entry_block(row_start: Int32, column: Int32) -> Int32:
-    """Block that holds `column` of the row that starts at block `row_start`."""
-    return row_start + column // 4
-
-
-@func
 def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Fill `block_factor` with the joint-space inertia matrix (its lower triangle).
 
@@ -53,8 +47,7 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
                 scratch.block_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
             other = dof
             while other >= 0:
-                column = other - first
-                scratch.block_factor[world, row + column // 4][column % 4] = wp.dot(
+                scratch.entry_factor[world, 4 * row + other - first] = wp.dot(
                     scratch.dof_angular[world, other], spin
                 ) + wp.dot(scratch.dof_linear[world, other], push)
                 other = model.dof_parent[other]
@@ -76,18 +69,20 @@ def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     for step in range(count):
         k = count - 1 - step
         row = matrix + k * blocks
-        pivot = scratch.block_factor[world, row + k // 4][k % 4]
+        pivot = scratch.entry_factor[world, 4 * row + k]
         inverse = real(0.0)
         if pivot >= LEAST_PIVOT:
             inverse = 1.0 / pivot
         scratch.dof_inverse_pivot[world, first + k] = inverse
         for i in range(k):
-            entry = scratch.block_factor[world, row + i // 4][i % 4]
+            entry = scratch.entry_factor[world, 4 * row + i]
             if entry != 0.0:
                 ratio = entry * inverse
                 target = matrix + i * blocks
                 for block in range(i // 4 + 1):
-                    scratch.block_factor[world, target + block] -= ratio * scratch.block_factor[world, row + block]
+                    scratch.block_factor[world, target + block] -= (
+                        ratio * scratch.block_factor[world, row + block]
+                    )
         # The row of L; done last because every entry above needs the unscaled row.
         for block in range(k // 4 + 1):
             scratch.block_factor[world, row + block] = inverse * scratch.block_factor[world, row + block]
@@ -105,12 +100,12 @@ def solve(model: Model, scratch: Scratch, world: Int32, tree: Int32):
         force = scratch.dof_force[world, first + k]
         row = matrix + k * blocks
         for i in range(k):
-            scratch.dof_force[world, first + i] -= scratch.block_factor[world, row + i // 4][i % 4] * force
+            scratch.dof_force[world, first + i] -= scratch.entry_factor[world, 4 * row + i] * force
     for k in range(count):
         acceleration = scratch.dof_force[world, first + k] * scratch.dof_inverse_pivot[world, first + k]
         row = matrix + k * blocks
         for i in range(k):
-            acceleration -= scratch.block_factor[world, row + i // 4][i % 4] * scratch.dof_force[world, first + i]
+            acceleration -= scratch.entry_factor[world, 4 * row + i] * scratch.dof_force[world, first + i]
         scratch.dof_force[world, first + k] = acceleration
 
 
@@ -128,9 +123,9 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
         row = matrix + k * blocks
         for block in range(row, row + blocks):
             scratch.block_inverse_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
-        scratch.block_inverse_factor[world, row + k // 4][k % 4] = 1.0
+        scratch.entry_inverse_factor[world, 4 * row + k] = 1.0
         for i in range(k + 1, count):
-            entry = scratch.block_factor[world, matrix + i * blocks + k // 4][k % 4]
+            entry = scratch.entry_factor[world, 4 * (matrix + i * blocks) + k]
             if entry != 0.0:
                 source = matrix + i * blocks
                 for block in range(i // 4, blocks):
@@ -145,7 +140,7 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
             scratch.block_inverse_mass[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
         for k in range(i + 1):
             source = matrix + k * blocks
-            entry = scratch.block_inverse_factor[world, source + i // 4][i % 4]
+            entry = scratch.entry_inverse_factor[world, 4 * source + i]
             if entry != 0.0:
                 weight = entry * scratch.dof_inverse_pivot[world, first + k]
                 for block in range(k // 4, blocks):

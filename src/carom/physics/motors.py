@@ -24,7 +24,7 @@ from carom.model.codes import (
 from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.rotation import rotation_matrix
-from carom.physics.rows import add_row, joint_axis_inverse_diagonal, unit_inverse_diagonal
+from carom.physics.rows import add_row, axis_effective_masses, dof_effective_mass
 
 
 @func
@@ -76,9 +76,9 @@ def motor_row(
         + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - velocity)
     )
     wanted = wp.clamp(wanted, -motor[MOTOR_VELOCITY_CLAMP], motor[MOTOR_VELOCITY_CLAMP])
-    inverse_diagonal = unit_inverse_diagonal(model, scratch, world, model.constraint_tree[constraint], dof)
+    effective_mass = dof_effective_mass(model, scratch, world, model.constraint_tree[constraint], dof)
     return add_row(
-        model, scratch, world, constraint, row, dof, 1.0, wanted - velocity, inverse_diagonal, -bound, bound
+        model, scratch, world, constraint, row, dof, wanted - velocity, effective_mass, -bound, bound
     )
 
 
@@ -127,7 +127,7 @@ def spherical_motor_rows(
     target = Quaternion(x[MOTOR_POSITION], y[MOTOR_POSITION], z[MOTOR_POSITION], x[MOTOR_TARGET_W])
     current = joint_quaternion(model, state, world, link)
     error = euler_xyz(rotation_matrix(wp.quat_inverse(target) * current))
-    inverse_diagonal = joint_axis_inverse_diagonal(model, scratch, world, model.constraint_tree[constraint], link)
+    effective_mass = axis_effective_masses(model, scratch, world, model.constraint_tree[constraint], link)
     for axis in range(3):
         motor = state.dof_motor[world, first + axis]
         bound = motor[MOTOR_MAX_IMPULSE]
@@ -140,9 +140,8 @@ def spherical_motor_rows(
             constraint,
             row,
             first + axis,
-            1.0,
             change,
-            inverse_diagonal[axis],
+            effective_mass[axis],
             -bound,
             bound,
         )

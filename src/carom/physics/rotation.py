@@ -21,9 +21,8 @@ def axis_rotation(axis: Vector3, angle: real) -> Quaternion:
 
 @func
 def rotation_matrix(q: Quaternion) -> Matrix3:
-    """The rotation matrix of `q`, which need not be of unit length."""
-    s = 2.0 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    xs, ys, zs = q[0] * s, q[1] * s, q[2] * s
+    """The rotation matrix of the unit quaternion `q`."""
+    xs, ys, zs = q[0] + q[0], q[1] + q[1], q[2] + q[2]
     wx, wy, wz = q[3] * xs, q[3] * ys, q[3] * zs
     xx, xy, xz = q[0] * xs, q[0] * ys, q[0] * zs
     yy, yz, zz = q[1] * ys, q[1] * zs, q[2] * zs

@@ -6,12 +6,27 @@ no row changed its velocity by more than the residual threshold, or after the gi
 
 import warp as wp
 
-from carom.model.codes import LIMIT, MOTOR, SPHERICAL_MOTOR
+from carom.model.codes import (
+    LIMIT,
+    MOTOR,
+    PLACE_BLOCKS,
+    PLACE_DELTA,
+    PLACE_ENTRY,
+    PLACE_RESPONSE,
+    ROW_EFFECTIVE_MASS,
+    ROW_IMPULSE,
+    ROW_INVERSE_MASS,
+    ROW_LOWER,
+    ROW_SHARE,
+    ROW_UPPER,
+    SPHERICAL_MOTOR,
+)
 from carom.model.real import Int32, Vector4, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.feedback import gather_constraint_forces
 from carom.physics.limits import limit_rows, spherical_limit_rows
 from carom.physics.motors import motor_row, spherical_motor_rows
+from carom.physics.rows import row_dof
 
 
 @func
@@ -35,30 +50,29 @@ def island_rows(
 
 
 @func
-def relax_row(model: Model, scratch: Scratch, world: Int32, row: Int32) -> real:
+def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
     """Bring one row to its target as far as its bounds allow; returns the change of its velocity."""
-    inverse_diagonal = scratch.row_inverse_diagonal[world, row]
-    if inverse_diagonal == 0.0:
-        return 0.0
-    tree = scratch.row_tree[world, row]
-    dof = scratch.row_dof[world, row]
-    sign = scratch.row_sign[world, row]
-    blocks = (model.tree_dof_count[tree] + 3) // 4
-    delta = model.tree_first_delta[tree]
-
-    missing = scratch.row_target[world, row] - sign * scratch.delta_velocity[world, delta + dof // 4][dof % 4]
-    before = scratch.row_impulse[world, row]
-    after = wp.clamp(
-        before + missing * inverse_diagonal, scratch.row_lower[world, row], scratch.row_upper[world, row]
-    )
+    terms = scratch.row_terms[world, row]
+    place = scratch.row_place[world, row]
+    before = terms[ROW_IMPULSE]
+    # The order of operations keeps the chain from one row to the next short.
+    already = scratch.entry_delta_velocity[world, place[PLACE_ENTRY]] * terms[ROW_EFFECTIVE_MASS]
+    after = (before + terms[ROW_SHARE]) - already
+    if after < terms[ROW_LOWER]:
+        after = terms[ROW_LOWER]
+    if after > terms[ROW_UPPER]:
+        after = terms[ROW_UPPER]
     change = after - before
-    scratch.row_impulse[world, row] = after
+    scratch.row_terms[world, row][ROW_IMPULSE] = after
 
-    response = model.tree_first_block[tree] + dof * blocks
-    push = sign * change
-    for block in range(blocks):
-        scratch.delta_velocity[world, delta + block] += push * scratch.block_inverse_mass[world, response + block]
-    return change / inverse_diagonal
+    delta = place[PLACE_DELTA]
+    response = place[PLACE_RESPONSE]
+    end = delta + place[PLACE_BLOCKS]
+    while delta < end:
+        scratch.delta_velocity[world, delta] += change * scratch.block_inverse_mass[world, response]
+        delta += 1
+        response += 1
+    return change * terms[ROW_INVERSE_MASS]
 
 
 @func
@@ -80,8 +94,9 @@ def solve_island(
                 row = first + i
                 if sweep % 2 == 0:
                     row = last - 1 - i
-                change = relax_row(model, scratch, world, row)
-                residual = wp.max(residual, change * change)
+                change = relax_row(scratch, world, row)
+                if change * change > residual:
+                    residual = change * change
         sweep += 1
         if residual <= settings.residual_threshold or sweep >= settings.iterations:
             searching = 0
@@ -98,8 +113,9 @@ def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int3
     """Report the impulse of a motor's row to the user."""
     kind = model.constraint_kind[scratch.row_constraint[world, row]]
     if kind == MOTOR or kind == SPHERICAL_MOTOR:
-        dof = model.tree_first_dof[scratch.row_tree[world, row]] + scratch.row_dof[world, row]
-        state.dof_motor_impulse[world, dof] = scratch.row_impulse[world, row]
+        state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row_terms[world, row][
+            ROW_IMPULSE
+        ]
 
 
 @func
@@ -117,5 +133,5 @@ def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: 
     first = model.tree_first_dof[tree]
     delta = model.tree_first_delta[tree]
     for i in range(model.tree_dof_count[tree]):
-        velocity = state.dof_velocity[world, first + i] + scratch.delta_velocity[world, delta + i // 4][i % 4]
+        velocity = state.dof_velocity[world, first + i] + scratch.entry_delta_velocity[world, 4 * delta + i]
         state.dof_velocity[world, first + i] = wp.clamp(velocity, -bound, bound)

@@ -1,0 +1,25 @@
+"""A body's tree as text, for URDF_PRINT_URDF_INFO and for people."""
+
+from __future__ import annotations
+
+from carom.model.body_spec import BASE, BodySpec
+
+
+def outline(body: BodySpec) -> str:
+    """One line a link, indented by its depth: name, mass, joint and kind of joint."""
+    depth = {BASE: 0}
+    children: dict[int, list[int]] = {}
+    for index, link in enumerate(body.links):
+        depth[index] = depth[link.parent] + 1
+        children.setdefault(link.parent, []).append(index)
+    lines = [f"{body.base.name} (mass {body.base.mass:g})"]
+    pending = children.get(BASE, [])[::-1]
+    while pending:
+        index = pending.pop()
+        link = body.links[index]
+        lines.append(
+            f"{'  ' * depth[index]}{link.name}"
+            f" (mass {link.mass:g}, {link.joint_type.value} joint {link.joint_name})"
+        )
+        pending.extend(children.get(index, [])[::-1])
+    return "\n".join(lines)
