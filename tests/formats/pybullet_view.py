@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from carom.description import JointType
+from carom.description import JointType, Pose
+from carom.description.pose import Quaternion
 from carom.description.transform import (
     compose,
     conjugate,
@@ -38,8 +39,6 @@ def joint_infos(body: BodySpec) -> list[list[Any]]:
         moves = code != 4
         parent = body.base if link.parent == BASE else body.links[link.parent]
         pivot = compose(inverse(parent.inertial_frame), link.joint_frame)
-        back = quaternion_from_matrix(transposed(rotation_matrix(pivot.orientation)))
-        own_turn = conjugate(link.inertial_frame.orientation)
         rows.append(
             [
                 index,
@@ -57,13 +56,18 @@ def joint_infos(body: BodySpec) -> list[list[Any]]:
                 link.name,
                 _reported_axis(link, code),
                 list(pivot.position),
-                list(multiplied(own_turn, back)),
+                list(multiplied(_turned_back(link.inertial_frame), _turned_back(pivot))),
                 link.parent,
             ]
         )
         q += _POSITIONS[code]
         u += _VELOCITIES[code]
     return rows
+
+
+def _turned_back(pose: Pose) -> Quaternion:
+    """Inverse of the orientation, with the sign PyBullet's way through a matrix gives it."""
+    return quaternion_from_matrix(transposed(rotation_matrix(pose.orientation)))
 
 
 def _reported_axis(link: LinkSpec, code: int) -> list[float]:

@@ -9,6 +9,8 @@ from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 """Row-major rotation matrix."""
 
+NO_ROTATION: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
 
 def rotation_matrix(quaternion: Quaternion) -> Matrix3:
     """Rotation matrix of a quaternion (x, y, z, w), which need not be of unit length."""

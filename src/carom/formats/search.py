@@ -44,8 +44,8 @@ class AssetSearch:
         """The file that a robot file refers to.
 
         `file://`, `package://` and `model://` are taken off. Then the working directory, the directory
-        of the robot file and each directory above it, and the two directories above the working
-        directory are tried; last, the additional directory.
+        of the robot file, each directory above that, and the two directories above the working
+        directory are tried. The additional directory is not: it serves scripts only.
 
         Args:
             name: The reference, as the robot file states it.
@@ -70,8 +70,6 @@ class AssetSearch:
         for prefix in ("../", "../../"):
             if _is_file(prefix + relative):
                 return Path(prefix + relative)
-        if self.additional is not None and _is_file(os.path.join(self.additional, relative)):
-            return Path(os.path.join(self.additional, relative))
         return None
 
 

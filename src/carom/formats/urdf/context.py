@@ -155,7 +155,7 @@ class UrdfContext:
         pairs: dict[str, str] = {}
         for bullet in owner.all("bullet"):
             for entry in bullet.all("user-data"):
-                pairs[self.required(entry, "key")] = entry.text.lstrip()
+                pairs[self.required(entry, "key")] = "" if entry.text.isspace() else entry.text
         return pairs
 
 

@@ -1,0 +1,71 @@
+"""Asks real PyBullet what it makes of the test robots, and writes its answers to `oracle.json`.
+
+Run it with a Python that has PyBullet, not Carom:
+
+    .oracle/bin/python tests/formats/record_oracle.py
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from load_cases import CASES, DATA, REFUSED, LoadCase
+
+ANSWERS = Path(__file__).with_name("oracle.json")
+
+
+def plain(value: Any) -> Any:
+    """Tuples as lists and bytes as text, as JSON has them."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8")
+    if isinstance(value, tuple):
+        return [plain(item) for item in value]
+    return value
+
+
+def ask(pybullet: Any, case: LoadCase) -> dict[str, Any]:
+    body = pybullet.loadURDF(
+        str(DATA / case.file), flags=case.flags, globalScaling=case.scale, useFixedBase=case.fixed_base
+    )
+    count = pybullet.getNumJoints(body)
+    answer = {
+        "names": plain(pybullet.getBodyInfo(body)),
+        "joints": [plain(pybullet.getJointInfo(body, index)) for index in range(count)],
+        # The last two fields of getDynamicsInfo, body type and margin, do not come from the file.
+        "dynamics": [plain(pybullet.getDynamicsInfo(body, index)[:10]) for index in range(-1, count)],
+    }
+    pybullet.resetSimulation()
+    return answer
+
+
+def is_refused(pybullet: Any, text: str, scratch: Path) -> bool:
+    scratch.write_text(text, encoding="utf-8")
+    try:
+        pybullet.loadURDF(str(scratch))
+    except pybullet.error:
+        return True
+    finally:
+        scratch.unlink()
+    return False
+
+
+def main() -> None:
+    pybullet: Any = importlib.import_module("pybullet")
+    pybullet.connect(pybullet.DIRECT)
+    answers = {
+        "pybullet": version("pybullet"),
+        "cases": {case.name: ask(pybullet, case) for case in CASES},
+        "refused": {
+            name: is_refused(pybullet, text, DATA / "refused_by_pybullet.urdf")
+            for name, text in REFUSED.items()
+        },
+    }
+    ANSWERS.write_text(json.dumps(answers, indent=None, separators=(",", ":")) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,75 @@
+"""Carom's reading of the test robots against the recorded answers of PyBullet."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from load_cases import CASES, DATA, REFUSED, LoadCase
+from pybullet_view import dynamics_infos, joint_infos
+
+from carom.errors import DescriptionError
+from carom.formats import read_urdf
+from carom.model.assemble import assemble
+from carom.model.body_spec import BodySpec
+from carom.model.flags import LoadFlags
+
+ANSWERS = json.loads(Path(__file__).with_name("oracle.json").read_text(encoding="utf-8"))
+
+ABSOLUTE = 1e-12
+"""Below this, a figure is rounding. Inertias start at 1e-7."""
+
+
+def load(case: LoadCase) -> BodySpec:
+    robot = read_urdf(DATA / case.file, scale=case.scale)
+    return assemble(robot, flags=LoadFlags(case.flags), fixed_base=case.fixed_base)
+
+
+def differences(ours: Any, theirs: Any, where: str = "") -> list[str]:
+    """Every place where two nested lists of numbers and names differ by more than 1e-9."""
+    if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
+        return [
+            line
+            for i, (a, b) in enumerate(zip(ours, theirs, strict=True))
+            for line in differences(a, b, f"{where}[{i}]")
+        ]
+    if isinstance(ours, (int, float)) and isinstance(theirs, (int, float)):
+        is_same = math.isclose(ours, theirs, rel_tol=1e-9, abs_tol=ABSOLUTE)
+    else:
+        is_same = ours == theirs
+    return [] if is_same else [f"{where}: {ours!r}, PyBullet has {theirs!r}"]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_joints_are_reported_as_by_pybullet(case: LoadCase) -> None:
+    body = load(case)
+    answer = ANSWERS["cases"][case.name]
+    assert [body.base.name, body.name] == answer["names"]
+    assert differences(joint_infos(body), answer["joints"]) == []
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_dynamics_are_reported_as_by_pybullet(case: LoadCase) -> None:
+    body = load(case)
+    assert differences(dynamics_infos(body), ANSWERS["cases"][case.name]["dynamics"]) == []
+
+
+def test_every_case_is_recorded() -> None:
+    assert set(ANSWERS["cases"]) == {case.name for case in CASES}
+    assert set(ANSWERS["refused"]) == set(REFUSED)
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_pybullet_refuses_is_refused(name: str, tmp_path: Path) -> None:
+    assert ANSWERS["refused"][name]
+    file = tmp_path / "broken.urdf"
+    file.write_text(REFUSED[name], encoding="utf-8")
+    with pytest.raises(DescriptionError) as raised:
+        read_urdf(file)
+    assert raised.value.file == file
+    assert str(file) in str(raised.value)
+    assert raised.value.reason
+    assert raised.value.line is not None or name in ("empty", "no robot")

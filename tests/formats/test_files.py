@@ -1,0 +1,83 @@
+"""Bounded reading and the cache that notices every change."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from carom.errors import DescriptionError
+from carom.formats.files import FileCache, FileStamp, read_bounded
+
+LONG_AGO = 1_000_000_000
+
+
+def write(file: Path, text: str, when: int | None = LONG_AGO) -> FileStamp:
+    file.write_text(text)
+    if when is not None:
+        os.utime(file, (when, when))
+    return FileStamp.of(file)
+
+
+def test_unchanged_files_are_served(tmp_path: Path) -> None:
+    cache: FileCache[str, str] = FileCache(2)
+    file = tmp_path / "f"
+    cache.put("key", write(file, "one"), "value")
+    assert cache.get("key", file) == "value"
+    assert cache.get("other", file) is None
+
+
+def test_a_new_size_time_or_inode_is_noticed(tmp_path: Path) -> None:
+    cache: FileCache[str, str] = FileCache(2)
+    file = tmp_path / "f"
+    for text, when in (("longer", LONG_AGO), ("two", LONG_AGO + 1)):
+        cache.put("key", write(file, "one"), "value")
+        write(file, text, when)
+        assert cache.get("key", file) is None
+    cache.put("key", write(file, "one"), "value")
+    write(tmp_path / "g", "two")
+    os.replace(tmp_path / "g", file)
+    assert cache.get("key", file) is None
+
+
+def test_a_file_that_may_still_change_within_its_time_stamp_is_not_served(tmp_path: Path) -> None:
+    cache: FileCache[str, str] = FileCache(2)
+    file = tmp_path / "f"
+    cache.put("key", write(file, "one", when=None), "value")
+    assert cache.get("key", file) is None
+
+
+def test_a_file_that_is_gone_is_noticed(tmp_path: Path) -> None:
+    cache: FileCache[str, str] = FileCache(2)
+    file = tmp_path / "f"
+    cache.put("key", write(file, "one"), "value")
+    file.unlink()
+    assert cache.get("key", file) is None
+
+
+def test_the_least_recently_used_goes_first(tmp_path: Path) -> None:
+    cache: FileCache[int, str] = FileCache(2)
+    file = tmp_path / "f"
+    stamp = write(file, "one")
+    for key in (1, 2):
+        cache.put(key, stamp, str(key))
+    cache.get(1, file)
+    cache.put(3, stamp, "3")
+    assert [cache.get(key, file) for key in (1, 2, 3)] == ["1", None, "3"]
+
+
+def test_large_and_unreadable_files_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "f"
+    write(file, "0123456789")
+    assert read_bounded(file, 10)[0] == b"0123456789"
+    with pytest.raises(DescriptionError, match="10 bytes are more than the 9"):
+        read_bounded(file, 9)
+    with pytest.raises(DescriptionError, match="cannot be read"):
+        read_bounded(tmp_path, 10**9)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs a file without end")
+def test_a_file_without_end_is_refused() -> None:
+    with pytest.raises(DescriptionError, match="more than the 1000"):
+        read_bounded(Path("/dev/zero"), 1000)
