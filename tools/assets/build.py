@@ -1,4 +1,4 @@
-"""Write every file of src/pybullet_data: `python -m tools.assets.build [NAME ...]` from the repository root."""
+"""Write every file of src/pybullet_data: `python -m tools.assets.build [NAME ...]` from the root."""
 
 from __future__ import annotations
 
@@ -8,46 +8,136 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-
-from tools.assets import panda
+from tools.assets import arms, cubes, floors, kuka, panda, r2d2, simple_meshes, spheres, textures, things
 from tools.assets.fields import Field
+from tools.assets.obj_mesh import ObjMesh, material_text
 from tools.assets.parts import Robot, Vector3
+from tools.assets.png import png_bytes
 from tools.assets.surface import mesh_of
 from tools.assets.urdf_text import urdf_text
 
 TARGET = Path(__file__).resolve().parents[2] / "src" / "pybullet_data"
-CELL = 0.017
 
 ROBOTS: Mapping[str, Callable[[], Robot]] = {
+    "TwoJointRobot_w_fixedJoints.urdf": arms.two_joint_robot_with_fixed_joints,
+    "TwoJointRobot_wo_fixedJoints.urdf": arms.two_joint_robot_without_fixed_joints,
+    "block.urdf": cubes.block,
+    "cartpole.urdf": arms.cartpole,
+    "cube.urdf": cubes.cube,
+    "cube_collisionfilter.urdf": cubes.cube_collisionfilter,
+    "cube_no_rotation.urdf": cubes.cube_no_rotation,
+    "cube_rotate.urdf": cubes.cube_rotate,
+    "cube_small.urdf": cubes.cube_small,
+    "domino/domino.urdf": things.domino,
     "franka_panda/panda.urdf": panda.panda,
+    "jenga/jenga.urdf": things.jenga,
+    "kuka_iiwa/model.urdf": kuka.model,
+    "kuka_iiwa/model_free_base.urdf": kuka.model_free_base,
+    "kuka_iiwa/model_vr_limits.urdf": kuka.model_vr_limits,
+    "lego/lego.urdf": things.lego,
+    "pendulum5.urdf": arms.pendulum5,
+    "plane.urdf": floors.plane,
+    "plane100.urdf": floors.plane100,
+    "plane_implicit.urdf": floors.plane_implicit,
+    "plane_transparent.urdf": floors.plane_transparent,
+    "r2d2.urdf": r2d2.r2d2,
+    "rrbot.urdf": arms.rrbot,
+    "simple_arm.urdf": arms.simple_arm,
+    "soccerball.urdf": spheres.soccerball,
+    "sphere2.urdf": spheres.sphere2,
+    "sphere2red.urdf": spheres.sphere2red,
+    "sphere2red_nocol.urdf": spheres.sphere2red_nocol,
+    "sphere8cube.urdf": spheres.sphere8cube,
+    "sphere_1cm.urdf": spheres.sphere_1cm,
+    "sphere_small.urdf": spheres.sphere_small,
+    "sphere_transparent.urdf": spheres.sphere_transparent,
+    "sphere_with_restitution.urdf": spheres.sphere_with_restitution,
+    "spherical_joint_limit.urdf": arms.spherical_joint_limit,
+    "table/table.urdf": things.table,
+    "table_square/table_square.urdf": things.table_square,
+    "tray/tray.urdf": things.tray,
+    "tray/traybox.urdf": things.traybox,
 }
 
+MATERIALS: Mapping[str, tuple[str, str]] = {
+    "plane.mtl": ("floor", "checker_blue.png"),
+    "cube.mtl": ("cube", "cube.png"),
+    "textured_sphere_smooth.mtl": ("ball", "ball.png"),
+    "soccerball.mtl": ("football", "football.png"),
+    "table/table.mtl": ("wood", "table.png"),
+    "table_square/table.mtl": ("wood", "table.png"),
+}
+"""Material libraries: name of the material in it, and its texture."""
 
-def housings(folder: str, fields: Mapping[str, tuple[Field, Vector3, Vector3]]) -> dict[str, Callable[[], bytes]]:
-    """The OBJ files of blended bodies."""
+TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
+    "checker_blue.png": textures.floor,
+    "cube.png": textures.framed,
+    "ball.png": partial(textures.chessboard, 8, np.array((0.95, 0.95, 0.95)), np.array((0.75, 0.2, 0.18))),
+    "football.png": textures.football,
+    "table/table.png": textures.wood,
+    "table_square/table.png": textures.wood,
+    "tex256.png": partial(textures.chessboard, 8, np.array((0.9, 0.9, 0.9)), np.array((0.35, 0.4, 0.5)), 256),
+    "uvmap.png": textures.colour_grid,
+}
 
-    def encoded(field: Field, low: Vector3, high: Vector3) -> bytes:
-        return mesh_of(field, np.asarray(low), np.asarray(high), CELL).text().encode()
+TRAY_FLOOR: simple_meshes.Rectangle = (-0.21, -0.21, 0.21, 0.21)
 
-    return {f"{folder}/{name}.obj": partial(encoded, *body) for name, body in fields.items()}
+MESHES: Mapping[str, Callable[[], ObjMesh]] = {
+    "plane.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
+    "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),
+    "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
+    "cube.obj": partial(simple_meshes.textured_box, ("cube", "cube.mtl")),
+    "sphere_smooth.obj": partial(simple_meshes.globe, 1.0, 24, 14),
+    "textured_sphere_smooth.obj": partial(
+        simple_meshes.globe, 1.0, 24, 14, ("ball", "textured_sphere_smooth.mtl")
+    ),
+    "soccerball.obj": partial(simple_meshes.globe, 0.5, 24, 14, ("football", "soccerball.mtl")),
+    "table/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
+    "table_square/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
+    "tray/tray.obj": partial(simple_meshes.tray, TRAY_FLOOR, (-0.3, -0.3, 0.3, 0.3), (-0.005, 0.125), 0.012),
+    "tray/tray_solid.obj": partial(
+        simple_meshes.tray, TRAY_FLOOR, (-0.2969, -0.295, 0.2968, 0.3204), (-0.005, 0.1334), 0.012
+    ),
+}
+
+HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
+    "franka_panda/meshes": (panda.fields, 0.0175),
+    "kuka_iiwa/meshes": (kuka.fields, 0.021),
+}
+"""Folders of blended bodies: the fields, and the grid cell they are meshed with [m]."""
 
 
-def files() -> dict[str, Callable[[], bytes]]:
-    """Every file we make: its path in the data folder, and what makes its bytes."""
-    made: dict[str, Callable[[], bytes]] = {}
-    for path, robot in ROBOTS.items():
-        made[path] = lambda robot=robot: urdf_text(robot()).encode()
-    made |= housings("franka_panda/meshes", panda.fields())
+def _housing(field: Field, low: Vector3, high: Vector3, cell: float) -> ObjMesh:
+    return mesh_of(field, np.asarray(low), np.asarray(high), cell)
+
+
+def urdf_files() -> dict[str, str]:
+    """The text of every URDF file, by its path in the data folder."""
+    return {path: urdf_text(robot()) for path, robot in ROBOTS.items()}
+
+
+def mesh_files() -> dict[str, str]:
+    """The text of every mesh and material file."""
+    made = {path: material_text(name, texture) for path, (name, texture) in MATERIALS.items()}
+    made |= {path: mesh().text() for path, mesh in MESHES.items()}
+    for folder, (fields, cell) in HOUSINGS.items():
+        made |= {f"{folder}/{name}.obj": _housing(*body, cell).text() for name, body in fields().items()}
     return made
 
 
+def texture_files() -> dict[str, bytes]:
+    """The bytes of every picture."""
+    return {path: png_bytes(colours()) for path, colours in TEXTURES.items()}
+
+
 def main(names: list[str]) -> None:
-    for path, make in files().items():
+    texts = urdf_files() | mesh_files()
+    for path, content in ({path: text.encode() for path, text in texts.items()} | texture_files()).items():
         if names and not any(name in path for name in names):
             continue
         target = TARGET / path
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(make())
+        target.write_bytes(content)
 
 
 if __name__ == "__main__":

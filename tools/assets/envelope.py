@@ -13,7 +13,11 @@ from tools.assets.parts import QUARTER_TURN, Box, Capsule, Shape, Vector3
 COMPOUND_MARGIN = 0.001
 """PyBullet widens a link's bounds by this when its shapes do not coincide with the inertial frame."""
 
-ALONG: dict[str, Vector3] = {"x": (0.0, QUARTER_TURN, 0.0), "y": (QUARTER_TURN, 0.0, 0.0), "z": (0.0, 0.0, 0.0)}
+ALONG: dict[str, Vector3] = {
+    "x": (0.0, QUARTER_TURN, 0.0),
+    "y": (QUARTER_TURN, 0.0, 0.0),
+    "z": (0.0, 0.0, 0.0),
+}
 
 
 @dataclass(frozen=True)

@@ -213,13 +213,13 @@ def _seen() -> dict[str, tuple[Shape, ...]]:
         ),
         "link3": (
             _housing("link3"),
-            _disc(0.058, 0.03, (0.0825, 0.072, 0.0), ALONG_Y),
+            _disc(0.0588, 0.03, (0.0825, 0.072, 0.0), ALONG_Y),
             _disc(0.036, 0.01, (0.0825, 0.106, 0.0), ALONG_Y, METAL),
             _disc(0.0545, 0.008, (0.0825, 0.0, 0.0), ALONG_Y),
         ),
         "link4": (
             _housing("link4"),
-            _disc(0.058, 0.03, (0.0, 0.0, 0.072)),
+            _disc(0.0588, 0.03, (0.0, 0.0, 0.072)),
             _disc(0.036, 0.01, (0.0, 0.0, 0.106), paint=METAL),
         ),
         "link5": (
@@ -241,7 +241,7 @@ def _seen() -> dict[str, tuple[Shape, ...]]:
         ),
         "hand": (
             _housing("hand"),
-            Shape(Box((0.064, 0.13, 0.018)), (0.0, 0.0, 0.03), paint=DARK),
+            Shape(Box((0.067, 0.13, 0.018)), (0.0, 0.0, 0.03), paint=DARK),
             Shape(Box((0.03, 0.178, 0.006)), (0.0, 0.0, 0.0615), paint=DARK),
         ),
         "leftfinger": _finger(1.0),

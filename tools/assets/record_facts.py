@@ -122,13 +122,21 @@ def squared_bounds(body: int, link: int) -> list[list[float]] | None:
         return None
     to_link = p.invertTransform(position, orientation)
     corners = [p.multiplyTransforms(*to_link, corner, (0, 0, 0, 1))[0] for corner in p.getAABB(body, link)]
-    return [[min(pair) for pair in zip(*corners)], [max(pair) for pair in zip(*corners)]]
+    return [
+        [min(pair) for pair in zip(*corners, strict=True)],
+        [max(pair) for pair in zip(*corners, strict=True)],
+    ]
 
 
 def collision_facts(body: int, link: int) -> list[dict[str, Any]]:
     """What getCollisionShapeData says of the link's shapes, file names left out."""
     return [
-        {"type": shape[2], "dimensions": list(shape[3]), "position": list(shape[5]), "orientation": list(shape[6])}
+        {
+            "type": shape[2],
+            "dimensions": list(shape[3]),
+            "position": list(shape[5]),
+            "orientation": list(shape[6]),
+        }
         for shape in p.getCollisionShapeData(body, link)
     ]
 
@@ -150,7 +158,9 @@ def facts_of(path: str, name: str) -> dict[str, Any]:
                 for joint in links:
                     if joint >= 0:
                         p.resetJointState(body, joint, pose.get(joint, 0.0))
-                bounds = [known or squared_bounds(body, link) for known, link in zip(bounds, links)]
+                bounds = [
+                    known or squared_bounds(body, link) for known, link in zip(bounds, links, strict=True)
+                ]
             facts["bounds"] = bounds
         p.removeBody(body)
     return facts

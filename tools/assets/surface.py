@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-
 from tools.assets.fields import Field, Points
 from tools.assets.obj_mesh import ObjMesh
 
@@ -30,7 +29,13 @@ def mesh_of(field: Field, lowest: Points, highest: Points, cell: float) -> ObjMe
     axes = [low[i] + cell * np.arange(counts[i]) for i in range(3)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     inside = field(grid.reshape(-1, 3)).reshape(tuple(counts)) < 0.0
-    if inside[0].any() or inside[-1].any() or inside[:, 0].any() or inside[:, -1].any() or inside[..., (0, -1)].any():
+    if (
+        inside[0].any()
+        or inside[-1].any()
+        or inside[:, 0].any()
+        or inside[:, -1].any()
+        or inside[..., (0, -1)].any()
+    ):
         raise ValueError("the body reaches out of the box it was said to lie in")
     crossed = _crossed_cells(inside)
     numbers = np.full(crossed.shape, -1)
@@ -70,7 +75,9 @@ def _quads(inside: NDArray[np.bool_], numbers: NDArray[np.int_]) -> list[tuple[i
 
 def _gradient(field: Field, points: Points) -> Points:
     """Unit gradient of the field, by central differences."""
-    slopes = [field(points + GRADIENT_STEP * unit) - field(points - GRADIENT_STEP * unit) for unit in np.eye(3)]
+    slopes = [
+        field(points + GRADIENT_STEP * unit) - field(points - GRADIENT_STEP * unit) for unit in np.eye(3)
+    ]
     gradient = np.stack(slopes, axis=1) / (2.0 * GRADIENT_STEP)
     return gradient / np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), 1e-9)
 

@@ -119,7 +119,9 @@ def _material(paint: Paint | None, known: dict[str, Paint]) -> list[str]:
     if known.setdefault(paint.name, paint) != paint:
         raise ValueError(f"two colours are called {paint.name!r}")
     shine = [f"<specular rgb={_numbers(paint.specular)}/>"] if paint.specular else []
-    return _element("material", [f"<color rgba={_numbers(paint.rgba)}/>", *shine], f"name={quoteattr(paint.name)}")
+    return _element(
+        "material", [f"<color rgba={_numbers(paint.rgba)}/>", *shine], f"name={quoteattr(paint.name)}"
+    )
 
 
 def _joint(joint: Joint) -> list[str]:

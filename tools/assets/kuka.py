@@ -1,0 +1,273 @@
+"""The KUKA LBR iiwa arm, and the variants of it that scripts load.
+
+Bounds are those PyBullet reports for the links of its own file; our shapes span the same, so that the
+default inertias agree.
+"""
+
+from __future__ import annotations
+
+from tools.assets.envelope import Envelope
+from tools.assets.fields import Field, ball, blend, block, drum, rod
+from tools.assets.parts import (
+    QUARTER_TURN,
+    ZERO,
+    Box,
+    Cylinder,
+    Inertial,
+    Joint,
+    Link,
+    Mesh,
+    Paint,
+    Robot,
+    Shape,
+    Vector3,
+    diagonal,
+)
+
+HALF_TURN = 3.14159265359
+ORANGE = Paint("Orange", (1.0, 0.423529411765, 0.0392156862745, 1.0), (0.4, 0.4, 0.4))
+GREY = Paint("Grey", (0.2, 0.2, 0.2, 1.0), (0.2, 0.2, 0.2))
+SILVER = Paint("Silver", (0.72, 0.74, 0.76, 1.0), (0.6, 0.6, 0.6))
+ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
+
+BOUNDS = (
+    Envelope((-0.13900451, -0.12436784, -0.00300338), (0.12424893, 0.12438881, 0.16050075)),
+    Envelope((-0.08850494, -0.11857453, -0.01300009), (0.08855944, 0.08849742, 0.29094541)),
+    Envelope((-0.08814844, -0.08865720, -0.07119816), (0.08861552, 0.20750237, 0.13512231)),
+    Envelope((-0.07101825, -0.07100864, -0.01300013), (0.07102248, 0.11763946, 0.28632063)),
+    Envelope((-0.07107593, -0.07089788, -0.07107132), (0.07105438, 0.18750197, 0.11749760)),
+    Envelope((-0.07098762, -0.07101831, -0.01300019), (0.07122868, 0.10193329, 0.27003527)),
+    Envelope((-0.06906574, -0.08947182, -0.07370003), (0.06925520, 0.08390117, 0.06998397)),
+    Envelope((-0.05506049, -0.05466417, -0.01290011), (0.05500065, 0.05496908, 0.04801607)),
+)
+
+MASSES: tuple[tuple[float, Vector3, Vector3], ...] = (
+    (0.0, (-0.1, 0.0, 0.07), (0.05, 0.06, 0.03)),
+    (4.0, (0.0, -0.03, 0.12), (0.1, 0.09, 0.02)),
+    (4.0, (0.0003, 0.059, 0.042), (0.05, 0.018, 0.044)),
+    (3.0, (0.0, 0.03, 0.13), (0.08, 0.075, 0.01)),
+    (2.7, (0.0, 0.067, 0.034), (0.03, 0.01, 0.029)),
+    (1.7, (0.0001, 0.021, 0.076), (0.02, 0.018, 0.005)),
+    (1.8, (0.0, 0.0006, 0.0004), (0.005, 0.0036, 0.0047)),
+    (0.3, (0.0, 0.0, 0.02), (0.001, 0.001, 0.001)),
+)
+"""Mass, centre of mass and principal inertias of each link."""
+
+WIDE = (-2.96705972839, 2.96705972839)
+NARROW = (-2.09439510239, 2.09439510239)
+LIMITS: dict[int, tuple[float, float]] = {
+    1: WIDE,
+    2: NARROW,
+    3: WIDE,
+    4: NARROW,
+    5: WIDE,
+    6: NARROW,
+    7: (-3.05432619099, 3.05432619099),
+}
+VR_LIMITS = LIMITS | {1: (-0.96705972839, 0.96705972839), 4: (0.19439510239, 2.29439510239)}
+
+JOINT_FRAMES: tuple[tuple[Vector3, Vector3], ...] = (
+    ((0.0, 0.0, 0.1575), ZERO),
+    ((0.0, 0.0, 0.2025), (QUARTER_TURN, 0.0, HALF_TURN)),
+    ((0.0, 0.2045, 0.0), (QUARTER_TURN, 0.0, HALF_TURN)),
+    ((0.0, 0.0, 0.2155), (QUARTER_TURN, 0.0, 0.0)),
+    ((0.0, 0.1845, 0.0), (-QUARTER_TURN, HALF_TURN, 0.0)),
+    ((0.0, 0.0, 0.2155), (QUARTER_TURN, 0.0, 0.0)),
+    ((0.0, 0.081, 0.0), (-QUARTER_TURN, HALF_TURN, 0.0)),
+)
+
+
+def _touching() -> tuple[tuple[Shape, ...], ...]:
+    """Collision shapes: capsules along the tubes and housings, boxes for foot and flange."""
+    foot, one, two, three, four, five, six, flange = BOUNDS
+    r1, r2, r3, r4, r5 = (link.width("x") / 2.0 for link in (one, two, three, four, five))
+    turned = Shape(
+        Box((0.075, 0.075, flange.width("z"))), (0.0, 0.0, 0.01755798), (0.0, 0.0, QUARTER_TURN / 2.0)
+    )
+    return (
+        (
+            foot.box(z=(None, 0.08)),
+            foot.box(x=(-0.09, 0.09), y=(-0.09, 0.09), z=(0.08, None)),
+        ),
+        (one.capsule("z", r1, x="low", y="high"), one.capsule("y", r1, x="low", z="high")),
+        (two.capsule("z", r2, x="low", y="low"), two.capsule("y", 0.07, x=0.0, z="low")),
+        (three.capsule("z", r3, x="low", y="low"), three.capsule("y", 0.068, x=0.0, z="high")),
+        (four.capsule("z", r4, x="low", y="low"), four.capsule("y", 0.069, x=0.0, z="low")),
+        (
+            five.capsule("z", r5, x="low", y="low", stop=0.16),
+            five.capsule("z", 0.045, x=0.0, y="high", start=0.08),
+        ),
+        (six.capsule("y", six.width("x") / 2.0, x="low", z="high"), six.capsule("z", 0.06, x=0.0, y=0.0)),
+        (
+            flange.box(y=(-0.0225, 0.0225)),
+            flange.box(x=(-0.0225, 0.0225)),
+            turned,
+        ),
+    )
+
+
+def fields() -> dict[str, tuple[Field, Vector3, Vector3]]:
+    """The cast housings: a field for each, in its link frame, and the corners of a box around it."""
+    return {
+        "link_0": (
+            blend(
+                drum((0.0, 0.0, 0.001), (0.0, 0.0, 0.156), 0.12, 0.012, 0.086),
+                block((-0.1, 0.0, 0.065), (0.07, 0.1, 0.12), 0.015),
+                width=0.02,
+            ),
+            (-0.16, -0.14, -0.01),
+            (0.14, 0.14, 0.18),
+        ),
+        "link_1": (
+            blend(
+                drum((0.0, 0.0, -0.01), (0.0, 0.0, 0.09), 0.086, 0.01, 0.08),
+                rod((0.0, -0.005, 0.09), (0.0, -0.045, 0.2025), 0.075, 0.07),
+                drum((0.0, -0.115, 0.2025), (0.0, -0.004, 0.2025), 0.086, 0.04),
+                width=0.05,
+            ),
+            (-0.11, -0.13, -0.02),
+            (0.11, 0.11, 0.32),
+        ),
+        "link_2": (
+            blend(
+                drum((0.0, 0.0, 0.004), (0.0, 0.0, 0.132), 0.086, 0.045),
+                rod((0.0, 0.01, 0.05), (0.0, 0.14, 0.005), 0.072, 0.064),
+                drum((0.0, 0.13, 0.0), (0.0, 0.2, 0.0), 0.066, 0.008, 0.07),
+                width=0.05,
+            ),
+            (-0.11, -0.11, -0.09),
+            (0.11, 0.22, 0.15),
+        ),
+        "link_3": (
+            blend(
+                drum((0.0, 0.0, -0.006), (0.0, 0.0, 0.08), 0.07, 0.008, 0.066),
+                rod((0.0, 0.005, 0.08), (0.0, 0.04, 0.2155), 0.062, 0.058),
+                drum((0.0, 0.004, 0.2155), (0.0, 0.114, 0.2155), 0.069, 0.035),
+                width=0.05,
+            ),
+            (-0.09, -0.09, -0.02),
+            (0.09, 0.13, 0.31),
+        ),
+        "link_4": (
+            blend(
+                drum((0.0, 0.0, 0.004), (0.0, 0.0, 0.114), 0.069, 0.035),
+                rod((0.0, 0.01, 0.04), (0.0, 0.12, 0.005), 0.06, 0.062),
+                drum((0.0, 0.11, 0.0), (0.0, 0.18, 0.0), 0.066, 0.008, 0.07),
+                width=0.05,
+            ),
+            (-0.09, -0.09, -0.09),
+            (0.09, 0.2, 0.14),
+        ),
+        "link_5": (
+            blend(
+                drum((0.0, 0.0, -0.006), (0.0, 0.0, 0.07), 0.07, 0.008, 0.066),
+                rod((0.0, 0.01, 0.07), (0.0, 0.06, 0.15), 0.056, 0.036),
+                drum((0.0, 0.067, 0.2155), (0.0, 0.098, 0.2155), 0.053, 0.014),
+                rod((0.0, 0.06, 0.15), (0.0, 0.08, 0.2155), 0.034, 0.02),
+                width=0.05,
+            ),
+            (-0.09, -0.09, -0.02),
+            (0.09, 0.12, 0.29),
+        ),
+        "link_6": (
+            blend(
+                rod((0.0, -0.018, 0.0), (0.0, 0.01, 0.0), 0.066),
+                drum((0.0, 0.01, 0.0), (0.0, 0.072, 0.0), 0.062, 0.006, 0.055),
+                ball((0.0, 0.0, -0.01), 0.062),
+                width=0.02,
+            ),
+            (-0.09, -0.11, -0.09),
+            (0.09, 0.1, 0.09),
+        ),
+    }
+
+
+def _disc(radius: float, length: float, xyz: Vector3, rpy: Vector3 = ZERO, paint: Paint = GREY) -> Shape:
+    return Shape(Cylinder(radius, length), xyz, rpy, paint)
+
+
+def _seen() -> tuple[tuple[Shape, ...], ...]:
+    """What the links look like: orange housings, silver caps, dark seams, foot and flange."""
+
+    def housing(number: int, paint: Paint) -> Shape:
+        return Shape(Mesh(f"meshes/link_{number}.obj"), paint=paint)
+
+    return (
+        (housing(0, GREY), _disc(0.084, 0.008, (0.0, 0.0, 0.1535), paint=SILVER)),
+        (
+            housing(1, ORANGE),
+            _disc(0.0835, 0.012, (0.0, 0.0, -0.008)),
+            _disc(0.046, 0.012, (0.0, -0.1145, 0.2025), ALONG_Y, SILVER),
+            _disc(0.08, 0.012, (0.0, 0.0, 0.2025), ALONG_Y),
+        ),
+        (
+            housing(2, SILVER),
+            _disc(0.046, 0.012, (0.0, 0.0, 0.1315), paint=ORANGE),
+            _disc(0.0695, 0.006, (0.0, 0.2015, 0.0), ALONG_Y),
+        ),
+        (
+            housing(3, ORANGE),
+            _disc(0.038, 0.012, (0.0, 0.1135, 0.2155), ALONG_Y, SILVER),
+            _disc(0.064, 0.012, (0.0, 0.0, 0.2155), ALONG_Y),
+        ),
+        (
+            housing(4, SILVER),
+            _disc(0.038, 0.012, (0.0, 0.0, 0.1135), paint=ORANGE),
+            _disc(0.0695, 0.006, (0.0, 0.1815, 0.0), ALONG_Y),
+        ),
+        (housing(5, SILVER), _disc(0.04, 0.01, (0.0, 0.0965, 0.2155), ALONG_Y, ORANGE)),
+        (
+            housing(6, ORANGE),
+            _disc(0.045, 0.012, (0.0, 0.0, -0.0665), paint=SILVER),
+            _disc(0.0545, 0.01, (0.0, 0.073, 0.0), ALONG_Y),
+        ),
+        (
+            _disc(0.053, 0.024, (0.0, 0.0, 0.004), paint=GREY),
+            _disc(0.046, 0.024, (0.0, 0.0, 0.028), paint=SILVER),
+            _disc(0.024, 0.006, (0.0, 0.0, 0.043), paint=GREY),
+        ),
+    )
+
+
+def _arm(limits: dict[int, tuple[float, float]], base_mass: float, about: str) -> Robot:
+    links = tuple(
+        Link(
+            f"lbr_iiwa_link_{number}",
+            Inertial(mass if number else base_mass, centre, tensor=diagonal(*moments)),
+            seen,
+            touching,
+        )
+        for number, ((mass, centre, moments), seen, touching) in enumerate(
+            zip(MASSES, _seen(), _touching(), strict=True)
+        )
+    )
+    joints = tuple(
+        Joint(
+            f"lbr_iiwa_joint_{number}",
+            "revolute",
+            f"lbr_iiwa_link_{number - 1}",
+            f"lbr_iiwa_link_{number}",
+            xyz,
+            rpy,
+            (0.0, 0.0, 1.0),
+            {"lower": limits[number][0], "upper": limits[number][1], "effort": 300.0, "velocity": 10.0},
+            damping=0.5,
+        )
+        for number, (xyz, rpy) in enumerate(JOINT_FRAMES, start=1)
+    )
+    return Robot("lbr_iiwa", about, links, joints)
+
+
+def model() -> Robot:
+    """The arm, its foot bolted to the world by having no mass."""
+    return _arm(LIMITS, 0.0, "KUKA LBR iiwa: seven turning joints; the foot has no mass and stays put.")
+
+
+def model_vr_limits() -> Robot:
+    """The arm with the narrower limits of the virtual-reality examples."""
+    return _arm(VR_LIMITS, 0.0, "KUKA LBR iiwa with narrower limits at joints 1 and 4.")
+
+
+def model_free_base() -> Robot:
+    """The arm with a light foot that may move."""
+    return _arm(LIMITS, 0.1, "KUKA LBR iiwa with a foot that is free to move.")

@@ -1,0 +1,86 @@
+"""Meshes with few corners: squares of floor, textured boxes, balls, and an open tray."""
+
+from __future__ import annotations
+
+import numpy as np
+from tools.assets.fields import Points
+from tools.assets.obj_mesh import ObjMesh
+
+
+def square(half: float, tiles: float, material: tuple[str, str]) -> ObjMesh:
+    """A horizontal square of floor, its texture repeated `tiles` times along each edge."""
+    corners = np.array(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)))
+    vertices = np.column_stack(((2.0 * corners - 1.0) * half, np.zeros(4)))
+    normals = np.tile((0.0, 0.0, 1.0), (4, 1))
+    return ObjMesh(vertices, [(0, 1, 2), (0, 2, 3)], normals, corners * tiles, material)
+
+
+def textured_box(material: tuple[str, str]) -> ObjMesh:
+    """A cube of edge 1 around the origin that shows the whole texture on each face."""
+    vertices, normals, texture, faces = [], [], [], []
+    for axis in range(3):
+        for sign in (-1.0, 1.0):
+            normal, across, upwards = np.zeros(3), np.zeros(3), np.zeros(3)
+            normal[axis], upwards[(axis + 2) % 3] = sign, 1.0
+            across = np.cross(upwards, normal)
+            first = len(vertices)
+            for s, t in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)):
+                vertices.append(0.5 * normal + (s - 0.5) * across + (t - 0.5) * upwards)
+                normals.append(normal)
+                texture.append((s, t))
+            faces += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
+    return ObjMesh(np.array(vertices), faces, np.array(normals), np.array(texture), material)
+
+
+def globe(radius: float, meridians: int, parallels: int, material: tuple[str, str] | None = None) -> ObjMesh:
+    """A ball cut along meridians and parallels, textured by longitude and latitude if at all."""
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, meridians + 1), np.linspace(0.0, 1.0, parallels + 1))
+    longitude, latitude = 2.0 * np.pi * u.ravel(), np.pi * (v.ravel() - 0.5)
+    outward = np.column_stack(
+        (np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude))
+    )
+    row = meridians + 1
+    faces: list[tuple[int, ...]] = []
+    for j in range(parallels):
+        for i in range(meridians):
+            corner = j * row + i
+            if j > 0:
+                faces.append((corner, corner + 1, corner + row + 1))
+            if j < parallels - 1:
+                faces.append((corner, corner + row + 1, corner + row))
+    texture = np.column_stack((u.ravel(), v.ravel())) if material else None
+    return ObjMesh(radius * outward, faces, outward, texture, material)
+
+
+Rectangle = tuple[float, float, float, float]
+"""Low x, low y, high x, high y [m]."""
+
+
+def tray(floor: Rectangle, rim: Rectangle, heights: tuple[float, float], wall: float) -> ObjMesh:
+    """An open tray with slanting sides, flat-shaded.
+
+    Args:
+        floor: Outline of the underside.
+        rim: Outline of the top.
+        heights: z of the underside and of the rim [m].
+        wall: Thickness of floor and sides [m].
+    """
+    low, high = heights
+    rings = (_ring(floor, low), _ring(rim, high), _ring(rim, high, wall), _ring(floor, low + wall, wall))
+    faces: list[tuple[int, ...]] = [(3, 2, 1, 0), (12, 13, 14, 15)]
+    for level in range(3):
+        for i in range(4):
+            here, after = 4 * level + i, 4 * level + (i + 1) % 4
+            faces.append((here, after, after + 4, here + 4))
+    return ObjMesh(np.vstack(rings), faces)
+
+
+def _ring(outline: Rectangle, height: float, inset: float = 0.0) -> Points:
+    low_x, low_y, high_x, high_y = (
+        outline[0] + inset,
+        outline[1] + inset,
+        outline[2] - inset,
+        outline[3] - inset,
+    )
+    corners = ((low_x, low_y), (high_x, low_y), (high_x, high_y), (low_x, high_y))
+    return np.array([(x, y, height) for x, y in corners])

@@ -1,0 +1,87 @@
+"""Pictures for our meshes, drawn by formula: colours (height, width, 3) between 0 and 1, top row first."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Colours = NDArray[np.float64]
+
+FLOOR_PALE = np.array((0.95, 0.955, 0.96))
+FLOOR_BLUE = np.array((0.63, 0.73, 0.88))
+FLOOR_LINE = np.array((0.82, 0.86, 0.92))
+
+
+def _unit_square(height: int, width: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Coordinates (u, v) of the pixel centres, v upwards."""
+    v, u = np.mgrid[0:height, 0:width]
+    return (u + 0.5) / width, 1.0 - (v + 0.5) / height
+
+
+def floor() -> Colours:
+    """Four squares of a chessboard floor with fine seams."""
+    u, v = _unit_square(256, 256)
+    dark = ((u < 0.5) == (v < 0.5))[..., None]
+    to_seam = np.minimum(np.abs(u % 0.5 - 0.25), np.abs(v % 0.5 - 0.25))
+    seam = np.maximum(np.abs(u % 0.5 - 0.25), np.abs(v % 0.5 - 0.25)) > 0.247
+    tone = 1.0 - 0.012 * (to_seam / 0.25)[..., None]
+    return np.where(seam[..., None], FLOOR_LINE, np.where(dark, FLOOR_BLUE, FLOOR_PALE) * tone)
+
+
+def chessboard(squares: int, light: Colours, dark: Colours, size: int = 64) -> Colours:
+    """A plain chessboard."""
+    u, v = _unit_square(size, size)
+    odd = (np.floor(u * squares) + np.floor(v * squares)) % 2 > 0
+    return np.where(odd[..., None], dark, light)
+
+
+def framed() -> Colours:
+    """A white face that darkens softly towards its edges, so that boxes show their outline."""
+    u, v = _unit_square(64, 64)
+    to_edge = np.minimum(np.minimum(u, 1.0 - u), np.minimum(v, 1.0 - v))
+    shade = np.where(to_edge < 0.02, 0.72, 0.97 - 0.1 * np.exp(-to_edge / 0.05))
+    return np.repeat(shade[..., None], 3, axis=2)
+
+
+def wood() -> Colours:
+    """Pale planks with grain along u."""
+    u, v = _unit_square(128, 128)
+    plank = np.floor(v * 4.0)
+    drift = 0.06 * np.sin(2.0 * np.pi * (u + 0.31 * plank)) + 0.02 * np.sin(
+        2.0 * np.pi * (3.0 * u + 0.7 * plank)
+    )
+    grain = 0.5 + 0.5 * np.sin(2.0 * np.pi * (14.0 * (v + drift) + 0.43 * plank))
+    fine = 0.5 + 0.5 * np.sin(2.0 * np.pi * (41.0 * (v + 0.6 * drift) + 0.17 * plank))
+    tone = 0.9 + 0.02 * (plank % 2.0) - 0.09 * grain**3 - 0.03 * fine
+    seam = (v * 4.0) % 1.0 < 0.03
+    return np.where(seam, 0.72, tone)[..., None] * np.array((0.95, 0.8, 0.6))
+
+
+def football() -> Colours:
+    """Twelve dark pentagons on white, for a ball unrolled by longitude and latitude."""
+    u, v = _unit_square(64, 128)
+    longitude, latitude = 2.0 * np.pi * u, np.pi * (v - 0.5)
+    outward = np.stack(
+        (np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)),
+        axis=-1,
+    )
+    golden = (1.0 + np.sqrt(5.0)) / 2.0
+    centres = np.array(
+        [axis for a in (-1.0, 1.0) for b in (-golden, golden) for axis in ((0, a, b), (a, b, 0), (b, 0, a))]
+    ) / np.sqrt(1.0 + golden**2)
+    nearness = np.sort(outward @ centres.T, axis=-1)
+    pentagon = nearness[..., -1] > 0.935
+    seam = (nearness[..., -1] - nearness[..., -2] < 0.03) & (nearness[..., -1] < 0.935)
+    grey = np.where(pentagon, 0.12, np.where(seam, 0.55, 0.96))
+    return np.repeat(grey[..., None], 3, axis=2)
+
+
+def colour_grid() -> Colours:
+    """A chart of hues with a light grid, to see how a mesh is unwrapped."""
+    u, v = _unit_square(128, 128)
+    hue = 2.0 * np.pi * np.floor(u * 8.0) / 8.0
+    value = 0.55 + 0.4 * np.floor(v * 8.0) / 8.0
+    channels = [0.5 + 0.35 * np.cos(hue - phase) for phase in (0.0, 2.1, 4.2)]
+    colours = np.stack(channels, axis=-1) * value[..., None]
+    line = ((u * 8.0) % 1.0 < 0.06) | ((v * 8.0) % 1.0 < 0.06)
+    return np.where(line[..., None], 0.92, colours)
