@@ -19,8 +19,8 @@ TITLES = {
     "_links": "Links",
     "_dynamics": "Masses, friction, damping, limits",
     "_forces": "External forces",
-    "_algorithms": "Dynamics algorithms",
-    "_debug": "Sliders, keys and drawings",
+    "_algebra": "Inverse dynamics, Jacobians, mass matrices",
+    "_gui": "Sliders, keys and drawings",
     "_camera_maths": "Camera matrices",
     "_maths": "Maths",
 }
@@ -67,8 +67,8 @@ def page() -> str:
         "",
         "<!-- Written by tools/docs/status.py. -->",
         "",
-        f"Of the {len(available)} functions of PyBullet 3.2.7, {done} work in this version of Carom, with every",
-        "keyword, default, return layout and error. All constants are there with their values.",
+        f"Of the {len(available)} functions of PyBullet 3.2.7, {done} work in this version of Carom, with",
+        "every keyword, default, return layout and error. All constants are there with their values.",
     ]
     for module, title in TITLES.items():
         if by_home[module]:
