@@ -31,8 +31,9 @@ def math_helpers(p: Any) -> dict[str, Any]:
         return [generator.uniform(-size, size) for _ in range(count)]
 
     eulers = [numbers(3, 3.1) for _ in range(12)]
-    eulers += [[0.3, sign * math.pi / 2, -0.4] for sign in (-1, 1)]
-    eulers += [[0.0, 0.0, 0.0], [math.pi, 0.0, 0.0], [0.0, 0.0, -math.pi]]
+    # Gimbal lock, no rotation, half a turn; never half a turn from one to the next, which has two axes.
+    eulers += [[0.3, -math.pi / 2, -0.4], [1.0, math.pi / 2, 0.2]]
+    eulers += [[0.0, 0.0, 0.0], [math.pi, 0.0, 0.0], [0.4, 0.2, -math.pi]]
     unit = [list(p.getQuaternionFromEuler(euler)) for euler in eulers]
     loose = [[1.5 * part for part in quaternion] for quaternion in unit[:6]]
     pairs = list(itertools.pairwise(unit))
