@@ -31,9 +31,9 @@ def math_helpers(p: Any) -> dict[str, Any]:
         return [generator.uniform(-size, size) for _ in range(count)]
 
     eulers = [numbers(3, 3.1) for _ in range(12)]
-    # Gimbal lock, no rotation, half a turn; never half a turn from one to the next, which has two axes.
+    # Gimbal lock and no rotation, but no half turn from one to the next: that has two axes.
     eulers += [[0.3, -math.pi / 2, -0.4], [1.0, math.pi / 2, 0.2]]
-    eulers += [[0.0, 0.0, 0.0], [math.pi, 0.0, 0.0], [0.4, 0.2, -math.pi]]
+    eulers += [[0.0, 0.0, 0.0], [2.5, 0.0, 0.0], [0.4, 0.2, -math.pi]]
     unit = [list(p.getQuaternionFromEuler(euler)) for euler in eulers]
     loose = [[1.5 * part for part in quaternion] for quaternion in unit[:6]]
     pairs = list(itertools.pairwise(unit))
