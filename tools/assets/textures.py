@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -52,28 +54,45 @@ def wood() -> Colours:
     )
     grain = 0.5 + 0.5 * np.sin(2.0 * np.pi * (14.0 * (v + drift) + 0.43 * plank))
     fine = 0.5 + 0.5 * np.sin(2.0 * np.pi * (41.0 * (v + 0.6 * drift) + 0.17 * plank))
-    tone = 0.9 + 0.02 * (plank % 2.0) - 0.09 * grain**3 - 0.03 * fine
+    tone = 0.9 + 0.02 * (plank % 2.0) - 0.05 * grain**3 - 0.03 * fine
     seam = (v * 4.0) % 1.0 < 0.03
     return np.where(seam, 0.72, tone)[..., None] * np.array((0.95, 0.8, 0.6))
 
 
 def football() -> Colours:
-    """Twelve dark pentagons on white, for a ball unrolled by longitude and latitude."""
-    u, v = _unit_square(64, 128)
+    """A truncated icosahedron blown round, its pentagons dark, unrolled by longitude and latitude."""
+    u, v = _unit_square(128, 256)
     longitude, latitude = 2.0 * np.pi * u, np.pi * (v - 0.5)
     outward = np.stack(
         (np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)),
         axis=-1,
     )
     golden = (1.0 + np.sqrt(5.0)) / 2.0
-    centres = np.array(
-        [axis for a in (-1.0, 1.0) for b in (-golden, golden) for axis in ((0, a, b), (a, b, 0), (b, 0, a))]
-    ) / np.sqrt(1.0 + golden**2)
-    nearness = np.sort(outward @ centres.T, axis=-1)
-    pentagon = nearness[..., -1] > 0.935
-    seam = (nearness[..., -1] - nearness[..., -2] < 0.03) & (nearness[..., -1] < 0.935)
-    grey = np.where(pentagon, 0.12, np.where(seam, 0.55, 0.96))
+    pentagons = _cyclic(1.0, golden)
+    hexagons = np.vstack((_cyclic(golden, 1.0 / golden), _signs(1.0, 1.0, 1.0)))
+    # Ratio of the distances of the two kinds of face from the centre of the solid.
+    to_pentagon = _directions(outward, pentagons)[..., -1] / 1.02653
+    to_hexagons = _directions(outward, hexagons)
+    dark = to_pentagon > to_hexagons[..., -1]
+    seam = ~dark & (to_hexagons[..., -1] - np.maximum(to_hexagons[..., -2], to_pentagon) < 0.012)
+    grey = np.where(dark, 0.12, np.where(seam, 0.6, 0.96))
     return np.repeat(grey[..., None], 3, axis=2)
+
+
+def _directions(outward: Colours, axes: Colours) -> Colours:
+    """Cosines between directions and axes, least first."""
+    return np.sort(outward @ (axes / np.linalg.norm(axes, axis=1, keepdims=True)).T, axis=-1)
+
+
+def _signs(*values: float) -> Colours:
+    """Every choice of signs of the coordinates that are not zero."""
+    choices = [(-value, value) if value else (0.0,) for value in values]
+    return np.array(list(product(*choices)))
+
+
+def _cyclic(a: float, b: float) -> Colours:
+    """The points (0, ±a, ±b) and those with the coordinates rotated."""
+    return np.vstack((_signs(0.0, a, b), _signs(a, b, 0.0), _signs(b, 0.0, a)))
 
 
 def colour_grid() -> Colours:

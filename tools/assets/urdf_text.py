@@ -36,7 +36,7 @@ def urdf_text(robot: Robot) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{value:.12g}"
+    return f"{value:.13g}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:
