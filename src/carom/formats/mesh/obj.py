@@ -44,7 +44,7 @@ def read_obj(data: bytes, file: Path) -> list[MeshPart]:
     """
     vertex_lines: list[tuple[int, bytes]] = []
     groups = [_Group()]
-    for number, line in enumerate(data.splitlines(), start=1):
+    for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
         line = line.lstrip()
         head = line[:2]
         if head in (b"v ", b"v\t"):
