@@ -9,10 +9,11 @@ SOURCE = Path(__file__).parents[1] / "src"
 
 DESCRIPTION = {"carom.errors", "carom.description"}
 MODEL = {*DESCRIPTION, "carom.formats", "carom.model"}
-ENGINE = {*MODEL, "carom.physics", "carom.algorithms"}
+ENGINE = {*MODEL, "carom.physics"}
 HELPERS = {"carom.checks", "carom.named"}
 # A world and what hangs on it know each other.
 WORLD = {
+    "carom.algorithms",
     "carom.body",
     "carom.constraints",
     "carom.dynamics_changes",
@@ -33,13 +34,12 @@ MAY_IMPORT = {
     "carom.formats": DESCRIPTION,
     "carom.model": {*DESCRIPTION, "carom.formats"},
     "carom.physics": {"carom.errors", "carom.model"},
-    "carom.algorithms": {"carom.errors", "carom.model", "carom.physics"},
     "carom.control": {"carom.checks"},
     **{part: {*ENGINE, *HELPERS, *WORLD} for part in WORLD},
     "carom": {*WORLD, "carom.control", "carom.version"},
     "carom.cli": {*ENGINE, *WORLD, "carom.version", "pybullet_data"},
     "carom.__main__": {"carom.cli"},
-    "pybullet": {*MODEL, *WORLD, "carom.algorithms", "carom.version"},
+    "pybullet": {*MODEL, *WORLD, "carom.version"},
     "pybullet_data": set(),
     "pybullet_utils": {"pybullet"},
 }
