@@ -83,7 +83,8 @@ def spherical_position_with_velocity(p: Any) -> dict[str, Any]:
 @scenario()
 def spherical_gains_per_axis(p: Any) -> dict[str, Any]:
     """Gains and damping given as lists, one value per axis."""
-    body = _chain(p)
+    # Not released before: in PyBullet a list of gains does not wake a motor that a single gain switched off.
+    body = _chain(p, released=False)
     p.setJointMotorControlMultiDof(
         body,
         0,
