@@ -10,14 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from carom.algorithms.query import QuerySpace
 from carom.body import Body
 from carom.constraints import Island, JointConstraints
 from carom.description.pose import Pose
 from carom.description.transform import compose
+from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.launch import Launch
-from carom.model.structs import Settings
+from carom.model.structs import Settings, State
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.physics.step import step_kernel
@@ -205,6 +207,7 @@ class World:
     def apply_parameters(self) -> None:
         """Make changes of `parameters` take effect."""
         self._step = None
+        self._query_space = None
 
     def constraints_changed(self) -> None:
         """Sort and number the constraints again before the next step."""
@@ -288,10 +291,29 @@ class World:
         self._step = None
         self._pose_launch: Launch | None = None
         self._twist_launch: Launch | None = None
+        self._query_space: QuerySpace | None = None
         for name, field in _VIEWS.items():
             view = self.arrays.state.numpy[field][0]
             setattr(self, name, view)
             setattr(self, f"{name}_memory", memoryview(view.reshape(-1)))
+
+    def query_space(self) -> QuerySpace:
+        """Spare coordinates for the algorithms that need no step."""
+        if self._query_space is None:
+            spare = ArrayTable(State, 1)
+            spare.reserve(self.arrays.state.capacity)
+            model, _, scratch = self._structs
+            self._query_space = QuerySpace(
+                self._settings(),
+                (model, spare.struct(_DEVICE), scratch),
+                {
+                    "model": self.arrays.model.numpy,
+                    "state": spare.numpy,
+                    "scratch": self.arrays.scratch.numpy,
+                },
+                _DEVICE,
+            )
+        return self._query_space
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from carom.description import JointType
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import conjugate, multiplied, rotate
 from carom.model.arrays import ArrayTable

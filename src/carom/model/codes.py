@@ -74,3 +74,8 @@ MOTOR = wp.constant(int(ConstraintKind.MOTOR))
 LIMIT = wp.constant(int(ConstraintKind.LIMIT))
 SPHERICAL_MOTOR = wp.constant(int(ConstraintKind.SPHERICAL_MOTOR))
 SPHERICAL_LIMIT = wp.constant(int(ConstraintKind.SPHERICAL_LIMIT))
+
+# What link forces are computed for; see `physics.dynamics.link_bias_forces`.
+FREE_MOTION = wp.constant(0)
+CONSTRAINT_FEEDBACK = wp.constant(1)
+INVERSE_DYNAMICS = wp.constant(2)

@@ -2,7 +2,7 @@
 
 `real` is float64; `CAROM_PRECISION=float32`, set before the first import, makes it float32, which
 is what most GPUs are fast at. Warp reads a bare `0.5` in a kernel as float32, so `func` and
-`kernel` wrap every float literal as `real(0.5)` before Warp sees it.
+`kernel` wrap every float literal as `real(0.5)` before Warp sees it, and put `real` in reach.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ NUMPY_REAL: type[np.floating[Any]] = _PRECISIONS[PRECISION][1]
 class _RealLiterals(ast.NodeTransformer):
     """Wraps each float literal in a call of `real`."""
 
-    def visit_Constant(self, node: ast.Constant) -> ast.AST:  # noqa: N802 (the name ast looks for)
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
         if not isinstance(node.value, float):
             return node
         call = ast.Call(func=ast.Name(id="real", ctx=ast.Load()), args=[node], keywords=[])
@@ -99,7 +99,8 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 def func(function: _F) -> _F:
-    """Make `function` callable from kernels; its module must import `real`."""
+    """Make `function` callable from kernels."""
+    function.__globals__.setdefault("real", real)
     module = wp.get_module(function.__module__)
     key = function.__qualname__
     wp.Function(
@@ -117,7 +118,8 @@ def func(function: _F) -> _F:
 
 
 def kernel(function: _F) -> _F:
-    """Make `function` a kernel without an adjoint; its module must import `real`."""
+    """Make `function` a kernel without an adjoint."""
+    function.__globals__.setdefault("real", real)
     return wp.Kernel(  # type: ignore[return-value]
         func=function,
         key=function.__qualname__,

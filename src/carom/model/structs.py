@@ -146,6 +146,7 @@ class Scratch:
     dof_angular: Vector3Rows  # motion subspace
     dof_linear: Vector3Rows
     dof_force: RealRows
+    dof_acceleration: RealRows  # what inverse dynamics is asked for
     dof_inverse_pivot: RealRows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four

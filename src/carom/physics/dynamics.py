@@ -7,10 +7,10 @@ Notation and method: R. Featherstone, Rigid Body Dynamics Algorithms (2008), cha
 
 import warp as wp
 
-from carom.model.real import Int32, Matrix3, Vector3, Vector6, func, real
+from carom.model.codes import CONSTRAINT_FEEDBACK, FREE_MOTION, INVERSE_DYNAMICS
+from carom.model.real import Int32, Matrix3, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.kinematics import base_omega, base_velocity
-from carom.physics.rotation import rotation_matrix
 
 
 @func
@@ -79,14 +79,15 @@ def link_bias_forces(
     scratch: Scratch,
     world: Int32,
     tree: Int32,
-    feedback: Int32,
+    purpose: Int32,
 ):
-    """Velocities of the links, and the force each needs to move on without joint acceleration.
+    """Velocities of the links, and the force each needs to move as it does.
 
-    With `feedback` 0 the forces are those of the step: gravity, what the user applied, damping,
-    gyroscopic and Coriolis terms. With 1 they are those of Bullet's second pass for force-torque
-    sensors: constraint forces in place of gravity and applied forces, and no centripetal force of
-    the links.
+    For the purpose `FREE_MOTION` that is to move on without joint acceleration, against gravity, the
+    forces the user applied and damping. `CONSTRAINT_FEEDBACK` is Bullet's second pass for
+    force-torque sensors: constraint forces in place of gravity and applied forces, and no
+    centripetal force of the links. `INVERSE_DYNAMICS` is with the joint accelerations in
+    `dof_acceleration` and without damping.
     """
     base = model.tree_first_link[tree]
     linear_damping = model.tree_linear_damping[tree]
@@ -110,6 +111,9 @@ def link_bias_forces(
                 rate = state.dof_velocity[world, dof]
                 joint_omega += scratch.dof_angular[world, dof] * rate
                 joint_velocity += scratch.dof_linear[world, dof] * rate
+                if purpose == INVERSE_DYNAMICS:
+                    alpha += scratch.dof_angular[world, dof] * scratch.dof_acceleration[world, dof]
+                    acceleration += scratch.dof_linear[world, dof] * scratch.dof_acceleration[world, dof]
             omega += joint_omega
             velocity += joint_velocity
             # The motion subspace turns with the link: spatial cross product of both velocities.
@@ -118,6 +122,11 @@ def link_bias_forces(
         elif model.tree_fixed[tree] == 0:
             # The base keeps its velocity; its spatial acceleration is that minus omega x velocity.
             acceleration = -wp.cross(omega, velocity)
+            if purpose == INVERSE_DYNAMICS:
+                first = model.tree_first_velocity[tree]
+                for axis in range(3):
+                    alpha[axis] = scratch.dof_acceleration[world, first + axis]
+                    acceleration[axis] += scratch.dof_acceleration[world, first + 3 + axis]
         scratch.link_omega[world, link] = omega
         scratch.link_velocity[world, link] = velocity
         scratch.link_alpha[world, link] = alpha
@@ -134,12 +143,13 @@ def link_bias_forces(
         force = mass * com_acceleration
         torque = about_com * alpha + wp.cross(omega, spin)
 
-        if linear_damping != 0.0:
-            force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
-        if angular_damping != 0.0:
-            torque += spin * damping_rate(angular_damping, wp.length(omega))
+        if purpose != INVERSE_DYNAMICS:
+            if linear_damping != 0.0:
+                force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
+            if angular_damping != 0.0:
+                torque += spin * damping_rate(angular_damping, wp.length(omega))
 
-        if feedback == 0:
+        if purpose != CONSTRAINT_FEEDBACK:
             force -= external_force(state, settings, mass, world, link)
             torque -= external_torque(state, world, link)
         else:
@@ -154,7 +164,7 @@ def link_bias_forces(
 
 @func
 def generalized_forces(
-    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, feedback: Int32
+    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, purpose: Int32
 ):
     """Gather link forces towards the root; leaves in `dof_force` what is free to accelerate dofs."""
     base = model.tree_first_link[tree]
@@ -168,20 +178,14 @@ def generalized_forces(
             needed = wp.dot(scratch.dof_angular[world, dof], moment) + wp.dot(
                 scratch.dof_linear[world, dof], force
             )
-            applied = 0.0 * needed
-            if feedback == 0:
+            applied = real(0.0)
+            if purpose == FREE_MOTION:
                 applied = state.dof_torque[world, dof]
             scratch.dof_force[world, dof] = applied - needed
         if link > base:
             parent = model.link_parent[link]
             scratch.link_force[world, parent] += force
             scratch.link_moment[world, parent] += moment
-
-    if model.tree_fixed[tree] == 0:
-        first = model.tree_first_velocity[tree]
-        for axis in range(3):
-            scratch.dof_force[world, first + axis] = -scratch.link_moment[world, base][axis]
-            scratch.dof_force[world, first + 3 + axis] = -scratch.link_force[world, base][axis]
 
 
 @func

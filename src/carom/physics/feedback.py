@@ -6,8 +6,8 @@ second motion which only the constraint forces drive.
 
 import warp as wp
 
-from carom.model.codes import ROW_IMPULSE
-from carom.model.real import Int32, Vector3, Vector6, func, real
+from carom.model.codes import CONSTRAINT_FEEDBACK, ROW_IMPULSE
+from carom.model.real import Int32, Vector3, Vector6, func
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, parallel_axis
 from carom.physics.mass_matrix import solve
@@ -110,7 +110,7 @@ def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Second pass: add to the sensors what the constraint forces do."""
-    link_bias_forces(model, settings, state, scratch, world, tree, 1)
-    generalized_forces(model, state, scratch, world, tree, 1)
+    link_bias_forces(model, settings, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+    generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)
     measure_joint_wrenches(model, settings, state, scratch, world, tree, 1)

@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
-from carom.model.real import Int32, Quaternion, Transform, TransformRows, Vector3, Vector6, func, kernel, real
+from carom.model.real import Int32, Quaternion, Transform, TransformRows, Vector3, Vector6, func, kernel
 from carom.model.structs import Model, Scratch, State
 from carom.physics.rotation import axis_rotation, canonical, rotation_matrix
 

@@ -21,7 +21,7 @@ from carom.model.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
-from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, real
+from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.rotation import rotation_matrix
 from carom.physics.rows import add_row, axis_effective_masses, dof_effective_mass

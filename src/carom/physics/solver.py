@@ -84,7 +84,7 @@ def solve_island(
     last = island_rows(model, settings, state, scratch, world, island)
     count = last - first
     residual = real(0.0)
-    sweep = int(0)
+    sweep = 0
     searching = int(count > 0)
     while searching == 1:
         residual = real(0.0)

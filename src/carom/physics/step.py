@@ -2,7 +2,8 @@
 
 import warp as wp
 
-from carom.model.real import Int32, Vector6, func, kernel, real
+from carom.model.codes import FREE_MOTION
+from carom.model.real import Int32, Vector6, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
 from carom.physics.feedback import (
@@ -24,8 +25,8 @@ def free_motion(model: Model, settings: Settings, state: State, scratch: Scratch
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
     link_inertias(model, scratch, world, tree)
-    link_bias_forces(model, settings, state, scratch, world, tree, 0)
-    generalized_forces(model, state, scratch, world, tree, 0)
+    link_bias_forces(model, settings, state, scratch, world, tree, FREE_MOTION)
+    generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
     composite_inertia(model, scratch, world, tree)
     factorise(model, scratch, world, tree)
     solve(model, scratch, world, tree)
