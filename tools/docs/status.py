@@ -16,6 +16,7 @@ TITLES = {
     "_bodies": "Bodies",
     "_joints": "Joints",
     "_motors": "Motors",
+    "_motors_multi_dof": "Motors of joints with several freedoms",
     "_links": "Links",
     "_dynamics": "Masses, friction, damping, limits",
     "_forces": "External forces",
@@ -25,6 +26,11 @@ TITLES = {
     "_maths": "Maths",
 }
 UNAVAILABLE = "_unavailable"
+
+NOTES = {
+    "_gui": "There is no window yet: sliders keep their start values, drawings are kept but not shown, no key "
+    "is ever pressed.",
+}
 
 LIMITED = {
     "connect": "`GUI` simulates without showing a window; there are no physics servers",
@@ -72,7 +78,10 @@ def page() -> str:
     ]
     for module, title in TITLES.items():
         if by_home[module]:
-            lines += ["", f"## {title}", "", "| function | what it does |", "|---|---|"]
+            lines += ["", f"## {title}", ""]
+            if module in NOTES:
+                lines += [NOTES[module], ""]
+            lines += ["| function | what it does |", "|---|---|"]
             for name in by_home[module]:
                 limit = f" *Limited: {LIMITED[name]}.*" if name in LIMITED else ""
                 lines.append(f"| `{name}` | {first_line(available[name])}{limit} |")
