@@ -28,8 +28,8 @@ TITLES = {
 UNAVAILABLE = "_unavailable"
 
 NOTES = {
-    "_gui": "There is no window yet: sliders keep their start values, drawings are kept but not shown, no key "
-    "is ever pressed.",
+    "_gui": "There is no window yet: sliders keep their start values, drawings are kept but not shown, and "
+    "no key is ever pressed.",
 }
 
 LIMITED = {
