@@ -1,0 +1,233 @@
+"""Inverse dynamics, Jacobians and mass matrices of articulated bodies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, overload
+
+from pybullet._arguments import Vector, integer, numbers
+from pybullet._builtin import exported, exported_as
+from pybullet._clients import client_of
+from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
+from pybullet._errors import fail
+from pybullet._lookup import no_body
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+__all__ = [
+    "calculateInverseDynamics",
+    "calculateJacobian",
+    "calculateMassMatrix",
+]
+
+Matrix = tuple[tuple[float, ...], ...]
+
+_FULL_MODEL = 1
+_BASE_POSITIONS, _BASE_VELOCITIES = 7, 6
+_INVERSE_DYNAMICS = "Error in calculateInverseDynamics, please check arguments."
+_INVERSE_DYNAMICS_SIZES = (
+    "calculateInverseDynamics numDofs needs to be positive and [joint velocities] and[joint accelerations] "
+    "need to be equal and match the number of degrees of freedom."
+)
+_JACOBIAN_SIZES = (
+    "calculateJacobian [numDof] needs to be positive, [local position] needs to be of size 3 and "
+    "[joint positions], [joint velocities], [joint accelerations] need to match the number of DoF."
+)
+_MASS_MATRIX_SIZES = (
+    "calculateMassMatrix [numJoints] needs to be positive and [joint positions] need to match the number of "
+    "joints."
+)
+
+
+@overload
+def calculateInverseDynamics(
+    bodyUniqueId: int,
+    objPositions: Vector,
+    objVelocities: Vector,
+    objAccelerations: Vector,
+    flags: int = 0,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@overload
+def calculateInverseDynamics(
+    *,
+    bodyIndex: int,
+    objPositions: Vector,
+    objVelocities: Vector,
+    objAccelerations: Vector,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@exported_as("(bodyUniqueId, objPositions, objVelocities, objAccelerations, flags=0, physicsClientId=0)")
+def calculateInverseDynamics(
+    bodyUniqueId: Any = None,
+    objPositions: Any = None,
+    objVelocities: Any = None,
+    objAccelerations: Any = None,
+    flags: int = 0,
+    physicsClientId: int = 0,
+    *,
+    bodyIndex: Any = None,
+) -> tuple[float, ...]:
+    """Joint forces that give accelerations, under gravity and without damping or motors.
+
+    The state of the body does not matter and does not change. The coordinates are those of the joints
+    that are not fixed, in the order of `getJointInfo`. With a floating base the base comes first: in
+    positions as position (3) and quaternion (4), in velocities, accelerations and forces as six numbers.
+
+    Args:
+        bodyUniqueId: The body.
+        objPositions: Positions [rad or m].
+        objVelocities: Velocities [rad/s or m/s].
+        objAccelerations: Accelerations [rad/s² or m/s²].
+        flags: 1 for another model that counts the base of every body and four coordinates for a spherical
+            joint; it takes accelerations to be 0.
+        physicsClientId: The connection.
+        bodyIndex: Another name of `bodyUniqueId`.
+
+    Returns:
+        Forces [N m or N], one for each velocity. Those on a floating base are linear, then angular.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, or the lists do not fit it.
+    """
+    if (bodyUniqueId is None) == (bodyIndex is None):
+        raise TypeError("calculateInverseDynamics() needs one of 'bodyUniqueId' and 'bodyIndex'")
+    for name, value in (
+        ("objPositions", objPositions),
+        ("objVelocities", objVelocities),
+        ("objAccelerations", objAccelerations),
+    ):
+        if value is None:
+            raise TypeError(f"calculateInverseDynamics() missing required argument {name!r}")
+    body = _body(bodyIndex if bodyUniqueId is None else bodyUniqueId, physicsClientId, _INVERSE_DYNAMICS)
+    q = numbers(objPositions, _INVERSE_DYNAMICS, "objPositions")
+    qd = numbers(objVelocities, _INVERSE_DYNAMICS, "objVelocities")
+    qdd = numbers(objAccelerations, _INVERSE_DYNAMICS, "objAccelerations")
+    full = integer(flags, "flags") & _FULL_MODEL != 0
+    if len(qd) != len(qdd):
+        fail(_INVERSE_DYNAMICS_SIZES, f"There are {len(qd)} velocities and {len(qdd)} accelerations.")
+    floating = not body.fixed_base
+    if full:
+        positions = velocities = sum(body.position_count) + (_BASE_POSITIONS if floating else 0)
+    else:
+        positions = sum(body.velocity_count) + (_BASE_POSITIONS if floating else 0)
+        velocities = sum(body.velocity_count) + (_BASE_VELOCITIES if floating else 0)
+    if len(q) != positions or len(qd) != velocities or velocities == 0:
+        fail(
+            _INVERSE_DYNAMICS,
+            f"Body {body.id} ({body.name}) takes {positions} positions and {velocities} velocities, "
+            f"not {len(q)} and {len(qd)}.",
+        )
+
+    from carom.algorithms import inverse_dynamics
+
+    return tuple(inverse_dynamics(body, q, qd, qdd, full=full).tolist())
+
+
+@exported
+def calculateJacobian(
+    bodyUniqueId: int,
+    linkIndex: int,
+    localPosition: Vector,
+    objPositions: Vector,
+    objVelocities: Vector,
+    objAccelerations: Vector,
+    physicsClientId: int = 0,
+) -> tuple[Matrix, Matrix]:
+    """How the velocity of a point on a link depends on the velocities of the joints.
+
+    The state of the body does not matter and does not change. The coordinates are those of the joints
+    that are not fixed, in the order of `getJointInfo`.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        localPosition: The point, from the origin of the link frame, in the axes of its inertial frame [m].
+        objPositions: Positions [rad or m].
+        objVelocities: Velocities; they do not matter.
+        objAccelerations: Accelerations; they do not matter.
+        physicsClientId: The connection.
+
+    Returns:
+        (linear, angular): two matrices of three rows and a column for each joint. With a floating base
+        six columns for its angular and linear velocity come first.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, or
+            the lists do not fit the body.
+    """
+    body = _body(bodyUniqueId, physicsClientId, _JACOBIAN_SIZES)
+    link = integer(linkIndex, "linkIndex")
+    if JOINT_SPHERICAL in body.joint_types:
+        fail("Spherirical joints are not supported in the pybullet binding")
+    if JOINT_PLANAR in body.joint_types:
+        fail("Planar joints are not supported in the pybullet binding")
+    freedoms = sum(body.velocity_count)
+    lists = {
+        "localPosition": (localPosition, 3),
+        "objPositions": (objPositions, freedoms),
+        "objVelocities": (objVelocities, freedoms),
+        "objAccelerations": (objAccelerations, freedoms),
+    }
+    values = {name: numbers(given, _JACOBIAN_SIZES, name) for name, (given, _) in lists.items()}
+    for name, (_, size) in lists.items():
+        if len(values[name]) != size:
+            fail(_JACOBIAN_SIZES, f"{name} has {len(values[name])} values instead of {size}.")
+    if freedoms == 0:
+        fail(_JACOBIAN_SIZES, f"Body {body.id} ({body.name}) has no joint that moves.")
+    if not -1 <= link < body.joint_count:
+        fail("Internal error in calculateJacobian", f"Body {body.id} ({body.name}) has no link {link}.")
+
+    from carom.algorithms import jacobian
+
+    linear, angular = jacobian(body, link, values["localPosition"], values["objPositions"])
+    return _rows(linear), _rows(angular)
+
+
+@exported
+def calculateMassMatrix(
+    bodyUniqueId: int, objPositions: Vector, flags: int = 0, physicsClientId: int = 0
+) -> Matrix:
+    """The matrix that turns accelerations of the coordinates into forces.
+
+    The state of the body does not matter and does not change. The coordinates are those of the joints
+    that are not fixed, in the order of `getJointInfo`.
+
+    Args:
+        bodyUniqueId: The body.
+        objPositions: Positions [rad or m]; more than there are coordinates do no harm.
+        flags: 1 for another model that counts the base of every body, and four coordinates for a
+            spherical joint; a floating base's position (3) and quaternion (4) then come first.
+        physicsClientId: The connection.
+
+    Returns:
+        Its rows. With a floating base six rows and columns for its angular and linear velocity come
+        first.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, or there are too few positions.
+    """
+    problem = "Internal error in calculateMassMatrix"
+    body = _body(bodyUniqueId, physicsClientId, problem)
+    q = numbers(objPositions, _MASS_MATRIX_SIZES, "objPositions")
+    full = integer(flags, "flags") & _FULL_MODEL != 0
+    needed = sum(body.position_count if full else body.velocity_count)
+    if full and not body.fixed_base:
+        needed += _BASE_POSITIONS
+    if len(q) < needed:
+        fail(_MASS_MATRIX_SIZES, f"Body {body.id} ({body.name}) takes {needed} positions, not {len(q)}.")
+
+    from carom.algorithms import mass_matrix
+
+    return _rows(mass_matrix(body, q[:needed], full=full))
+
+
+def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
+    body = client_of(physics_client_id).body(body_id)
+    if body is None:
+        fail(problem, no_body(body_id))
+    return body
+
+
+def _rows(matrix: Any) -> Matrix:
+    return tuple(tuple(row) for row in matrix.tolist())

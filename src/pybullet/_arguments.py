@@ -1,0 +1,161 @@
+"""Checking of arguments: scripts get a clear error, never a corrupt world.
+
+Getters and setters that are called every step first try the arguments as they are; only when that does
+not work do they come here, to find out what is wrong or to convert what is merely unusual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import inf, isfinite
+from operator import index
+from typing import Any
+
+from pybullet._errors import fail
+
+_LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
+
+Vector = Sequence[float]
+Indices = Iterable[int]
+
+
+def integer(value: Any, name: str) -> int:
+    """An integer of 32 bits.
+
+    Raises:
+        TypeError: It is not an integer.
+        OverflowError: It does not fit.
+    """
+    try:
+        number = index(value)
+    except TypeError as problem:
+        raise TypeError(f"{problem} ({name})") from None
+    if number > _GREATEST_INT:
+        raise OverflowError(f"signed integer is greater than maximum ({name})")
+    if number < _LEAST_INT:
+        raise OverflowError(f"signed integer is less than minimum ({name})")
+    return number
+
+
+def real(value: Any, name: str) -> float:
+    """A finite number.
+
+    Raises:
+        TypeError: It is not a number.
+        pybullet.error: It is infinite or not a number (NaN).
+    """
+    number = _as_float(value, name)
+    if not isfinite(number):
+        fail(f"{name} has to be a finite number, not {number}.")
+    return number
+
+
+def bound(value: Any, name: str) -> float:
+    """A number that may be infinite: a limit that is not there.
+
+    Raises:
+        TypeError: It is not a number.
+        pybullet.error: It is not a number (NaN) or minus infinity.
+    """
+    number = _as_float(value, name)
+    if number == inf:
+        return number
+    return real(number, name)
+
+
+def text(value: Any, name: str) -> str:
+    """A string.
+
+    Raises:
+        TypeError: It is not a string.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"argument must be str, not {type(value).__name__} ({name})")
+    return value
+
+
+def _as_float(value: Any, name: str) -> float:
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"must be real number, not {type(value).__name__} ({name})")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"must be real number, not {type(value).__name__} ({name})") from None
+
+
+def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
+    """Finite numbers from any sequence: a list, a tuple, a range or an array of one dimension.
+
+    Args:
+        values: The sequence.
+        problem: PyBullet's text for one that is not fit.
+        name: Of the argument.
+
+    Raises:
+        pybullet.error: It is not a sequence, or an item is not a finite number.
+    """
+    items = sequence(values, problem, name)
+    result = []
+    for position, item in enumerate(items):
+        try:
+            number = _as_float(item, name)
+        except TypeError:
+            fail(problem, f"{name}[{position}] is {item!r}, not a number.")
+        if not isfinite(number):
+            fail(problem, f"{name}[{position}] is {number}.")
+        result.append(number)
+    return tuple(result)
+
+
+def vector(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
+    """`count` finite numbers.
+
+    Raises:
+        pybullet.error: There are more or fewer, it is not a sequence, or an item is not a finite number.
+    """
+    result = numbers(values, problem, name)
+    if len(result) != count:
+        fail(problem, f"{name} has {len(result)} values instead of {count}.")
+    return result
+
+
+def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
+    """Three finite numbers; raises `pybullet.error`."""
+    x, y, z = vector(values, 3, problem, name)
+    return x, y, z
+
+
+def quaternion(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
+    """A rotation (x, y, z, w) whose length is not zero; raises `pybullet.error`."""
+    x, y, z, w = vector(values, 4, problem, name)
+    if x == y == z == w == 0.0:
+        fail(problem, f"{name} is a quaternion of length 0, which is no rotation.")
+    return x, y, z, w
+
+
+def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:
+    """The items of any sequence; raises `pybullet.error` when it is none."""
+    try:
+        return tuple(values)
+    except TypeError:
+        fail(problem, f"{name} is {values!r}.")
+
+
+def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:
+    """Indices from any sequence of integers or of floats that stand for integers.
+
+    Raises:
+        pybullet.error: It is not a sequence.
+        TypeError: An item is not a number.
+    """
+    return tuple(_as_index(item, name) for item in sequence(values, problem, name))
+
+
+def _as_index(item: Any, name: str) -> int:
+    try:
+        return index(item)
+    except TypeError:
+        number = real(item, name)
+        if number != int(number):
+            fail("Joint index out-of-range.", f"{name} contains {number}, which is no index.")
+        return int(number)

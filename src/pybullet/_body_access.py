@@ -1,0 +1,73 @@
+"""Bodies as scripts see them: direct access to the state of the base, the joints and the links."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from struct import Struct
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Quaternion, Vector3
+from pybullet._joint_access import JointAccess, joint_access
+from pybullet._joint_info import JointInfo, joint_info
+from pybullet._link_access import LinkAccess, canonical
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from pybullet._clients import Client
+
+_read_pose = Struct("7d").unpack_from
+_read_velocity = Struct("6d").unpack_from
+
+
+class BodyAccess:
+    """One body.
+
+    Attributes:
+        body: The body itself.
+        joints: Access to its joints, by index.
+    """
+
+    def __init__(self, client: Client, body: Body) -> None:
+        self.body = body
+        self._client = client
+        self._positions = client.world.position_memory
+        self._velocities = client.world.velocity_memory
+        self._position_at = body.first_position * 8
+        self._velocity_at = body.first_velocity * 8
+        self.joints: dict[int, JointAccess] = {
+            index: joint_access(client, body, index) for index in range(body.joint_count)
+        }
+
+    @cached_property
+    def links(self) -> dict[int, LinkAccess]:
+        """Access to the links other than the base, by index."""
+        return {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
+
+    @cached_property
+    def joint_infos(self) -> dict[int, JointInfo]:
+        """What `getJointInfo` returns, by joint index."""
+        return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
+
+    def base_pose(self) -> tuple[Vector3, Quaternion]:
+        """World pose of the base's inertial frame."""
+        x, y, z, qx, qy, qz, qw = _read_pose(self._positions, self._position_at)
+        return ((x, y, z), canonical((qx, qy, qz, qw)))
+
+    def base_velocity(self) -> tuple[Vector3, Vector3]:
+        """Velocity of the base's centre of mass and its angular velocity, in world axes."""
+        wx, wy, wz, vx, vy, vz = _read_velocity(self._velocities, self._velocity_at)
+        return ((vx, vy, vz), (wx, wy, wz))
+
+
+class BodyTable(dict[int, BodyAccess]):
+    """Access to the bodies of one client by id; an entry is made when it is first asked for.
+
+    Asking for a body that does not exist raises `KeyError`.
+    """
+
+    client: Client
+
+    def __missing__(self, body_id: int) -> BodyAccess:
+        access = BodyAccess(self.client, self.client.world.bodies[body_id])
+        self[body_id] = access
+        return access

@@ -1,0 +1,99 @@
+"""Physics clients: independent worlds, picked by `physicsClientId`."""
+
+from __future__ import annotations
+
+from threading import RLock
+from typing import TYPE_CHECKING, Any
+
+from pybullet._arguments import integer
+from pybullet._errors import fail
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from carom.body import Body
+    from carom.world import World
+    from pybullet._body_access import BodyTable
+    from pybullet._real_time import RealTimeClock
+    from pybullet._window import Window
+
+MAX_CLIENTS = 1024
+NOT_CONNECTED = "Not connected to physics server."
+
+
+class Client:
+    """One connection and the world behind it.
+
+    Attributes:
+        method: How it was connected: `DIRECT`, `GUI`, ...
+        world: Its world.
+        bodies: Direct access to the state of bodies, by id; made when first asked for and forgotten
+            whenever bodies come or go, because that moves the rows of the state arrays.
+        time_step: `fixedTimeStep` [s].
+        real_time: `useRealTimeSimulation` as the script set it.
+        report_analytics: `stepSimulation` returns the statistics of the solver.
+        search_path: Directory that is searched for files besides the usual ones.
+        window: What the script sees of a graphical interface.
+        clock: Steps the world by the wall clock while that is asked for.
+        lock: Held during a step and while bodies come, go or change shape. Getters and setters of the
+            state do without: they read and write single numbers.
+    """
+
+    __slots__ = (
+        "bodies",
+        "clock",
+        "lock",
+        "method",
+        "real_time",
+        "report_analytics",
+        "search_path",
+        "time_step",
+        "window",
+        "world",
+    )
+
+    def __init__(self, method: int, world: World, bodies: BodyTable, window: Window) -> None:
+        self.method = method
+        self.world = world
+        self.bodies = bodies
+        self.window = window
+        self.time_step = world.parameters.time_step
+        self.real_time = 0
+        self.report_analytics = False
+        self.search_path: Path | None = None
+        self.clock: RealTimeClock | None = None
+        self.lock = RLock()
+        bodies.client = self
+
+    def body(self, body_id: Any) -> Body | None:
+        """The body of an id, or None; raises `TypeError` for anything but an integer."""
+        return self.world.bodies.get(integer(body_id, "bodyUniqueId"))
+
+    def close(self) -> None:
+        """Stops what runs in the background."""
+        if self.clock is not None:
+            self.clock.stop()
+            self.clock = None
+        self.window.close()
+
+
+clients: dict[int, Client] = {}
+"""Every connected client by its id."""
+
+
+def client_of(physics_client_id: Any) -> Client:
+    """The client of an id.
+
+    Raises:
+        pybullet.error: There is none.
+        TypeError: The id is not an integer.
+    """
+    client = clients.get(integer(physics_client_id, "physicsClientId"))
+    if client is None:
+        fail(NOT_CONNECTED, f"There is no client {physics_client_id}.")
+    return client
+
+
+def free_slot() -> int | None:
+    """The least id that no client has."""
+    return next((slot for slot in range(MAX_CLIENTS) if slot not in clients), None)

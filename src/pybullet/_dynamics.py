@@ -1,0 +1,258 @@
+"""Masses, friction, damping, limits and sensors of links."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pybullet._arguments import Vector, integer, real, vector3
+from pybullet._builtin import exported
+from pybullet._clients import client_of
+from pybullet._errors import fail, logger
+from pybullet._lookup import body_access, no_body, no_joint
+
+__all__ = [
+    "changeDynamics",
+    "enableJointForceTorqueSensor",
+    "getDynamicsInfo",
+]
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+DynamicsInfo = tuple[
+    float, float, Vector3, Vector3, Quaternion, float, float, float, float, float, int, float
+]
+
+_BASE = -1
+_MULTI_BODY = 2
+
+
+@exported
+def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0) -> DynamicsInfo:
+    """Mass, inertia and contact parameters of a link.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        physicsClientId: The connection.
+
+    Returns:
+        12 fields: 0 mass [kg], 0 for a fixed base; 1 lateral friction; 2 principal moments of inertia
+        [kg m²]; 3 position [m] and 4 quaternion (x, y, z, w) of the inertial frame in the link frame;
+        5 restitution; 6 rolling and 7 spinning friction; 8 contact damping and 9 contact stiffness,
+        -1 when not set; 10 type of the body, 2 for articulated ones; 11 collision margin [m].
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or link.
+    """
+    problem = "getDynamicsInfo failed; invalid return status"
+    access = body_access(
+        bodyUniqueId, physicsClientId, problem, "getDynamicsInfo failed; invalid bodyUniqueId"
+    )
+    body, link = access.body, integer(linkIndex, "linkIndex")
+    if link < _BASE:
+        fail("getDynamicsInfo failed; invalid linkIndex", f"{link} is less than -1, the base.")
+    if link >= body.joint_count:
+        fail(problem, no_joint(body, link))
+    dynamics = body.dynamics(link)
+    frame = body.link_inertial_frame(link)
+    return (
+        dynamics.mass,
+        dynamics.lateral_friction,
+        dynamics.inertia,
+        frame.position,
+        frame.orientation,
+        dynamics.restitution,
+        dynamics.rolling_friction,
+        dynamics.spinning_friction,
+        dynamics.contact_damping,
+        dynamics.contact_stiffness,
+        _MULTI_BODY,
+        dynamics.collision_margin,
+    )
+
+
+@exported
+def changeDynamics(
+    bodyUniqueId: int,
+    linkIndex: int,
+    mass: float = -1,
+    lateralFriction: float = -1,
+    spinningFriction: float = -1,
+    rollingFriction: float = -1,
+    restitution: float = -1,
+    linearDamping: float = -1,
+    angularDamping: float = -1,
+    contactStiffness: float = -1,
+    contactDamping: float = -1,
+    frictionAnchor: int = -1,
+    localInertiaDiagonal: Vector | None = None,
+    ccdSweptSphereRadius: float = -1,
+    contactProcessingThreshold: float = -1,
+    activationState: int = -1,
+    jointDamping: float = -1,
+    anisotropicFriction: Vector | None = None,
+    maxJointVelocity: float = -1,
+    collisionMargin: float = -1,
+    jointLowerLimit: float = 1,
+    jointUpperLimit: float = -1,
+    jointLimitForce: float = -1,
+    sleepThreshold: float = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """Changes a link, the joint that carries it, or the whole body. Negative numbers change nothing.
+
+    PyBullet has a trap here, which is kept: damping, activation state, greatest velocity and collision
+    margin belong to the body, and when one of them is what it looks at last, in the order written below,
+    then everything else in the same call goes to the base as well. Use one call for the body and another
+    for the link; a warning is logged when it happens. A body or link that does not exist is no error.
+
+    The order: jointLimitForce, joint limits, mass, anisotropicFriction, localInertiaDiagonal,
+    lateralFriction, spinningFriction, rollingFriction, linearDamping*, angularDamping*, jointDamping,
+    restitution, contactStiffness, frictionAnchor, ccdSweptSphereRadius, activationState*,
+    contactProcessingThreshold, maxJointVelocity*, collisionMargin* (* for the base).
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        mass: [kg]; sets the inertia to that of the collision shapes. 0 fixes the base.
+        lateralFriction: Coulomb coefficient.
+        spinningFriction: Torque about the contact normal per normal force [m].
+        rollingFriction: Torque about the tangents per normal force [m].
+        restitution: Fraction of the normal speed that comes back.
+        linearDamping: Of the whole body [1/s]; 0.04 at first.
+        angularDamping: Of the whole body [1/s]; 0.04 at first.
+        contactStiffness: Spring of contacts [N/m]; together with `contactDamping`.
+        contactDamping: Damper of contacts [N s/m]; together with `contactStiffness`.
+        frictionAnchor: 1: friction draws back to where it started.
+        localInertiaDiagonal: Principal moments of inertia [kg m²].
+        ccdSweptSphereRadius: Of continuous collision detection [m].
+        contactProcessingThreshold: Distance beyond which contacts are not solved [m].
+        activationState: `ACTIVATION_STATE_*`, added up.
+        jointDamping: [N m s/rad or N s/m].
+        anisotropicFriction: Factor on friction along the axes of the link.
+        maxJointVelocity: Greatest velocity of every coordinate of the body [rad/s, m/s]; 100 at first.
+        collisionMargin: Of the base's shapes [m].
+        jointLowerLimit: [rad or m]; the limits change when it is not greater than the upper one.
+        jointUpperLimit: [rad or m].
+        jointLimitForce: Greatest force of the limits [N m or N].
+        sleepThreshold: Motion below which a body may sleep.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, only one of stiffness and damping is given, or an argument is not
+            finite or not three numbers.
+    """
+    client = client_of(physicsClientId)
+    body = client.body(bodyUniqueId)
+    named_link = integer(linkIndex, "linkIndex")
+    stiffness, damping = real(contactStiffness, "contactStiffness"), real(contactDamping, "contactDamping")
+    if (stiffness >= 0.0) != (damping >= 0.0):
+        fail("Both contactStiffness and contactDamping needs to be set together.")
+    lower, upper = real(jointLowerLimit, "jointLowerLimit"), real(jointUpperLimit, "jointUpperLimit")
+    inertia = _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")
+    anisotropic = _optional_vector(anisotropicFriction, "anisotropicFriction")
+
+    changes = _Changes(named_link)
+    changes.of_link("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
+    changes.of_body("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
+    if lower <= upper:
+        changes.include("joint_lower_limit", lower)
+        changes.include("joint_upper_limit", upper)
+    changes.of_link("mass", real(mass, "mass"))
+    changes.include("anisotropic_friction", anisotropic)
+    changes.include("inertia", inertia)
+    changes.of_link("lateral_friction", real(lateralFriction, "lateralFriction"))
+    changes.of_link("spinning_friction", real(spinningFriction, "spinningFriction"))
+    changes.of_link("rolling_friction", real(rollingFriction, "rollingFriction"))
+    changes.of_body("linear_damping", real(linearDamping, "linearDamping"))
+    changes.of_body("angular_damping", real(angularDamping, "angularDamping"))
+    changes.of_link("joint_damping", real(jointDamping, "jointDamping"))
+    changes.of_link("restitution", real(restitution, "restitution"))
+    changes.of_link("contact_stiffness", stiffness)
+    changes.of_link("contact_damping", damping)
+    changes.of_link("friction_anchor", integer(frictionAnchor, "frictionAnchor"))
+    changes.of_link("ccd_swept_sphere_radius", real(ccdSweptSphereRadius, "ccdSweptSphereRadius"))
+    changes.of_body("activation_state", integer(activationState, "activationState"))
+    changes.of_link(
+        "contact_processing_threshold", real(contactProcessingThreshold, "contactProcessingThreshold")
+    )
+    changes.of_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
+    changes.of_body("collision_margin", real(collisionMargin, "collisionMargin"))
+
+    link = changes.link
+    if body is None:
+        logger.warning("changeDynamics: %s", no_body(bodyUniqueId))
+    elif not _BASE <= link < body.joint_count:
+        logger.warning("changeDynamics: %s", no_joint(body, link))
+    else:
+        if link != named_link and changes.misdirected:
+            logger.warning(
+                "changeDynamics: %s go to the base, not to link %d, because the call also changes the whole "
+                "body. Make two calls.",
+                ", ".join(changes.misdirected),
+                named_link,
+            )
+        with client.lock:
+            body.change_dynamics(link, **changes.values)
+            client.bodies.pop(body.id, None)
+
+
+@exported
+def enableJointForceTorqueSensor(
+    bodyUniqueId: int, jointIndex: int, enableSensor: int = 1, physicsClientId: int = 0
+) -> None:
+    """Switches the sensor of a joint on or off that `getJointState` reads.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        enableSensor: 1 to switch it on, 0 to switch it off.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+    """
+    problem = "Error: invalid jointIndex."
+    access = body_access(bodyUniqueId, physicsClientId, problem, "Error: invalid bodyUniqueId")
+    index, enabled = integer(jointIndex, "jointIndex"), integer(enableSensor, "enableSensor") != 0
+    if index not in access.joints:
+        fail(problem, no_joint(access.body, index))
+    with client_of(physicsClientId).lock:
+        access.body.set_sensor(index, enabled)
+
+
+class _Changes:
+    """What a call of `changeDynamics` changes, and the link it goes to.
+
+    Attributes:
+        link: The link that was addressed last.
+        values: New values by name.
+        misdirected: Names of those that were meant for a link.
+    """
+
+    def __init__(self, link: int) -> None:
+        self._named_link = link
+        self.link = link
+        self.values: dict[str, Any] = {}
+        self.misdirected: list[str] = []
+
+    def include(self, name: str, value: Any) -> None:
+        """Takes a value for the named link, unless there is none."""
+        if value is not None:
+            self.values[name] = value
+            self.link = self._named_link
+            self.misdirected.append(name)
+
+    def of_link(self, name: str, value: float) -> None:
+        """Takes a value for the named link, unless it is negative."""
+        self.include(name, value if value >= 0 else None)
+
+    def of_body(self, name: str, value: float) -> None:
+        """Takes a value for the whole body, unless it is negative."""
+        if value >= 0:
+            self.values[name] = value
+            self.link = _BASE
+
+
+def _optional_vector(values: Vector | None, name: str) -> Vector3 | None:
+    return None if values is None else vector3(values, f"{name} needs 3 numbers.", name)

@@ -1,0 +1,123 @@
+"""Forces and torques from outside, for the next step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Pose, Vector3
+from carom.description.transform import rotate
+from pybullet._arguments import Vector, integer, vector3
+from pybullet._builtin import exported
+from pybullet._camera_maths import cross, subtracted
+from pybullet._clients import client_of
+from pybullet._constants import LINK_FRAME, WORLD_FRAME
+from pybullet._errors import fail, logger
+from pybullet._lookup import no_body
+
+if TYPE_CHECKING:
+    from pybullet._clients import Client
+
+__all__ = [
+    "applyExternalForce",
+    "applyExternalTorque",
+]
+
+_BASE = -1
+_FRAMES = (WORLD_FRAME, LINK_FRAME)
+_WRONG_FRAME = "flag has to be either WORLD_FRAME or LINK_FRAME"
+_WRONG_LINK = "Invalid link index, has to be -1 or larger"
+
+
+@exported
+def applyExternalForce(
+    objectUniqueId: int,
+    linkIndex: int,
+    forceObj: Vector,
+    posObj: Vector,
+    flags: int,
+    physicsClientId: int = 0,
+) -> None:
+    """Pushes a link during the next step. Forces add up. A body that does not exist is no error.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        forceObj: Force [N].
+        posObj: Where it acts [m].
+        flags: `WORLD_FRAME`: both are in the world frame. `LINK_FRAME`: both are in the inertial frame of
+            the link, so that a position of zeros is its centre of mass.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such link or frame, or an argument is not three finite
+            numbers.
+    """
+    client = client_of(physicsClientId)
+    force = vector3(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
+    point = vector3(posObj, "position needs a 3 coordinates [x,y,z].", "posObj")
+    frame = _frame(flags)
+    pose, row = _link(client, objectUniqueId, linkIndex, "applyExternalForce")
+    if pose is None:
+        return
+    if frame == LINK_FRAME:
+        force, arm = rotate(pose.orientation, force), rotate(pose.orientation, point)
+    else:
+        arm = subtracted(point, pose.position)
+    _add(client, row, force, cross(arm, force))
+
+
+@exported
+def applyExternalTorque(
+    objectUniqueId: int, linkIndex: int, torqueObj: Vector, flags: int, physicsClientId: int = 0
+) -> None:
+    """Turns a link during the next step. Torques add up. A body that does not exist is no error.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        torqueObj: Torque [N m].
+        flags: `WORLD_FRAME`: in world axes. `LINK_FRAME`: in the axes of the link's inertial frame.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such link or frame, or the torque is not three finite
+            numbers.
+    """
+    client = client_of(physicsClientId)
+    torque = vector3(torqueObj, "torque needs a 3 coordinates [x,y,z].", "torqueObj")
+    if integer(linkIndex, "linkIndex") < _BASE:
+        fail(_WRONG_LINK, f"It is {linkIndex}.")
+    frame = _frame(flags)
+    pose, row = _link(client, objectUniqueId, linkIndex, "applyExternalTorque")
+    if pose is None:
+        return
+    if frame == LINK_FRAME:
+        torque = rotate(pose.orientation, torque)
+    _add(client, row, (0.0, 0.0, 0.0), torque)
+
+
+def _frame(flags: int) -> int:
+    frame = integer(flags, "flags")
+    if frame not in _FRAMES:
+        fail(_WRONG_FRAME, f"It is {frame}.")
+    return frame
+
+
+def _link(client: Client, body_id: int, link_index: int, function: str) -> tuple[Pose | None, int]:
+    """World pose of the inertial frame of a link, None when there is no such body, and its row."""
+    body = client.body(body_id)
+    link = integer(link_index, "linkIndex")
+    if body is None:
+        logger.warning("%s: %s", function, no_body(body_id))
+        return None, 0
+    if not _BASE <= link < body.joint_count:
+        fail(_WRONG_LINK, f"It is {link}, and body {body.id} ({body.name}) has {body.joint_count} links.")
+    access = client.bodies[body.id]
+    pose = Pose(*access.base_pose()) if link == _BASE else access.links[link].pose()
+    return pose, body.first_link + 1 + link
+
+
+def _add(client: Client, row: int, force: Vector3, torque: Vector3) -> None:
+    wrenches = client.world.link_force_memory
+    for column, value in enumerate((*force, *torque), start=6 * row):
+        wrenches[column] += value

@@ -1,0 +1,491 @@
+"""The graphical interface: sliders, drawings, keys, the camera."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from pybullet._arguments import Vector, integer, quaternion, real, sequence, text, vector3
+from pybullet._builtin import exported
+from pybullet._clients import client_of
+from pybullet._errors import fail
+from pybullet._window import DebugLine, DebugPoints, DebugText, Slider, VisualizerOptions
+
+__all__ = [
+    "addUserDebugLine",
+    "addUserDebugParameter",
+    "addUserDebugPoints",
+    "addUserDebugText",
+    "configureDebugVisualizer",
+    "getDebugVisualizerCamera",
+    "getKeyboardEvents",
+    "getMouseEvents",
+    "getVREvents",
+    "readUserDebugParameter",
+    "removeAllUserDebugItems",
+    "removeAllUserParameters",
+    "removeUserDebugItem",
+    "resetDebugVisualizerCamera",
+    "setDebugObjectColor",
+    "setVRCameraState",
+]
+
+Vector3 = tuple[float, float, float]
+
+_WHITE = (1.0, 1.0, 1.0)
+
+
+@exported
+def addUserDebugParameter(
+    paramName: str,
+    rangeMin: float = 0,
+    rangeMax: float = 1,
+    startValue: float = 0,
+    physicsClientId: int = 0,
+) -> int:
+    """Adds a slider to the window, or a button.
+
+    Args:
+        paramName: Its name.
+        rangeMin: Least value.
+        rangeMax: Greatest value; less than the least for a button, which counts its clicks.
+        startValue: Value at first.
+        physicsClientId: The connection.
+
+    Returns:
+        Its id, for `readUserDebugParameter`; -1 in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected, or a number is not finite.
+    """
+    slider = Slider(
+        text(paramName, "paramName"),
+        real(rangeMin, "rangeMin"),
+        real(rangeMax, "rangeMax"),
+        real(startValue, "startValue"),
+    )
+    return client_of(physicsClientId).window.add_slider(slider)
+
+
+@exported
+def readUserDebugParameter(itemUniqueId: int, physicsClientId: int = 0) -> float:
+    """Where a slider is, or how often a button was clicked.
+
+    Args:
+        itemUniqueId: The slider or button.
+        physicsClientId: The connection.
+
+    Returns:
+        Its value.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such slider; in `DIRECT` there never is.
+    """
+    item = integer(itemUniqueId, "itemUniqueId")
+    value = client_of(physicsClientId).window.slider_value(item)
+    if value is None:
+        fail("Failed to read parameter.", f"There is no slider or button {item}.")
+    return value
+
+
+@exported
+def addUserDebugLine(
+    lineFromXYZ: Vector,
+    lineToXYZ: Vector,
+    lineColorRGB: Vector | None = None,
+    lineWidth: float = 1,
+    lifeTime: float = 0,
+    parentObjectUniqueId: int = -1,
+    parentLinkIndex: int = -1,
+    replaceItemUniqueId: int = -1,
+    physicsClientId: int = 0,
+) -> int:
+    """Draws a line.
+
+    Args:
+        lineFromXYZ: Where it starts [m].
+        lineToXYZ: Where it ends [m].
+        lineColorRGB: Red, green and blue from 0 to 1; white when left out.
+        lineWidth: In pixels.
+        lifeTime: How long it stays [s]; 0 for ever.
+        parentObjectUniqueId: Body to draw it on: the points are then in the frame of its link.
+        parentLinkIndex: That link, from 0; -1 for the base.
+        replaceItemUniqueId: Item to put it in the place of.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the item; -1 in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected, a point is not three finite numbers, or a number is not finite.
+    """
+    client = client_of(physicsClientId)
+    line = DebugLine(
+        start=vector3(lineFromXYZ, "Error converting lineFrom[3]", "lineFromXYZ"),
+        end=vector3(lineToXYZ, "Error converting lineTo[3]", "lineToXYZ"),
+        colour=_colour(lineColorRGB, "Error converting lineColorRGB[3]", "lineColorRGB"),
+        width=real(lineWidth, "lineWidth"),
+        life_time=real(lifeTime, "lifeTime"),
+        parent_body=integer(parentObjectUniqueId, "parentObjectUniqueId"),
+        parent_link=integer(parentLinkIndex, "parentLinkIndex"),
+    )
+    return client.window.draw(line, integer(replaceItemUniqueId, "replaceItemUniqueId"))
+
+
+@exported
+def addUserDebugText(
+    text: str,
+    textPosition: Vector,
+    textColorRGB: Vector | None = None,
+    textSize: float = 1,
+    lifeTime: float = 0,
+    textOrientation: Vector | None = None,
+    parentObjectUniqueId: int = -1,
+    parentLinkIndex: int = -1,
+    replaceItemUniqueId: int = -1,
+    physicsClientId: int = 0,
+) -> int:
+    """Writes text into the scene.
+
+    Args:
+        text: What to write.
+        textPosition: Where [m].
+        textColorRGB: Red, green and blue from 0 to 1; white when left out.
+        textSize: Height of the letters.
+        lifeTime: How long it stays [s]; 0 for ever.
+        textOrientation: Quaternion (x, y, z, w); without one the text faces the camera.
+        parentObjectUniqueId: Body to write it on: the position is then in the frame of its link.
+        parentLinkIndex: That link, from 0; -1 for the base.
+        replaceItemUniqueId: Item to put it in the place of.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the item; -1 in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected, an argument is not three, or four, finite numbers, or a number is
+            not finite.
+    """
+    client = client_of(physicsClientId)
+    orientation = None
+    if textOrientation is not None:
+        orientation = quaternion(textOrientation, "Error converting textOrientation[4]", "textOrientation")
+    item = DebugText(
+        text=_text(text, "text"),
+        position=vector3(textPosition, "Error converting textPositionObj[3]", "textPosition"),
+        colour=_colour(textColorRGB, "Error converting textColorRGBObj[3]", "textColorRGB"),
+        size=real(textSize, "textSize"),
+        life_time=real(lifeTime, "lifeTime"),
+        orientation=orientation,
+        parent_body=integer(parentObjectUniqueId, "parentObjectUniqueId"),
+        parent_link=integer(parentLinkIndex, "parentLinkIndex"),
+    )
+    return client.window.draw(item, integer(replaceItemUniqueId, "replaceItemUniqueId"))
+
+
+@exported
+def addUserDebugPoints(
+    pointPositions: Sequence[Vector],
+    pointColorsRGB: Sequence[Vector],
+    pointSize: float = 1,
+    lifeTime: float = 0,
+    parentObjectUniqueId: int = -1,
+    parentLinkIndex: int = -1,
+    replaceItemUniqueId: int = -1,
+    physicsClientId: int = 0,
+) -> int:
+    """Draws a cloud of points.
+
+    Args:
+        pointPositions: Where they are [m].
+        pointColorsRGB: A colour for each: red, green and blue from 0 to 1.
+        pointSize: In pixels.
+        lifeTime: How long they stay [s]; 0 for ever.
+        parentObjectUniqueId: Body to draw them on: the points are then in the frame of its link.
+        parentLinkIndex: That link, from 0; -1 for the base.
+        replaceItemUniqueId: Item to put them in the place of.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the item; -1 in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected, there are no points, there are not as many colours as points, an
+            entry is not three finite numbers, or a number is not finite.
+    """
+    client = client_of(physicsClientId)
+    positions = _vectors(pointPositions, "pointPositions")
+    colours = _vectors(pointColorsRGB, "pointColorsRGB")
+    if not positions:
+        fail("pointPositions needs at least one point.")
+    if len(colours) != len(positions):
+        fail(
+            "numColors must match numPositions.",
+            f"There are {len(positions)} points and {len(colours)} colours.",
+        )
+    points = DebugPoints(
+        positions=positions,
+        colours=colours,
+        size=real(pointSize, "pointSize"),
+        life_time=real(lifeTime, "lifeTime"),
+        parent_body=integer(parentObjectUniqueId, "parentObjectUniqueId"),
+        parent_link=integer(parentLinkIndex, "parentLinkIndex"),
+    )
+    return client.window.draw(points, integer(replaceItemUniqueId, "replaceItemUniqueId"))
+
+
+@exported
+def removeUserDebugItem(itemUniqueId: int, physicsClientId: int = 0) -> None:
+    """Takes a line, text, cloud of points, slider or button away. One that does not exist is no error.
+
+    Args:
+        itemUniqueId: The item.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client_of(physicsClientId).window.remove(integer(itemUniqueId, "itemUniqueId"))
+
+
+@exported
+def removeAllUserDebugItems(physicsClientId: int = 0) -> None:
+    """Takes all lines, texts and points away; sliders and buttons stay.
+
+    Args:
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client_of(physicsClientId).window.remove_drawings()
+
+
+@exported
+def removeAllUserParameters(physicsClientId: int = 0) -> None:
+    """Takes all sliders and buttons away.
+
+    Args:
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client_of(physicsClientId).window.remove_sliders()
+
+
+@exported
+def setDebugObjectColor(
+    objectUniqueId: int, linkIndex: int, objectDebugColorRGB: Vector | None = None, physicsClientId: int = 0
+) -> None:
+    """Colours a link in wireframe drawings.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        objectDebugColorRGB: Red, green and blue from 0 to 1; left out, the link has its own colour again.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or the colour is not three finite numbers.
+    """
+    client = client_of(physicsClientId)
+    colour = None
+    if objectDebugColorRGB is not None:
+        problem = "Error converting objectDebugColorRGB[3]"
+        colour = vector3(objectDebugColorRGB, problem, "objectDebugColorRGB")
+    client.window.colour_link(
+        integer(objectUniqueId, "objectUniqueId"), integer(linkIndex, "linkIndex"), colour
+    )
+
+
+@exported
+def getKeyboardEvents(physicsClientId: int = 0) -> dict[int, int]:
+    """Keys pressed, held or released since the last call.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        `KEY_*` bits by key: the code of its character, or `B3G_*`. Empty in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    return client_of(physicsClientId).window.key_events()
+
+
+@exported
+def getMouseEvents(physicsClientId: int = 0) -> tuple[tuple[int, float, float, int, int], ...]:
+    """Motions and clicks of the mouse since the last call.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        (type, x, y, button, state) for each: type 1 for a motion and 2 for a button; position in pixels;
+        button 0, 1 or 2; `KEY_*` bits. Empty in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    return tuple(client_of(physicsClientId).window.mouse_events())
+
+
+@exported
+def configureDebugVisualizer(
+    flag: int = -1,
+    enable: int = -1,
+    lightPosition: Vector | None = None,
+    shadowMapResolution: int = -1,
+    shadowMapWorldSize: int = -1,
+    remoteSyncTransformInterval: float = -1,
+    shadowMapIntensity: float = -1,
+    rgbBackground: Vector | None = None,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets what the window shows. Negative numbers change nothing; nothing happens in `DIRECT`.
+
+    Args:
+        flag: `COV_*`.
+        enable: 1 to switch that on, 0 to switch it off.
+        lightPosition: Where the light is [m].
+        shadowMapResolution: Width and height of the shadow map in pixels.
+        shadowMapWorldSize: Width and height of the area with shadows [m].
+        remoteSyncTransformInterval: Simulated time between two frames [s].
+        shadowMapIntensity: Darkness of shadows from 0 to 1.
+        rgbBackground: Red, green and blue from 0 to 1.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, an argument is not three finite numbers, or a number is not finite.
+    """
+    client = client_of(physicsClientId)
+    number, on = integer(flag, "flag"), integer(enable, "enable")
+    options = VisualizerOptions(flags={number: on != 0} if number >= 0 else {})
+    if lightPosition is not None:
+        options.light_position = vector3(lightPosition, "lightPosition needs 3 numbers.", "lightPosition")
+    if rgbBackground is not None:
+        options.background = vector3(rgbBackground, "rgbBackground needs 3 numbers.", "rgbBackground")
+    resolution = integer(shadowMapResolution, "shadowMapResolution")
+    size = integer(shadowMapWorldSize, "shadowMapWorldSize")
+    intensity = real(shadowMapIntensity, "shadowMapIntensity")
+    interval = real(remoteSyncTransformInterval, "remoteSyncTransformInterval")
+    options.shadow_map_resolution = resolution if resolution > 0 else None
+    options.shadow_map_world_size = size if size > 0 else None
+    options.shadow_map_intensity = intensity if intensity >= 0.0 else None
+    options.remote_sync_transform_interval = interval if interval >= 0.0 else None
+    client.window.configure(options)
+
+
+@exported
+def resetDebugVisualizerCamera(
+    cameraDistance: float,
+    cameraYaw: float,
+    cameraPitch: float,
+    cameraTargetPosition: Vector,
+    physicsClientId: int = 0,
+) -> None:
+    """Moves the camera of the window. Nothing happens in `DIRECT`, or when the distance is negative.
+
+    Args:
+        cameraDistance: From the target to the camera [m].
+        cameraYaw: About the upward axis [degrees].
+        cameraPitch: Upwards; negative looks down from above [degrees].
+        cameraTargetPosition: What the camera looks at [m].
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, the target is not three finite numbers, or a number is not finite.
+    """
+    client = client_of(physicsClientId)
+    distance = real(cameraDistance, "cameraDistance")
+    yaw, pitch = real(cameraYaw, "cameraYaw"), real(cameraPitch, "cameraPitch")
+    problem = "cameraTargetPosition needs 3 numbers."
+    target = vector3(cameraTargetPosition, problem, "cameraTargetPosition")
+    if distance >= 0.0:
+        client.window.move_camera(distance, yaw, pitch, target)
+
+
+@exported
+def getDebugVisualizerCamera(physicsClientId: int = 0) -> tuple[Any, ...]:
+    """Where the camera of the window is, and what it sees.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        12 fields: 0 width and 1 height of the image in pixels; 2 view and 3 projection matrix, 16 numbers
+        each, column after column; 4 upward direction of the world; 5 viewing direction; 6 and 7 the edges
+        of the image to the right and upwards, at a distance of 10 km, for rays through pixels; 8 yaw and
+        9 pitch [degrees]; 10 distance to the target and 11 the target [m]. All zeros in `DIRECT`.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    return client_of(physicsClientId).window.camera_info()
+
+
+@exported
+def getVREvents(
+    deviceTypeFilter: int = 1, allAnalogAxes: int = 0, physicsClientId: int = 0
+) -> tuple[tuple[Any, ...], ...]:
+    """Events of virtual reality devices. Carom knows no such devices, so there are none.
+
+    Args:
+        deviceTypeFilter: `VR_DEVICE_*`, added up.
+        allAnalogAxes: 1 for all axes of the devices.
+        physicsClientId: The connection.
+
+    Returns:
+        An empty tuple.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client_of(physicsClientId)
+    integer(deviceTypeFilter, "deviceTypeFilter")
+    integer(allAnalogAxes, "allAnalogAxes")
+    return ()
+
+
+@exported
+def setVRCameraState(
+    rootPosition: Vector | None = None,
+    rootOrientation: Vector | None = None,
+    trackObject: int = -2,
+    trackObjectFlag: int = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """Moves the camera of a virtual reality headset. Carom knows no such devices, so nothing moves.
+
+    Args:
+        rootPosition: Where the room is [m].
+        rootOrientation: Its quaternion (x, y, z, w).
+        trackObject: Body that the camera follows.
+        trackObjectFlag: `VR_CAMERA_TRACK_OBJECT_ORIENTATION` to turn with it.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or an argument is not three, or four, finite numbers.
+    """
+    client_of(physicsClientId)
+    if rootPosition is not None:
+        vector3(rootPosition, "rootPosition needs 3 numbers.", "rootPosition")
+    if rootOrientation is not None:
+        quaternion(rootOrientation, "rootOrientation needs 4 numbers.", "rootOrientation")
+    integer(trackObject, "trackObject")
+    integer(trackObjectFlag, "trackObjectFlag")
+
+
+# The parameter named `text`, which PyBullet's signature demands, hides the check.
+_text = text
+
+
+def _colour(values: Vector | None, problem: str, name: str) -> Vector3:
+    return _WHITE if values is None else vector3(values, problem, name)
+
+
+def _vectors(values: Sequence[Vector], name: str) -> tuple[Vector3, ...]:
+    items = sequence(values, "expected a sequence of vertex positions", name)
+    return tuple(vector3(item, f"{name} needs 3 numbers for each point.", name) for item in items)

@@ -1,0 +1,70 @@
+"""Finding bodies and joints for calls that did not succeed at once, and saying what is wrong with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from pybullet._arguments import integer
+from pybullet._clients import client_of
+from pybullet._errors import fail
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from pybullet._body_access import BodyAccess
+    from pybullet._joint_access import JointAccess
+
+OUT_OF_RANGE = "Joint index out-of-range."
+
+
+def no_body(body_id: int) -> str:
+    """Says that there is no body of an id."""
+    return f"There is no body {body_id}."
+
+
+def no_joint(body: Body, index: int) -> str:
+    """Says that a body has no joint of an index."""
+    return f"Body {body.id} ({body.spec.name}) has {body.joint_count} joints, so there is no joint {index}."
+
+
+def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: str = "") -> BodyAccess:
+    """Access to a body.
+
+    Args:
+        body_id: The body.
+        physics_client_id: The connection.
+        problem: PyBullet's text when there is no such body.
+        negative: PyBullet's text for negative ids, where it has one of its own.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body.
+        TypeError: An id is not an integer.
+    """
+    client = client_of(physics_client_id)
+    number = integer(body_id, "bodyUniqueId")
+    if number not in client.world.bodies:
+        fail(negative if number < 0 and negative else problem, no_body(number))
+    return client.bodies[number]
+
+
+def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
+    """Access to a joint that is to be set.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+        TypeError: An id or index is not an integer.
+    """
+    access = body_access(body_id, physics_client_id, OUT_OF_RANGE)
+    index = integer(joint_index, "jointIndex")
+    if index not in access.joints:
+        fail(OUT_OF_RANGE, no_joint(access.body, index))
+    return access.joints[index]
+
+
+def raise_state_error(body_id: Any, joint_index: Any, physics_client_id: Any) -> NoReturn:
+    """Says why the state of a joint could not be read."""
+    access = body_access(
+        body_id, physics_client_id, "getJointState failed.", "getJointState failed; invalid bodyUniqueId"
+    )
+    index = integer(joint_index, "jointIndex")
+    problem = "getJointState failed; invalid jointIndex" if index < 0 else "getJointState failed (2)."
+    fail(problem, no_joint(access.body, index))

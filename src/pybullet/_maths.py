@@ -1,0 +1,386 @@
+"""Rotations and rigid transforms. None of these functions needs a connection.
+
+PyBullet computes most of them in single precision; here they are in double precision throughout, and
+only where single precision decides between two answers is it asked.
+"""
+
+from __future__ import annotations
+
+from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
+from struct import Struct
+
+from carom.description.pose import Quaternion, Vector3
+from carom.description.transform import (
+    conjugate,
+    matrix_product,
+    matrix_vector,
+    multiplied,
+    quaternion_from_matrix,
+    rotation_matrix,
+    transposed,
+)
+from pybullet._arguments import Vector, quaternion, real, vector, vector3
+from pybullet._builtin import exported
+from pybullet._errors import fail
+
+__all__ = [
+    "calculateVelocityQuaternion",
+    "getAxisAngleFromQuaternion",
+    "getAxisDifferenceQuaternion",
+    "getDifferenceQuaternion",
+    "getEulerFromQuaternion",
+    "getMatrixFromQuaternion",
+    "getQuaternionFromAxisAngle",
+    "getQuaternionFromEuler",
+    "getQuaternionSlerp",
+    "invertTransform",
+    "multiplyTransforms",
+    "rotateVector",
+]
+
+_single = Struct("f")
+# Beyond this sine of the pitch, roll and yaw turn about the same axis.
+_GIMBAL_LOCK = 0.99999
+# Ten times the spacing of single-precision numbers at 1.
+_NO_AXIS = 10.0 * 1.1920928955078125e-07
+_TWO_QUATERNIONS = "Require start and end quaternion, each with 4 components [x,y,z,w]."
+
+
+@exported
+def getQuaternionFromEuler(eulerAngles: Vector, physicsClientId: int = 0) -> Quaternion:
+    """Quaternion of a rotation by roll about x, then pitch about y, then yaw about z, all fixed axes.
+
+    Args:
+        eulerAngles: Roll, pitch and yaw [rad].
+        physicsClientId: Not used.
+
+    Returns:
+        (x, y, z, w), of unit length.
+
+    Raises:
+        pybullet.error: It is not a sequence of three finite numbers.
+    """
+    roll, pitch, yaw = vector3(
+        eulerAngles, "Euler angles need a 3 coordinates [roll, pitch, yaw].", "eulerAngles"
+    )
+    sr, cr = sin(roll / 2.0), cos(roll / 2.0)
+    sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
+    sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
+    x = sr * cp * cy - cr * sp * sy
+    y = cr * sp * cy + sr * cp * sy
+    z = cr * cp * sy - sr * sp * cy
+    w = cr * cp * cy + sr * sp * sy
+    length = sqrt(x * x + y * y + z * z + w * w)
+    return (x / length, y / length, z / length, w / length)
+
+
+@exported
+def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vector3:
+    """Roll, pitch and yaw of a rotation, the inverse of `getQuaternionFromEuler`.
+
+    At a pitch of ±90 degrees roll and yaw turn about the same axis; roll is then 0.
+
+    Args:
+        quaternion: (x, y, z, w), of unit length.
+        physicsClientId: Not used.
+
+    Returns:
+        (roll, pitch, yaw) [rad].
+
+    Raises:
+        pybullet.error: It is not a sequence of four finite numbers.
+    """
+    x, y, z, w = vector(quaternion, 4, "Quaternion need a 4 components [x,y,z,w].", "quaternion")
+    sine = -2.0 * (x * z - w * y)
+    if sine <= -_GIMBAL_LOCK:
+        return (0.0, -0.5 * pi, 2.0 * atan2(x, -y))
+    if sine >= _GIMBAL_LOCK:
+        return (0.0, 0.5 * pi, 2.0 * atan2(-x, y))
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    roll = atan2(2.0 * (y * z + w * x), ww - xx - yy + zz)
+    return (roll, asin(sine), atan2(2.0 * (x * y + w * z), ww + xx - yy - zz))
+
+
+@exported
+def getMatrixFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tuple[float, ...]:
+    """Rotation matrix of a quaternion.
+
+    Args:
+        quaternion: (x, y, z, w), of any length but 0.
+        physicsClientId: Not used.
+
+    Returns:
+        Nine numbers, row after row.
+
+    Raises:
+        pybullet.error: It is not a sequence of four finite numbers, or its length is 0.
+    """
+    rows = rotation_matrix(_rotation(quaternion, "Couldn't convert quaternion [x,y,z,w].", "quaternion"))
+    return (*rows[0], *rows[1], *rows[2])
+
+
+@exported
+def multiplyTransforms(
+    positionA: Vector, orientationA: Vector, positionB: Vector, orientationB: Vector, physicsClientId: int = 0
+) -> tuple[Vector3, Quaternion]:
+    """Pose of frame B, which is given in frame A, seen from where A is given.
+
+    Args:
+        positionA: Origin of A [m].
+        orientationA: Its quaternion (x, y, z, w).
+        positionB: Origin of B in A [m].
+        orientationB: Its quaternion in A.
+        physicsClientId: Not used.
+
+    Returns:
+        (position, orientation) of B.
+
+    Raises:
+        pybullet.error: An argument has not three, or four, finite numbers, or a quaternion has length 0.
+    """
+    problem = "Invalid input: expected positionA [x,y,z], orientationA [x,y,z,w], positionB, orientationB."
+    origin = vector3(positionA, problem, "positionA")
+    turn = rotation_matrix(_rotation(orientationA, problem, "orientationA"))
+    x, y, z = matrix_vector(turn, vector3(positionB, problem, "positionB"))
+    product = matrix_product(turn, rotation_matrix(_rotation(orientationB, problem, "orientationB")))
+    return (x + origin[0], y + origin[1], z + origin[2]), quaternion_from_matrix(product)
+
+
+@exported
+def invertTransform(
+    position: Vector, orientation: Vector, physicsClientId: int = 0
+) -> tuple[Vector3, Quaternion]:
+    """The inverse of a pose: of frame B in A, it gives that of A in B.
+
+    Args:
+        position: Origin [m].
+        orientation: Quaternion (x, y, z, w).
+        physicsClientId: Not used.
+
+    Returns:
+        (position, orientation).
+
+    Raises:
+        pybullet.error: An argument has not three, or four, finite numbers, or the quaternion has length 0.
+    """
+    problem = "Invalid input: expected position [x,y,z] and orientation [x,y,z,w]."
+    origin = vector3(position, problem, "position")
+    turn = transposed(rotation_matrix(_rotation(orientation, problem, "orientation")))
+    x, y, z = matrix_vector(turn, origin)
+    return (-x, -y, -z), quaternion_from_matrix(turn)
+
+
+@exported
+def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -> Vector3:
+    """A vector turned by a quaternion.
+
+    Args:
+        quaternion: (x, y, z, w), of unit length.
+        vector: Three numbers.
+        physicsClientId: Not used.
+
+    Returns:
+        The turned vector.
+
+    Raises:
+        pybullet.error: An argument has not three, or four, finite numbers.
+    """
+    problem = "Require quaternion with 4 components [x,y,z,w] and a vector [x,y,z]."
+    q = _quaternion(quaternion, problem, "quaternion")
+    x, y, z = vector3(vector, problem, "vector")
+    turned = multiplied(multiplied(q, (x, y, z, 0.0)), conjugate(q))
+    return (turned[0], turned[1], turned[2])
+
+
+@exported
+def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int = 0) -> Quaternion:
+    """Quaternion of a rotation about an axis.
+
+    Args:
+        axis: Direction, of any length but 0.
+        angle: Angle [rad].
+        physicsClientId: Not used.
+
+    Returns:
+        (x, y, z, w), of unit length.
+
+    Raises:
+        pybullet.error: The axis is not three finite numbers or has length 0, or the angle is not finite.
+    """
+    problem = "Require axis [x,y,z] and angle."
+    direction = vector3(axis, problem, "axis")
+    half = 0.5 * real(angle, "angle")
+    length = hypot(*direction)
+    if length == 0.0:
+        fail(problem, "axis has length 0.")
+    s = sin(half) / length
+    return (direction[0] * s, direction[1] * s, direction[2] * s, cos(half))
+
+
+@exported
+def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tuple[Vector3, float]:
+    """Axis and angle of a rotation.
+
+    For angles below about 0.002 rad the axis is (1, 0, 0), whatever it was.
+
+    Args:
+        quaternion: (x, y, z, w), of unit length.
+        physicsClientId: Not used.
+
+    Returns:
+        (axis, angle): unit vector, and angle from 0 to 2π [rad].
+
+    Raises:
+        pybullet.error: It is not a sequence of four finite numbers.
+    """
+    x, y, z, w = _quaternion(quaternion, "Require a quaternion with 4 components [x,y,z,w].", "quaternion")
+    # This close to no rotation the answer hangs on the rounding of w to single precision.
+    w = _rounded_to_single(w)
+    sine_squared = 1.0 - w * w
+    angle = 2.0 * acos(max(-1.0, min(1.0, w)))
+    if sine_squared < _NO_AXIS:
+        return (1.0, 0.0, 0.0), angle
+    s = 1.0 / sqrt(sine_squared)
+    return (x * s, y * s, z * s), angle
+
+
+@exported
+def getQuaternionSlerp(
+    quaternionStart: Vector, quaternionEnd: Vector, interpolationFraction: float, physicsClientId: int = 0
+) -> Quaternion:
+    """A rotation between two others, on the shorter way round and at constant speed.
+
+    Args:
+        quaternionStart: (x, y, z, w).
+        quaternionEnd: (x, y, z, w).
+        interpolationFraction: 0 gives the start, 1 the end or its negative.
+        physicsClientId: Not used.
+
+    Returns:
+        (x, y, z, w).
+
+    Raises:
+        pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
+    """
+    a = _rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
+    b = _rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
+    fraction = real(interpolationFraction, "interpolationFraction")
+    cosine = _dot4(a, b) / sqrt(_dot4(a, a) * _dot4(b, b))
+    if abs(cosine) >= 1.0:
+        return a
+    sign = -1.0 if cosine < 0.0 else 1.0
+    angle = acos(sign * cosine)
+    from_a = sin((1.0 - fraction) * angle) / sin(angle)
+    from_b = sin(sign * fraction * angle) / sin(angle)
+    return (
+        a[0] * from_a + b[0] * from_b,
+        a[1] * from_a + b[1] * from_b,
+        a[2] * from_a + b[2] * from_b,
+        a[3] * from_a + b[3] * from_b,
+    )
+
+
+@exported
+def getDifferenceQuaternion(
+    quaternionStart: Vector, quaternionEnd: Vector, physicsClientId: int = 0
+) -> Quaternion:
+    """The rotation that leads from one to another, in world axes: end · start⁻¹, on the shorter way.
+
+    Args:
+        quaternionStart: (x, y, z, w), of unit length.
+        quaternionEnd: (x, y, z, w), of unit length.
+        physicsClientId: Not used.
+
+    Returns:
+        (x, y, z, w).
+
+    Raises:
+        pybullet.error: An argument has not four finite numbers.
+    """
+    return _difference(
+        _quaternion(quaternionStart, _TWO_QUATERNIONS, "quaternionStart"),
+        _quaternion(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd"),
+    )
+
+
+@exported
+def getAxisDifferenceQuaternion(
+    quaternionStart: Vector, quaternionEnd: Vector, physicsClientId: int = 0
+) -> Vector3:
+    """Angles between two rotations about x, y and z, as spherical joint motors measure them.
+
+    Args:
+        quaternionStart: (x, y, z, w), of unit length.
+        quaternionEnd: (x, y, z, w), of unit length.
+        physicsClientId: Not used.
+
+    Returns:
+        Angles (a, b, c) [rad] with start⁻¹ · end = Rz(-c) Ry(-b) Rx(-a).
+
+    Raises:
+        pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
+    """
+    start = _rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
+    end = _rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
+    m = transposed(rotation_matrix(multiplied(conjugate(start), end)))
+    sine = m[0][2]
+    if sine >= 1.0:
+        return (atan2(m[1][0], m[1][1]), 0.5 * pi, 0.0)
+    if sine <= -1.0:
+        return (-atan2(m[1][0], m[1][1]), -0.5 * pi, 0.0)
+    return (atan2(-m[1][2], m[2][2]), asin(sine), atan2(-m[0][1], m[0][0]))
+
+
+@exported
+def calculateVelocityQuaternion(
+    quaternionStart: Vector, quaternionEnd: Vector, deltaTime: float, physicsClientId: int = 0
+) -> Vector3:
+    """Constant angular velocity that leads from one rotation to another, on the shorter way round.
+
+    Args:
+        quaternionStart: (x, y, z, w), of unit length.
+        quaternionEnd: (x, y, z, w), of unit length.
+        deltaTime: Time it takes [s].
+        physicsClientId: Not used.
+
+    Returns:
+        Angular velocity in world axes [rad/s].
+
+    Raises:
+        pybullet.error: An argument has not four finite numbers, or the time is 0 or not finite.
+    """
+    start = _quaternion(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
+    end = _quaternion(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
+    duration = real(deltaTime, "deltaTime")
+    if duration == 0.0:
+        fail("deltaTime has to be different from 0.")
+    x, y, z, w = _difference(start, end)
+    sine = hypot(x, y, z)
+    if sine == 0.0:
+        return (0.0, 0.0, 0.0)
+    scale = 2.0 * atan2(sine, w) / (sine * duration)
+    return (x * scale, y * scale, z * scale)
+
+
+def _quaternion(values: Vector, problem: str, name: str) -> Quaternion:
+    x, y, z, w = vector(values, 4, problem, name)
+    return x, y, z, w
+
+
+# Parameters named `quaternion` and `vector`, which PyBullet's signatures demand, hide the checks.
+_rotation = quaternion
+
+
+def _difference(start: Quaternion, end: Quaternion) -> Quaternion:
+    """End · start⁻¹ with the nearer of the two quaternions of `end`."""
+    x, y, z, w = end
+    nearest = end if _dot4(start, end) > 0.0 else (-x, -y, -z, -w)
+    return multiplied(nearest, conjugate(start))
+
+
+def _dot4(a: Quaternion, b: Quaternion) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+
+
+def _rounded_to_single(value: float) -> float:
+    return _single.unpack(_single.pack(value))[0]

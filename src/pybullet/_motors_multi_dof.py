@@ -1,0 +1,208 @@
+"""Joint motors by lists: for joints of any number of freedoms, spherical ones above all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from pybullet._arguments import Indices, Vector, bound, indices, integer, numbers, real, sequence
+from pybullet._builtin import exported
+from pybullet._clients import client_of
+from pybullet._constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL, TORQUE_CONTROL
+from pybullet._errors import fail
+from pybullet._joints import NO_INDICES
+from pybullet._lookup import joint_access
+from pybullet._motors import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+
+if TYPE_CHECKING:
+    from pybullet._joint_access import JointAccess
+
+__all__ = [
+    "setJointMotorControlMultiDof",
+    "setJointMotorControlMultiDofArray",
+]
+
+_ILLEGAL_MODE = "Illegal control mode."
+_NO_CLAMP = -1.0
+_NO_DAMPING = 1.0
+
+
+@exported
+def setJointMotorControlMultiDof(
+    bodyUniqueId: int,
+    jointIndex: int,
+    controlMode: int,
+    targetPosition: Vector | None = None,
+    targetVelocity: Vector | None = None,
+    force: Vector | None = None,
+    positionGain: float | Vector = 0.1,
+    velocityGain: float | Vector = 1.0,
+    maxVelocity: float = -1,
+    damping: float | Vector = 1.0,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets the motor of a joint by a number for each of its freedoms.
+
+    A list of a length that does not fit the joint counts as not given, and so does what is left out; a
+    motor with neither position nor velocity is not changed. A motor without force is very strong.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        controlMode: `POSITION_CONTROL`, or `TORQUE_CONTROL`, which adds `force` to the torques of the
+            next step.
+        targetPosition: One number [rad or m]; for a spherical joint a quaternion (x, y, z, w).
+        targetVelocity: One number [rad/s or m/s], or three; a spherical motor ignores it.
+        force: Greatest forces of the motor, or the torques [N m or N]: a number for each freedom, or one
+            for all.
+        positionGain: Fraction of the error that one step takes back. A number, or one for each freedom;
+            those count only when forces and both gains are all given so.
+        velocityGain: As in `setJointMotorControl2`, and a number or numbers as before.
+        maxVelocity: Greatest velocity the motor reaches for when greater than 0; not for spherical joints.
+        damping: Fraction of the angular velocity that a spherical motor takes away, for each axis or for
+            all.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, or an argument holds something
+            that is not a finite number.
+    """
+    client_of(physicsClientId)
+    position = _list(targetPosition, "targetPosition", 4)
+    velocity = _list(targetVelocity, "targetVelocity", 3)
+    forces = _list(force, "force", 3)
+    kp, kd = _gain(positionGain, "positionGain"), _gain(velocityGain, "velocityGain")
+    damped = _gain(damping, "damping")
+    clamp = bound(maxVelocity, "maxVelocity")
+    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    mode = integer(controlMode, "controlMode")
+    if mode == TORQUE_CONTROL:
+        joint.add_torques(forces)
+    elif mode == POSITION_CONTROL:
+        _check_rotation(position)
+        joint.command_multi_dof(position, velocity, forces, kp, kd, clamp, damped)
+    else:
+        fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
+
+
+@exported
+def setJointMotorControlMultiDofArray(
+    bodyUniqueId: int,
+    jointIndices: Indices,
+    controlMode: int,
+    targetPositions: Sequence[Vector] | None = None,
+    targetVelocities: Sequence[Vector] | None = None,
+    forces: Sequence[Vector] | None = None,
+    positionGains: Vector | None = None,
+    velocityGains: Vector | None = None,
+    maxVelocities: Vector | None = None,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets the motors of several joints, each by a list of numbers.
+
+    Nothing happens when a list is not empty and has not as many entries as there are joints. A list of a
+    joint whose length does not fit it counts as not given.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndices: The joints, in any order.
+        controlMode: `POSITION_CONTROL` or `TORQUE_CONTROL` as in `setJointMotorControlMultiDof`;
+            `PD_CONTROL` as in `setJointMotorControl2`, for joints of one freedom; `STABLE_PD_CONTROL`, for
+            the next step only: the torques of a PD controller that looks one step ahead with the equations
+            of motion of the whole body, and so stays stable with high gains (Tan, Liu and Turk, 2011).
+        targetPositions: For each joint one number [rad or m], or a quaternion (x, y, z, w).
+        targetVelocities: For each joint one number [rad/s or m/s], or three.
+        forces: For each joint the greatest forces of the motor, or the torques [N m or N].
+        positionGains: A number for each joint.
+        velocityGains: A number for each joint.
+        maxVelocities: Not used, as in PyBullet.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, or a list holds something that
+            is not a finite number.
+    """
+    client = client_of(physicsClientId)
+    mode = integer(controlMode, "controlMode")
+    if mode not in (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL):
+        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of such joints can have.")
+    requested = indices(jointIndices, NO_INDICES, "jointIndices")
+    lists = {
+        "targetPositions": _entries(targetPositions, "targetPositions"),
+        "targetVelocities": _entries(targetVelocities, "targetVelocities"),
+        "forces": _entries(forces, "forces"),
+        "positionGains": _entries(positionGains, "positionGains"),
+        "velocityGains": _entries(velocityGains, "velocityGains"),
+    }
+    count = len(requested)
+    if count == 0 or any(entries and len(entries) != count for entries in lists.values()):
+        return
+    joints = [joint_access(bodyUniqueId, index, physicsClientId) for index in requested]
+    positions = [_list(entry, "targetPositions", 4) for entry in lists["targetPositions"] or [()] * count]
+    velocities = [_list(entry, "targetVelocities", 3) for entry in lists["targetVelocities"] or [()] * count]
+    bounds = [_list(entry, "forces", 3) for entry in lists["forces"] or [()] * count]
+    kps = [real(kp, "positionGains") for kp in lists["positionGains"] or [DEFAULT_POSITION_GAIN] * count]
+    kds = [real(kd, "velocityGains") for kd in lists["velocityGains"] or [DEFAULT_VELOCITY_GAIN] * count]
+    for position in positions:
+        _check_rotation(position)
+    if mode == STABLE_PD_CONTROL:
+        _stable_pd(joints, positions, velocities, bounds, kps, kds, client.time_step)
+        return
+    for joint, position, velocity, force, kp, kd in zip(
+        joints, positions, velocities, bounds, kps, kds, strict=True
+    ):
+        if mode == TORQUE_CONTROL:
+            joint.add_torques(force)
+        elif mode == PD_CONTROL:
+            joint.command_pd(position, velocity, force, kp, kd)
+        else:
+            joint.command_multi_dof(position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING)
+
+
+def _stable_pd(
+    joints: Sequence[JointAccess],
+    positions: Sequence[tuple[float, ...]],
+    velocities: Sequence[tuple[float, ...]],
+    forces: Sequence[tuple[float, ...]],
+    kps: Sequence[float],
+    kds: Sequence[float],
+    time_step: float,
+) -> None:
+    """Adds the torques of a stable PD controller to those of the next step."""
+    from carom.algorithms.stable_pd import JointTarget, stable_pd_torques
+
+    body = joints[0].body
+    targets = {}
+    for joint, position, velocity, force, kp, kd in zip(
+        joints, positions, velocities, forces, kps, kds, strict=True
+    ):
+        targets[joint.index] = JointTarget(position, velocity, force, kp, kd)
+    torques = stable_pd_torques(body, targets, time_step)
+    first = body.first_velocity
+    memory = joints[0].torques
+    for column, torque in enumerate(torques.tolist()):
+        memory[first + column] += torque
+
+
+def _list(values: Vector | None, name: str, most: int) -> tuple[float, ...]:
+    """The numbers of one joint, at most as many as any joint has; none when left out."""
+    return () if values is None else numbers(values, f"expected a {name} sequence", name)[:most]
+
+
+def _entries(values: Any, name: str) -> tuple[Any, ...]:
+    return () if values is None else sequence(values, f"expected a {name} sequence", name)
+
+
+def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
+    """A number, or at most three of them; no number at all stands for the default of each use."""
+    if isinstance(value, (int, float)):
+        return real(value, name)
+    try:
+        return numbers(value, f"expected a {name} sequence", name)[:3]
+    except TypeError:
+        return real(value, name)
+
+
+def _check_rotation(position: tuple[float, ...]) -> None:
+    if len(position) == 4 and not any(position):
+        fail("expected a targetPosition sequence", "A quaternion of length 0 is no rotation.")

@@ -1,0 +1,64 @@
+"""Simulation by the wall clock, in the background."""
+
+from __future__ import annotations
+
+import atexit
+from threading import Event, Thread
+from time import monotonic
+from typing import TYPE_CHECKING
+from weakref import WeakSet
+
+from pybullet._errors import logger
+
+if TYPE_CHECKING:
+    from pybullet._clients import Client
+
+# A world that cannot keep up, or a process that was asleep, falls behind the clock by no more than this [s].
+_GREATEST_LAG = 0.1
+# How often the world is brought up to date with the clock, unless its time step is longer [s].
+_PERIOD = 1.0 / 240.0
+
+_running: WeakSet[RealTimeClock] = WeakSet()
+
+
+class RealTimeClock:
+    """Steps the world of a client so that simulated time passes as fast as real time.
+
+    The world is behind the clock by less than one time step while it can keep up; what it cannot keep
+    up with beyond a tenth of a second is dropped. The time step may change on the way.
+    """
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._stopping = Event()
+        self._thread = Thread(target=self._run, name="pybullet real-time simulation", daemon=True)
+        _running.add(self)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stops and waits for the step in progress."""
+        self._stopping.set()
+        self._thread.join()
+        _running.discard(self)
+
+    def _run(self) -> None:
+        client = self._client
+        simulated_until = monotonic()
+        while not self._stopping.wait(max(_PERIOD, client.time_step)):
+            now = monotonic()
+            simulated_until = max(simulated_until, now - max(_GREATEST_LAG, client.time_step))
+            while simulated_until + client.time_step <= now and not self._stopping.is_set():
+                simulated_until += client.time_step
+                try:
+                    with client.lock:
+                        client.world.step()
+                except Exception:
+                    logger.exception("Real-time simulation has stopped.")
+                    return
+
+
+@atexit.register
+def _stop_all() -> None:
+    # A thread that is inside compiled code while the interpreter shuts down would crash it.
+    for clock in list(_running):
+        clock.stop()

@@ -1,0 +1,296 @@
+"""Functions of PyBullet that this version of Carom does not have.
+
+They exist, so that scripts which only name them run, and check their arguments' names; calling one raises
+`pybullet.error`. The table below is all there is to them.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from inspect import Parameter, Signature
+from typing import Any
+
+from pybullet._builtin import exported_as
+from pybullet._errors import fail
+
+__all__ = [
+    "addUserData",
+    "calculateInverseKinematics",
+    "calculateInverseKinematics2",
+    "changeConstraint",
+    "changeTexture",
+    "changeVisualShape",
+    "createCollisionShape",
+    "createCollisionShapeArray",
+    "createConstraint",
+    "createMultiBody",
+    "createSoftBodyAnchor",
+    "createVisualShape",
+    "createVisualShapeArray",
+    "executePluginCommand",
+    "getAABB",
+    "getCameraImage",
+    "getClosestPoints",
+    "getCollisionShapeData",
+    "getConstraintInfo",
+    "getConstraintState",
+    "getConstraintUniqueId",
+    "getContactPoints",
+    "getMeshData",
+    "getNumConstraints",
+    "getNumUserData",
+    "getOverlappingObjects",
+    "getTetraMeshData",
+    "getUserData",
+    "getUserDataId",
+    "getUserDataInfo",
+    "getVisualShapeData",
+    "loadBullet",
+    "loadMJCF",
+    "loadPlugin",
+    "loadSDF",
+    "loadSoftBody",
+    "loadTexture",
+    "performCollisionDetection",
+    "rayTest",
+    "rayTestBatch",
+    "removeCollisionShape",
+    "removeConstraint",
+    "removeState",
+    "removeUserData",
+    "renderImage",
+    "resetMeshData",
+    "resetVisualShapeData",
+    "restoreState",
+    "saveBullet",
+    "saveState",
+    "saveWorld",
+    "setCollisionFilterGroupMask",
+    "setCollisionFilterPair",
+    "startStateLogging",
+    "stopStateLogging",
+    "submitProfileTiming",
+    "syncUserData",
+    "unloadPlugin",
+    "unsupportedChangeScaling",
+    "vhacd",
+]
+
+
+def _later(name: str, parameters: str) -> Callable[..., Any]:
+    """A function that is not there yet.
+
+    Args:
+        name: Its name.
+        parameters: Its parameters as they stand in a `def`.
+    """
+    signature = _signature(parameters)
+
+    def unavailable(*arguments: Any, **keywords: Any) -> Any:
+        try:
+            signature.bind(*arguments, **keywords)
+        except TypeError as problem:
+            raise TypeError(f"{name}(): {problem}") from None
+        fail(f"{name} is not available in this version of Carom")
+
+    unavailable.__name__ = unavailable.__qualname__ = name
+    unavailable.__doc__ = "Not available in this version of Carom: raises `pybullet.error`."
+    return exported_as(str(signature))(unavailable)
+
+
+def _signature(parameters: str) -> Signature:
+    definition = ast.parse(f"def _({parameters}): ...").body[0]
+    assert isinstance(definition, ast.FunctionDef)
+    arguments = definition.args
+    result = []
+    defaults = [None] * (len(arguments.args) - len(arguments.defaults)) + list(arguments.defaults)
+    for argument, default in zip(arguments.args, defaults, strict=True):
+        result.append(_parameter(argument, default, Parameter.POSITIONAL_OR_KEYWORD))
+    if arguments.vararg is not None:
+        result.append(Parameter(arguments.vararg.arg, Parameter.VAR_POSITIONAL))
+    for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
+        result.append(_parameter(argument, default, Parameter.KEYWORD_ONLY))
+    return Signature(result)
+
+
+def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parameter:
+    value = Parameter.empty if default is None else ast.literal_eval(default)
+    return Parameter(argument.arg, kind, default=value)
+
+
+syncUserData = _later("syncUserData", "bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None")
+performCollisionDetection = _later("performCollisionDetection", "physicsClientId=0")
+submitProfileTiming = _later("submitProfileTiming", "eventName=None, physicsClientId=0")
+loadSDF = _later("loadSDF", "sdfFileName, useMaximalCoordinates=-1, globalScaling=-1, physicsClientId=0")
+loadMJCF = _later("loadMJCF", "mjcfFileName, flags=-1, useMultiBody=-1, physicsClientId=0")
+loadBullet = _later("loadBullet", "bulletFileName, physicsClientId=0")
+saveBullet = _later("saveBullet", "bulletFileName, physicsClientId=0")
+saveWorld = _later("saveWorld", "worldFileName, physicsClientId=0")
+loadSoftBody = _later(
+    "loadSoftBody",
+    "fileName, basePosition=None, baseOrientation=None, scale=-1, mass=-1, collisionMargin=-1, "
+    "useMassSpring=0, useBendingSprings=0, useNeoHookean=0, springElasticStiffness=1, "
+    "springDampingStiffness=0.1, springDampingAllDirections=0, springBendingStiffness=0.1, "
+    "NeoHookeanMu=1, NeoHookeanLambda=1, NeoHookeanDamping=0.1, frictionCoeff=0, useFaceContact=0, "
+    'useSelfCollision=0, repulsionStiffness=0.5, simFileName="", physicsClientId=0',
+)
+createSoftBodyAnchor = _later(
+    "createSoftBodyAnchor",
+    "softBodyBodyUniqueId, nodeIndex, bodyUniqueId=-1, linkIndex=-1, bodyFramePosition=None, "
+    "physicsClientId=0",
+)
+saveState = _later("saveState", "physicsClientId=0")
+restoreState = _later("restoreState", "stateId=-1, fileName=None, physicsClientId=0")
+removeState = _later("removeState", "stateUniqueId, physicsClientId=0")
+startStateLogging = _later(
+    "startStateLogging",
+    "loggingType, fileName, objectUniqueIds=None, maxLogDof=-1, bodyUniqueIdA=-1, bodyUniqueIdB=-1, "
+    "linkIndexA=-2, linkIndexB=-2, deviceTypeFilter=-1, logFlags=-1, physicsClientId=0",
+)
+stopStateLogging = _later("stopStateLogging", "loggingId, physicsClientId=0")
+getAABB = _later("getAABB", "bodyUniqueId, linkIndex=-1, physicsClientId=0")
+unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
+createConstraint = _later(
+    "createConstraint",
+    "parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis, "
+    "parentFramePosition, childFramePosition, parentFrameOrientation=None, childFrameOrientation=None, "
+    "physicsClientId=0",
+)
+changeConstraint = _later(
+    "changeConstraint",
+    "userConstraintUniqueId, jointChildPivot=None, jointChildFrameOrientation=None, maxForce=-1, "
+    "gearRatio=0, gearAuxLink=-1, relativePositionTarget=1e32, erp=-1, physicsClientId=0",
+)
+removeConstraint = _later("removeConstraint", "userConstraintUniqueId, physicsClientId=0")
+getNumConstraints = _later("getNumConstraints", "physicsClientId=0")
+getConstraintUniqueId = _later("getConstraintUniqueId", "serialIndex, physicsClientId=0")
+getConstraintInfo = _later("getConstraintInfo", "constraintUniqueId, physicsClientId=0")
+getConstraintState = _later("getConstraintState", "constraintUniqueId, physicsClientId=0")
+createCollisionShape = _later(
+    "createCollisionShape",
+    "shapeType, radius=0.5, halfExtents=None, height=1, fileName=None, meshScale=None, "
+    "planeNormal=None, flags=0, collisionFramePosition=None, collisionFrameOrientation=None, "
+    "vertices=None, indices=None, heightfieldTextureScaling=1, heightfieldData=None, "
+    "numHeightfieldRows=-1, numHeightfieldColumns=-1, replaceHeightfieldIndex=-1, physicsClientId=0",
+)
+createCollisionShapeArray = _later(
+    "createCollisionShapeArray",
+    "shapeTypes, radii=None, halfExtents=None, lengths=None, fileNames=None, meshScales=None, "
+    "planeNormals=None, flags=None, collisionFramePositions=None, collisionFrameOrientations=None, "
+    "physicsClientId=0",
+)
+removeCollisionShape = _later("removeCollisionShape", "collisionShapeId, physicsClientId=0")
+createVisualShape = _later(
+    "createVisualShape",
+    "shapeType, radius=0.5, halfExtents=None, length=1, fileName=None, meshScale=None, "
+    "planeNormal=None, flags=0, rgbaColor=None, specularColor=None, visualFramePosition=None, "
+    "visualFrameOrientation=None, vertices=None, indices=None, normals=None, uvs=None, "
+    "physicsClientId=0",
+)
+createVisualShapeArray = _later(
+    "createVisualShapeArray",
+    "shapeTypes, radii=None, halfExtents=None, lengths=None, fileNames=None, meshScales=None, "
+    "planeNormals=None, flags=None, rgbaColors=None, visualFramePositions=None, "
+    "visualFrameOrientations=None, physicsClientId=0",
+)
+createMultiBody = _later(
+    "createMultiBody",
+    "baseMass=0, baseCollisionShapeIndex=-1, baseVisualShapeIndex=-1, basePosition=None, "
+    "baseOrientation=None, baseInertialFramePosition=None, baseInertialFrameOrientation=None, "
+    "linkMasses=None, linkCollisionShapeIndices=None, linkVisualShapeIndices=None, linkPositions=None, "
+    "linkOrientations=None, linkInertialFramePositions=None, linkInertialFrameOrientations=None, "
+    "linkParentIndices=None, linkJointTypes=None, linkJointAxis=None, useMaximalCoordinates=0, "
+    "flags=-1, batchPositions=None, physicsClientId=0",
+)
+getMeshData = _later(
+    "getMeshData",
+    "bodyUniqueId, linkIndex=-1, collisionShapeIndex=-1, flags=-1, physicsClientId=0",
+)
+getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
+resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")
+vhacd = _later(
+    "vhacd",
+    "fileNameIn, fileNameOut, fileNameLogging, concavity=-1, alpha=-1, beta=-1, gamma=-1, "
+    "minVolumePerCH=-1, resolution=-1, maxNumVerticesPerCH=-1, depth=-1, planeDownsampling=-1, "
+    "convexhullDownsampling=-1, pca=-1, mode=-1, convexhullApproximation=-1, physicsClientId=0",
+)
+setCollisionFilterPair = _later(
+    "setCollisionFilterPair",
+    "bodyUniqueIdA, bodyUniqueIdB, linkIndexA, linkIndexB, enableCollision, physicsClientId=0",
+)
+setCollisionFilterGroupMask = _later(
+    "setCollisionFilterGroupMask",
+    "bodyUniqueId, linkIndexA, collisionFilterGroup, collisionFilterMask, physicsClientId=0",
+)
+getContactPoints = _later(
+    "getContactPoints",
+    "bodyA=-1, bodyB=-1, linkIndexA=-2, linkIndexB=-2, physicsClientId=0",
+)
+getClosestPoints = _later(
+    "getClosestPoints",
+    "bodyA, bodyB, distance, linkIndexA=-2, linkIndexB=-2, collisionShapeA=-1, collisionShapeB=-1, "
+    "collisionShapePositionA=None, collisionShapePositionB=None, collisionShapeOrientationA=None, "
+    "collisionShapeOrientationB=None, physicsClientId=0",
+)
+getOverlappingObjects = _later("getOverlappingObjects", "aabbMin, aabbMax, physicsClientId=0")
+rayTest = _later(
+    "rayTest",
+    "rayFromPosition, rayToPosition, collisionFilterMask=-1, reportHitNumber=-1, physicsClientId=0",
+)
+rayTestBatch = _later(
+    "rayTestBatch",
+    "rayFromPositions, rayToPositions, numThreads=1, parentObjectUniqueId=-1, parentLinkIndex=-1, "
+    "reportHitNumber=-1, collisionFilterMask=-1, fractionEpsilon=-1, physicsClientId=0",
+)
+getCameraImage = _later(
+    "getCameraImage",
+    "width, height, viewMatrix=None, projectionMatrix=None, lightDirection=None, lightColor=None, "
+    "lightDistance=-1, shadow=-1, lightAmbientCoeff=-1, lightDiffuseCoeff=-1, lightSpecularCoeff=-1, "
+    "renderer=-1, flags=-1, projectiveTextureView=None, projectiveTextureProj=None, physicsClientId=0",
+)
+renderImage = _later("renderImage", "*arguments")
+loadTexture = _later("loadTexture", "textureFilename, physicsClientId=0")
+changeTexture = _later("changeTexture", "textureUniqueId, pixels, width, height, physicsClientId=0")
+changeVisualShape = _later(
+    "changeVisualShape",
+    "objectUniqueId, linkIndex, shapeIndex=-1, textureUniqueId=-2, rgbaColor=None, specularColor=None, "
+    "flags=-1, physicsClientId=0",
+)
+resetVisualShapeData = _later(
+    "resetVisualShapeData",
+    "objectUniqueId, linkIndex, shapeIndex=-1, textureUniqueId=-2, rgbaColor=None, specularColor=None, "
+    "flags=-1, physicsClientId=0",
+)
+getVisualShapeData = _later("getVisualShapeData", "objectUniqueId, flags=0, physicsClientId=0")
+getCollisionShapeData = _later("getCollisionShapeData", "objectUniqueId, linkIndex, physicsClientId=0")
+calculateInverseKinematics = _later(
+    "calculateInverseKinematics",
+    "bodyUniqueId, endEffectorLinkIndex, targetPosition, targetOrientation=None, lowerLimits=None, "
+    "upperLimits=None, jointRanges=None, restPoses=None, jointDamping=None, solver=0, "
+    "currentPositions=None, maxNumIterations=-1, residualThreshold=-1, physicsClientId=0",
+)
+calculateInverseKinematics2 = _later(
+    "calculateInverseKinematics2",
+    "bodyUniqueId, endEffectorLinkIndices, targetPositions, lowerLimits=None, upperLimits=None, "
+    "jointRanges=None, restPoses=None, jointDamping=None, solver=0, currentPositions=None, "
+    "maxNumIterations=-1, residualThreshold=-1, physicsClientId=0",
+)
+addUserData = _later(
+    "addUserData",
+    "bodyUniqueId, key, value, linkIndex=-1, visualShapeIndex=-1, physicsClientId=0",
+)
+getUserData = _later("getUserData", "userDataId, physicsClientId=0")
+getUserDataId = _later(
+    "getUserDataId",
+    "bodyUniqueId, key, linkIndex=-1, visualShapeIndex=-1, physicsClientId=0",
+)
+getNumUserData = _later("getNumUserData", "bodyUniqueId, physicsClientId=0")
+getUserDataInfo = _later("getUserDataInfo", "bodyUniqueId, userDataIndex, physicsClientId=0")
+removeUserData = _later("removeUserData", "userDataId, physicsClientId=0")
+loadPlugin = _later("loadPlugin", "pluginPath, postFix=None, physicsClientId=0")
+unloadPlugin = _later("unloadPlugin", "pluginUniqueId, physicsClientId=0")
+executePluginCommand = _later(
+    "executePluginCommand",
+    "pluginUniqueId, textArgument=None, intArgs=None, floatArgs=None, physicsClientId=0",
+)

@@ -1,0 +1,1 @@
+"""Helpers that scripts import from PyBullet's companion package."""

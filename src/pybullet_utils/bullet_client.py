@@ -1,0 +1,60 @@
+"""A physics client as an object: `BulletClient().loadURDF(...)` instead of `physicsClientId=...` everywhere."""
+
+from __future__ import annotations
+
+from functools import partial
+from inspect import isbuiltin
+from types import TracebackType
+from typing import Any
+
+import pybullet
+
+
+class BulletClient:
+    """A connection whose functions are those of the module `pybullet`, bound to it.
+
+    It is closed when it is garbage, at the end of a `with` block, or by `disconnect()`.
+    """
+
+    def __init__(self, connection_mode: int | None = None, hostName: str | None = None) -> None:
+        """Connects.
+
+        Args:
+            connection_mode: `pybullet.DIRECT`, `pybullet.GUI`, ...; without it a running server is looked
+                for, and failing that a `DIRECT` connection is made.
+            hostName: Of a server.
+
+        Raises:
+            pybullet.error: The connection cannot be made.
+        """
+        self._client = -1
+        if connection_mode is None:
+            self._client = pybullet.connect(pybullet.SHARED_MEMORY)
+            connection_mode = pybullet.DIRECT
+        if self._client < 0:
+            if hostName is None:
+                self._client = pybullet.connect(connection_mode)
+            else:
+                self._client = pybullet.connect(connection_mode, hostName)
+
+    def __enter__(self) -> BulletClient:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._close()
+
+    def __del__(self) -> None:
+        self._close()
+
+    def __getattr__(self, name: str) -> Any:
+        attribute = getattr(pybullet, name)
+        if name == "disconnect":
+            return self._close
+        return partial(attribute, physicsClientId=self._client) if isbuiltin(attribute) else attribute
+
+    def _close(self) -> None:
+        client, self._client = self.__dict__.get("_client", -1), -1
+        if client >= 0 and pybullet.isConnected(client):
+            pybullet.disconnect(client)
