@@ -9,6 +9,7 @@
 #   make conformance  compare Carom with real PyBullet, live
 #   make report       the comparison as tables and plots, in docs/conformance/
 #   make bench        speed, beside real PyBullet's in the same run
+#   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
 SHELL := /bin/bash
@@ -26,7 +27,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs oracle record conformance report bench clean
+.PHONY: help demo test check lint types docs oracle record conformance report soak bench clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -84,13 +85,16 @@ types: $(VENV)/dev
 # Beside real PyBullet; the recorded figures and the reports are committed.
 
 record: oracle
-	.oracle/bin/python -m tests.conformance.record
+	env -u PYTHONPATH .oracle/bin/python -m tests.conformance.record
 
 conformance: oracle $(VENV)/dev
 	$(RUN) -m tests.conformance.live --oracle .oracle/bin/python
 
 report: $(VENV)/dev
 	$(RUN) -m tests.conformance.report
+
+soak: $(VENV)/dev
+	$(RUN) -m tests.conformance.soak
 
 bench: oracle $(VENV)/dev
 	$(RUN) -m carom warmup
