@@ -28,3 +28,7 @@ class DescriptionError(CaromError):
         self.element = element
         where = "" if file is None else str(file) if line is None else f"{file}:{line}"
         super().__init__(": ".join(part for part in (where, element, reason) if part))
+
+
+class SimulationError(CaromError):
+    """A step could not be completed; the world is as it was before it."""

@@ -15,6 +15,7 @@ from carom.body import Body
 from carom.constraints import Island, JointConstraints
 from carom.description.pose import Pose
 from carom.description.transform import compose
+from carom.errors import SimulationError
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
@@ -216,11 +217,26 @@ class World:
     # Time
 
     def step(self, count: int = 1) -> None:
-        """Advance the world by `count` time steps."""
+        """Advance the world by `count` time steps.
+
+        Raises:
+            carom.errors.SimulationError: A velocity came out as NaN or infinite; the world is as it
+                was before that step, without the forces applied for it.
+        """
         for _ in range(count):
             step = self._step or self._prepare_step()
             step()
-        self.time += count * self.parameters.time_step
+            if self._fault[0]:
+                self._raise_fault()
+            self.time += self.parameters.time_step
+
+    def _raise_fault(self) -> None:
+        tree = self._fault[0] - 1
+        body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        raise SimulationError(
+            f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
+            "the world is as it was before the step"
+        )
 
     def _prepare_step(self) -> Callable[[], None]:
         """The function that performs one step with the bodies and parameters there are."""
@@ -296,6 +312,7 @@ class World:
             view = self.arrays.state.numpy[field][0]
             setattr(self, name, view)
             setattr(self, f"{name}_memory", memoryview(view.reshape(-1)))
+        self._fault = memoryview(self.arrays.state.numpy["fault_tree"][0])
 
     def query_space(self) -> QuerySpace:
         """Spare coordinates for the algorithms that need no step."""

@@ -121,6 +121,7 @@ class WorldArrays:
         model["tree_first_link"][tree] = first["link"]
         model["tree_link_count"][tree] = rows.count["link"]
         model["tree_first_position"][tree] = first["position"]
+        model["tree_position_count"][tree] = rows.count["position"]
         model["tree_first_velocity"][tree] = first["dof"]
         model["tree_first_block"][tree] = first["block"]
         model["tree_first_delta"][tree] = first["delta"]
@@ -191,12 +192,15 @@ class WorldArrays:
         to_inertial = conjugate(link.inertial_frame.orientation)
         from_parent_com = _difference(link.joint_frame.position, parent.inertial_frame.position)
         axis = rotate(to_inertial, link.joint_axis)
+        # An axis that is not of unit length scales the joint's rate, not the angle it turns by.
+        length = link.joint_axis_length
         model["link_joint_rotation"][row] = multiplied(
             multiplied(to_parent_inertial, link.joint_frame.orientation), link.inertial_frame.orientation
         )
         model["link_pivot_in_parent"][row] = rotate(to_parent_inertial, from_parent_com)
         model["link_com_from_pivot"][row] = rotate(to_inertial, link.inertial_frame.position)
-        model["link_axis"][row] = axis
+        model["link_unit_axis"][row] = axis
+        model["link_axis"][row] = (axis[0] * length, axis[1] * length, axis[2] * length)
         if code == JointCode.PLANAR:
             # Bullet's planar joint acts at the centre of mass.
             model["link_com_from_pivot"][row] = 0.0
@@ -204,6 +208,7 @@ class WorldArrays:
             aside = np.array([0.0, 1.0, 0.0]) if normal[0] > 0.999 else np.array([1.0, 0.0, 0.0])
             axis1 = np.cross(normal, aside)
             axis1 /= np.linalg.norm(axis1)
+            model["link_unit_axis"][row] = normal
             model["link_axis"][row] = normal
             model["link_planar_axis1"][row] = axis1
             model["link_planar_axis2"][row] = np.cross(axis1, normal)

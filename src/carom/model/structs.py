@@ -59,6 +59,7 @@ class Model:
     tree_first_link: Ints
     tree_link_count: Ints
     tree_first_position: Ints
+    tree_position_count: Ints
     tree_first_velocity: Ints
     tree_first_dof: Ints
     tree_dof_count: Ints
@@ -82,7 +83,8 @@ class Model:
     link_joint_rotation: Quaternions  # inertial frame in the parent's inertial frame at position 0
     link_pivot_in_parent: Vectors3  # joint origin in the parent's inertial frame
     link_com_from_pivot: Vectors3  # centre of mass from the joint origin, in the inertial frame
-    link_axis: Vectors3  # in the inertial frame
+    link_axis: Vectors3  # velocity per unit rate, in the inertial frame
+    link_unit_axis: Vectors3
     link_planar_axis1: Vectors3  # first translation of a planar joint, in the inertial frame
     link_planar_axis2: Vectors3
 
@@ -117,6 +119,7 @@ class State:
     link_reaction: Vector6Rows  # force, torque of the force-torque sensor
     island_iterations: IntRows
     island_residual: RealRows
+    fault_tree: IntRows  # its first entry: 1 + the tree whose velocities were not finite, or 0
 
 
 @wp.struct
@@ -143,6 +146,8 @@ class Scratch:
     link_constraint_force: Vector3Rows
     link_constraint_torque: Vector3Rows
 
+    position_start: RealRows
+    dof_start_velocity: RealRows
     dof_angular: Vector3Rows  # motion subspace
     dof_linear: Vector3Rows
     dof_force: RealRows

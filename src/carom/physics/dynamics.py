@@ -11,6 +11,7 @@ from carom.model.codes import CONSTRAINT_FEEDBACK, FREE_MOTION, INVERSE_DYNAMICS
 from carom.model.real import Int32, Matrix3, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.kinematics import base_omega, base_velocity
+from carom.physics.quarantine import report_fault
 
 
 @func
@@ -195,6 +196,9 @@ def update_velocities(
     """Velocities after the step if nothing constrained them; `dof_force` holds accelerations."""
     bound = model.tree_max_velocity[tree]
     first = model.tree_first_dof[tree]
+    total = real(0.0)
     for dof in range(first, first + model.tree_dof_count[tree]):
         velocity = state.dof_velocity[world, dof] + settings.time_step * scratch.dof_force[world, dof]
         state.dof_velocity[world, dof] = wp.clamp(velocity, -bound, bound)
+        total += velocity
+    report_fault(state, world, tree, total)

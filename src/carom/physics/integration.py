@@ -63,7 +63,7 @@ def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, d
             axis1 = model.link_planar_axis1[link]
             axis2 = model.link_planar_axis2[link]
             slide = wp.quat_rotate(
-                axis_rotation(model.link_axis[link], angle),
+                axis_rotation(model.link_unit_axis[link], angle),
                 axis1 * state.dof_velocity[world, dof + 1] + axis2 * state.dof_velocity[world, dof + 2],
             )
             state.position[world, q + 1] += dt * wp.dot(axis1, slide)

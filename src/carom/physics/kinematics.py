@@ -35,7 +35,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
         q = model.link_first_position[link]
         if joint_type == REVOLUTE:
             child_orientation = child_orientation * axis_rotation(
-                model.link_axis[link], state.position[world, q]
+                model.link_unit_axis[link], state.position[world, q]
             )
         elif joint_type == PRISMATIC:
             slide = model.link_axis[link] * state.position[world, q]
@@ -54,7 +54,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
                 + model.link_planar_axis2[link] * state.position[world, q + 2],
             )
             child_orientation = child_orientation * axis_rotation(
-                model.link_axis[link], state.position[world, q]
+                model.link_unit_axis[link], state.position[world, q]
             )
 
         child_orientation = canonical(child_orientation)

@@ -26,6 +26,7 @@ from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.feedback import gather_constraint_forces
 from carom.physics.limits import limit_rows, spherical_limit_rows
 from carom.physics.motors import motor_row, spherical_motor_rows
+from carom.physics.quarantine import report_fault
 from carom.physics.rows import row_dof
 
 
@@ -84,8 +85,10 @@ def solve_island(
     last = island_rows(model, settings, state, scratch, world, island)
     count = last - first
     residual = real(0.0)
-    sweep = 0
-    searching = int(count > 0)
+    sweep = Int32(0)
+    searching = Int32(0)
+    if count > 0:
+        searching = Int32(1)
     while searching == 1:
         residual = real(0.0)
         for _inner in range(settings.inner_iterations):
@@ -99,7 +102,7 @@ def solve_island(
                     residual = change * change
         sweep += 1
         if residual <= settings.residual_threshold or sweep >= settings.iterations:
-            searching = 0
+            searching = Int32(0)
     state.island_iterations[world, island] = sweep
     state.island_residual[world, island] = residual
 
@@ -132,6 +135,9 @@ def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: 
     bound = model.tree_max_velocity[tree]
     first = model.tree_first_dof[tree]
     delta = model.tree_first_delta[tree]
+    total = real(0.0)
     for i in range(model.tree_dof_count[tree]):
         velocity = state.dof_velocity[world, first + i] + scratch.entry_delta_velocity[world, 4 * delta + i]
         state.dof_velocity[world, first + i] = wp.clamp(velocity, -bound, bound)
+        total += velocity
+    report_fault(state, world, tree, total)

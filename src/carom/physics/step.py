@@ -15,6 +15,7 @@ from carom.physics.integration import integrate_positions
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd, joint_damping
+from carom.physics.quarantine import keep_start, return_to_start
 from carom.physics.solver import apply_delta_velocities, clear_delta_velocities, solve_island
 
 
@@ -54,7 +55,9 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
 def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, substeps: Int32):
     """Advance each world by one step of `substeps` substeps."""
     world = wp.tid()
+    state.fault_tree[world, 0] = 0
     for tree in range(settings.tree_count):
+        keep_start(model, state, scratch, world, tree)
         joint_damping(model, state, world, tree)
 
     for _substep in range(substeps):
@@ -69,4 +72,6 @@ def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch
             integrate_positions(model, state, world, tree, settings.time_step)
 
     for tree in range(settings.tree_count):
+        if state.fault_tree[world, 0] != 0:
+            return_to_start(model, state, scratch, world, tree)
         clear_forces(model, state, world, tree)
