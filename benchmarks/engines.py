@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Sequence
@@ -34,14 +35,17 @@ class Engine:
     runs_scripts: bool = True
 
     def time_cases(self, keys: Sequence[str], seconds: float, original_data: str) -> dict[str, float]:
-        """Time the cases in one new process; cases the engine does not have are left out."""
+        """Time the cases in one new process; cases the engine lacks are left out."""
         command = [str(self.interpreter), str(HERE / "worker.py"), self.module, *keys]
         command += ["--seconds", str(seconds), "--original-data", original_data]
         output = subprocess.run(
             command, check=True, env=self._environment(), cwd=ROOT, stdout=subprocess.PIPE, text=True
         )
         results = [json.loads(line) for line in output.stdout.splitlines() if line.startswith('{"case"')]
-        return {result["case"]: result["seconds"] for result in results}
+        for result in results:
+            if "failure" in result:
+                print(f"{self.name}: {result['case']}: {result['failure']}", file=sys.stderr, flush=True)
+        return {result["case"]: result["seconds"] for result in results if "seconds" in result}
 
     def time_first_step(self) -> tuple[float, float]:
         """Seconds of `import pybullet`, and from the start of a process to its first finished step."""

@@ -1,6 +1,6 @@
 """Times the cases of one engine in this interpreter; `run.py` starts it.
 
-Prints one JSON line per case: its key and the median time of a call in seconds.
+Prints one JSON line per case: its key and the median time of a call in seconds, or why it failed.
 """
 
 from __future__ import annotations
@@ -46,6 +46,14 @@ def time_with_cleanup(call: Callable[[], Any], cleanup: Callable[[Any], None], b
     return statistics.median(times)
 
 
+def time_case(prepared: Any, budget: float) -> float:
+    """Median time of a prepared case: a call, or a call and what disposes of its result."""
+    if isinstance(prepared, tuple):
+        call, cleanup = prepared
+        return time_with_cleanup(call, cleanup, budget)
+    return time_call(prepared, budget)
+
+
 def _batch(call: Callable[[], Any], count: int) -> float:
     repetitions = range(count)
     start = time.perf_counter()
@@ -67,13 +75,13 @@ def main() -> None:
         prepare = getattr(module, key, None)
         if prepare is None:
             continue
-        prepared = prepare(arguments.original_data)
-        if isinstance(prepared, tuple):
-            call, cleanup = prepared
-            seconds = time_with_cleanup(call, cleanup, arguments.seconds)
-        else:
-            seconds = time_call(prepared, arguments.seconds)
-        sys.stdout.write(json.dumps({"case": key, "seconds": seconds}) + "\n")
+        try:
+            result: dict[str, Any] = {
+                "seconds": time_case(prepare(arguments.original_data), arguments.seconds)
+            }
+        except Exception as error:
+            result = {"failure": f"{type(error).__name__}: {error}"}
+        sys.stdout.write(json.dumps({"case": key, **result}) + "\n")
         sys.stdout.flush()
 
 
