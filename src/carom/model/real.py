@@ -44,8 +44,9 @@ if TYPE_CHECKING:
 
 import warp as wp
 
-# Warp would print a banner to the user's terminal at its first use, and a warning where there is no GPU.
-wp.config.log_level = wp.LOG_ERROR
+from carom.model.warp_start import start_warp
+
+start_warp()
 
 _PRECISIONS = {"float32": (wp.float32, np.float32), "float64": (wp.float64, np.float64)}
 PRECISION = os.environ.get("CAROM_PRECISION", "float64")
