@@ -232,3 +232,27 @@ def solver_iterations(p: Any) -> dict[str, Any]:
             simulate(p, 2.0, lambda b=bodies: _observe(p, b), stride=32),
         )
     return results
+
+
+@scenario()
+def solver_parameters(p: Any) -> dict[str, Any]:
+    """Each parameter of the solver that joint motors and limits might feel, away from its default."""
+    results: dict[str, Any] = {}
+    variants: dict[str, dict[str, Any]] = {
+        "inner iterations": {"numNonContactInnerIterations": 4, "numSolverIterations": 5},
+        "islands": {"minimumSolverIslandSize": 128},
+        "erp": {"erp": 0.6},
+        "cfm": {"globalCFM": 0.02},
+        "no split impulse": {"useSplitImpulse": 0},
+        "split threshold": {"splitImpulsePenetrationThreshold": 0.3},
+        "warm starting": {"warmStartingFactor": 0.8},
+        "pyramid": {"enableConeFriction": 0},
+    }
+    for name, parameters in variants.items():
+        p.resetSimulation()
+        p.setPhysicsEngineParameter(**parameters)
+        bodies = _three(p)
+        p.resetJointState(bodies["limits"], 0, 0.7)
+        p.resetJointState(bodies["limits"], 1, -0.33)
+        results |= under(name, simulate(p, 2.0, lambda b=bodies: _observe(p, b), stride=32))
+    return results
