@@ -157,11 +157,9 @@ class Scratch:
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
     # columns, and the `entry_` arrays show the same memory column by column.
     block_factor: Vector4Rows
-    block_inverse_factor: Vector4Rows
     block_inverse_mass: Vector4Rows
     delta_velocity: Vector4Rows
     entry_factor: RealRows
-    entry_inverse_factor: RealRows
     entry_inverse_mass: RealRows
     entry_delta_velocity: RealRows
 
@@ -173,7 +171,6 @@ class Scratch:
 # Scratch arrays that show another array's blocks entry by entry.
 ENTRY_VIEWS = {
     "entry_factor": "block_factor",
-    "entry_inverse_factor": "block_inverse_factor",
     "entry_inverse_mass": "block_inverse_mass",
     "entry_delta_velocity": "delta_velocity",
 }

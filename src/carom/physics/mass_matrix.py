@@ -66,26 +66,38 @@ def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     count = model.tree_dof_count[tree]
     blocks = (count + 3) // 4
     matrix = model.tree_first_block[tree]
-    for step in range(count):
-        k = count - 1 - step
-        row = matrix + k * blocks
+    k = count - 1
+    row = matrix + k * blocks
+    while k >= 0:
         pivot = scratch.entry_factor[world, 4 * row + k]
         inverse = real(0.0)
         if pivot >= LEAST_PIVOT:
             inverse = 1.0 / pivot
         scratch.dof_inverse_pivot[world, first + k] = inverse
-        for i in range(k):
+        i = Int32(0)
+        target = matrix + 0
+        while i < k:
             entry = scratch.entry_factor[world, 4 * row + i]
             if entry != 0.0:
-                ratio = entry * inverse
-                target = matrix + i * blocks
-                for block in range(i // 4 + 1):
-                    scratch.block_factor[world, target + block] -= (
-                        ratio * scratch.block_factor[world, row + block]
-                    )
+                subtract_row(scratch, world, target, row, i // 4, entry * inverse)
+            i += 1
+            target += blocks
         # The row of L; done last because every entry above needs the unscaled row.
-        for block in range(k // 4 + 1):
-            scratch.block_factor[world, row + block] = inverse * scratch.block_factor[world, row + block]
+        block = row + 0
+        while block <= row + k // 4:
+            scratch.block_factor[world, block] = inverse * scratch.block_factor[world, block]
+            block += 1
+        k -= 1
+        row -= blocks
+
+
+@func
+def subtract_row(scratch: Scratch, world: Int32, target: Int32, row: Int32, last: Int32, ratio: real):
+    """Subtract `ratio` times a row of the factor from another, up to the block number `last`."""
+    block = Int32(0)
+    while block <= last:
+        scratch.block_factor[world, target + block] -= ratio * scratch.block_factor[world, row + block]
+        block += 1
 
 
 @func
@@ -111,39 +123,45 @@ def solve(model: Model, scratch: Scratch, world: Int32, tree: Int32):
 
 @func
 def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Fill `block_inverse_mass` with the inverse of the joint-space inertia, L⁻¹ D⁻¹ L⁻ᵀ."""
+    """Fill `block_inverse_mass` with the inverse A of the joint-space inertia.
+
+    L A = D⁻¹ L⁻ᵀ is upper triangular, which gives the rows of A one after the other:
+    A[i, c] = -Σ L[i, j] A[j, c] over j < i for c < i, and 1 / D[i] more on the diagonal.
+    """
     first = model.tree_first_dof[tree]
     count = model.tree_dof_count[tree]
     blocks = (count + 3) // 4
     matrix = model.tree_first_block[tree]
-
-    # Row k of X = L⁻ᵀ is zero left of column k.
-    for step in range(count):
-        k = count - 1 - step
-        row = matrix + k * blocks
-        for block in range(row, row + blocks):
-            scratch.block_inverse_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
-        scratch.entry_inverse_factor[world, 4 * row + k] = 1.0
-        for i in range(k + 1, count):
-            entry = scratch.entry_factor[world, 4 * (matrix + i * blocks) + k]
+    i = Int32(0)
+    row = matrix + 0
+    while i < count:
+        block = Int32(0)
+        while block < blocks:
+            scratch.block_inverse_mass[world, row + block] = Vector4(0.0, 0.0, 0.0, 0.0)
+            block += 1
+        j = Int32(0)
+        source = matrix + 0
+        while j < i:
+            entry = scratch.entry_factor[world, 4 * row + j]
             if entry != 0.0:
-                source = matrix + i * blocks
-                for block in range(i // 4, blocks):
-                    scratch.block_inverse_factor[world, row + block] -= (
-                        entry * scratch.block_inverse_factor[world, source + block]
+                block = Int32(0)
+                while block <= i // 4:
+                    scratch.block_inverse_mass[world, row + block] -= (
+                        entry * scratch.block_inverse_mass[world, source + block]
                     )
-
-    # H⁻¹ = Xᵀ D⁻¹ X.
-    for i in range(count):
-        row = matrix + i * blocks
-        for block in range(row, row + blocks):
-            scratch.block_inverse_mass[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
-        for k in range(i + 1):
-            source = matrix + k * blocks
-            entry = scratch.entry_inverse_factor[world, 4 * source + i]
-            if entry != 0.0:
-                weight = entry * scratch.dof_inverse_pivot[world, first + k]
-                for block in range(k // 4, blocks):
-                    scratch.block_inverse_mass[world, row + block] += (
-                        weight * scratch.block_inverse_factor[world, source + block]
-                    )
+                    block += 1
+            j += 1
+            source += blocks
+        # Column i of the rows above is still to come, so the diagonal is summed on its own.
+        diagonal = scratch.dof_inverse_pivot[world, first + i]
+        j = Int32(0)
+        source = matrix + 0
+        while j < i:
+            value = scratch.entry_inverse_mass[world, 4 * row + j]
+            diagonal -= scratch.entry_factor[world, 4 * row + j] * value
+            scratch.entry_inverse_mass[world, 4 * source + i] = value
+            j += 1
+            source += blocks
+        scratch.entry_inverse_mass[world, 4 * row + i] = diagonal
+        i += 1
+        row += blocks
