@@ -6,15 +6,12 @@ because robot files in the wild are sloppy.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from xml.parsers import expat
 
 from carom.errors import DescriptionError
-
-_FROM_NUL = re.compile(rb"\0[^\n]*")
 
 MAX_DEPTH = 100
 """Deepest nesting of elements."""
@@ -118,7 +115,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     Entity declarations and external entities are refused; nothing but `data` is ever read.
 
     Args:
-        data: Content of the file, in UTF-8 (other bytes are kept as escapes).
+        data: Content of the file, in UTF-8, or in Latin-1 where it is not.
         file: Named in errors.
 
     Returns:
@@ -129,10 +126,12 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     """
     if not data.strip():
         raise DescriptionError("the file is empty", file=file)
-    if b"\0" in data:
-        # C libraries see a line end here, and robot files with a stray NUL are in use.
-        data = _FROM_NUL.sub(b"", data)
-    text = data.decode("utf-8-sig", errors="backslashreplace")
+    # PyBullet takes a stray NUL for a line end, and robot files with one are in use.
+    data = data.replace(b"\0", b" ")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
     builder = TreeBuilder(file)
     try:
         _run_expat(text, builder)

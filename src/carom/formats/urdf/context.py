@@ -15,7 +15,9 @@ from carom.formats.search import AssetSearch
 from carom.formats.xml_tree import Element
 
 _log = logging.getLogger(__name__)
-_LEADING_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+
+_LONGEST_SHOWN = 60
 
 MAX_MAGNITUDE = 1e30
 """Numbers beyond this are refused: products of a few of them would overflow."""
@@ -81,9 +83,14 @@ class UrdfContext:
             raise self.error(element, f"{attribute}={value:g} must not be negative")
         return value
 
-    def integer(self, element: Element, attribute: str) -> int | None:
-        """A whole number from an attribute, cut towards zero; None where it is not given."""
-        return int(self.number(element, attribute)) if attribute in element.attributes else None
+    def bit_mask(self, element: Element, attribute: str) -> int | None:
+        """32 bits from an attribute, as a signed number; None where it is not given."""
+        if attribute not in element.attributes:
+            return None
+        value = int(self.number(element, attribute))
+        if not -(1 << 31) <= value < 1 << 32:
+            raise self.error(element, f"{attribute}={value} does not fit into 32 bits")
+        return value if value < 1 << 31 else value - (1 << 32)
 
     def parse_number(self, element: Element, attribute: str, text: str) -> float:
         """A finite number; anything after it is left out with a warning, as PyBullet leaves it out."""
@@ -92,14 +99,14 @@ class UrdfContext:
         except ValueError:
             value = self._leading_number(element, attribute, text)
         if not isfinite(value) or abs(value) > MAX_MAGNITUDE:
-            raise self.error(element, f"{attribute}={text!r} is not a finite number of sensible size")
+            raise self.error(element, f"{attribute}={shown(text)} is not a finite number of sensible size")
         return value
 
     def _leading_number(self, element: Element, attribute: str, text: str) -> float:
         match = _LEADING_NUMBER.match(text.strip())
         if match is None:
-            raise self.error(element, f"{attribute}={text!r} is not a number")
-        self.warn(element, f"{attribute}={text!r} is read as {match.group()}")
+            raise self.error(element, f"{attribute}={shown(text)} is not a number")
+        self.warn(element, f"{attribute}={shown(text)} is read as {match.group()}")
         return float(match.group())
 
     def vector(self, element: Element, attribute: str) -> Vector3 | None:
@@ -115,14 +122,14 @@ class UrdfContext:
         # One test for all three: NaN and infinity both fail it.
         if not abs(vector[0]) + abs(vector[1]) + abs(vector[2]) <= MAX_MAGNITUDE:
             raise self.error(
-                element, f"{attribute}={element.attributes[attribute]!r} is not finite or out of range"
+                element, f"{attribute}={shown(element.attributes[attribute])} is not finite or out of range"
             )
         return vector
 
     def _component(self, element: Element, attribute: str, word: str) -> float:
         """One number of a vector. Robot files in use hold unexpanded xacro, which PyBullet reads as zeros."""
         if "$" in element.attributes[attribute] and _LEADING_NUMBER.match(word) is None:
-            self.warn(element, f"{attribute}: {word!r} is read as 0 (unexpanded xacro?)")
+            self.warn(element, f"{attribute}: {shown(word)} is read as 0 (unexpanded xacro?)")
             return 0.0
         return self.parse_number(element, attribute, word)
 
@@ -133,7 +140,7 @@ class UrdfContext:
             return (0.0, 0.0, 0.0)
         vector = self.vector(element, attribute)
         if vector is None:
-            self.warn(element, f"{attribute}={text!r} needs three numbers; read as zeros")
+            self.warn(element, f"{attribute}={shown(text)} needs three numbers; read as zeros")
             return (0.0, 0.0, 0.0)
         return vector
 
@@ -159,6 +166,15 @@ class UrdfContext:
         return pairs
 
 
+def shown(text: str) -> str:
+    """Text from a file as it stands in a message: quoted, and cut where it is long."""
+    return repr(_cut(text))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
+
+
 def _label(element: Element) -> str:
     name = element.attributes.get("name")
-    return f"<{element.tag}>" if name is None else f'<{element.tag} name="{name}">'
+    return f"<{element.tag}>" if name is None else f'<{element.tag} name="{_cut(name)}">'

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import hypot
 from pathlib import Path
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
 from carom.description.pose import Vector3
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.context import UrdfContext, shown
 from carom.formats.xml_tree import Element
 
 MESH_SUFFIXES = (".obj", ".stl", ".dae")
@@ -40,7 +40,7 @@ def _box(context: UrdfContext, shape: Element) -> Box:
     context.required(shape, "size")
     x, y, z = context.vector_or_zero(shape, "size")
     if x < 0.0 or y < 0.0 or z < 0.0:
-        raise context.error(shape, f"size={shape.attributes['size']!r} must not be negative")
+        raise context.error(shape, f"size={shown(shape.attributes['size'])} must not be negative")
     half = 0.5 * context.scale
     return Box((x * half, y * half, z * half))
 
@@ -63,7 +63,7 @@ def _radius_and_length(context: UrdfContext, shape: Element) -> tuple[float, flo
 def _plane(context: UrdfContext, shape: Element) -> Plane:
     context.required(shape, "normal")
     x, y, z = context.vector_or_zero(shape, "normal")
-    length = sqrt(x * x + y * y + z * z)
+    length = hypot(x, y, z)
     if length == 0.0:
         raise context.error(shape, "the normal has no length")
     return Plane((x / length, y / length, z / length))
@@ -80,11 +80,11 @@ def _signed_distance_field(context: UrdfContext, shape: Element) -> SignedDistan
 def _shape_file(context: UrdfContext, shape: Element, suffixes: tuple[str, ...]) -> Path:
     name = context.required(shape, "filename")
     if not name.lower().endswith(suffixes):
-        raise context.error(shape, f"filename={name!r} must end in {' or '.join(suffixes)}")
+        raise context.error(shape, f"filename={shown(name)} must end in {' or '.join(suffixes)}")
     path = context.find_file(name)
     if path is None:
         raise context.error(
-            shape, f"{name!r} was found neither beside the robot file nor in a directory above it"
+            shape, f"{shown(name)} was found neither beside the robot file nor in a directory above it"
         )
     return path
 
@@ -96,7 +96,7 @@ def _mesh_scale(context: UrdfContext, shape: Element) -> Vector3:
     if vector is None:
         text = shape.attributes["scale"]
         uniform = context.parse_number(shape, "scale", text)
-        context.warn(shape, f"scale={text!r} needs three numbers; {uniform:g} is used for all of them")
+        context.warn(shape, f"scale={shown(text)} needs three numbers; {uniform:g} is used for all of them")
         vector = (uniform, uniform, uniform)
     return (vector[0] * context.scale, vector[1] * context.scale, vector[2] * context.scale)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import hypot
 
 from carom.description import Joint, JointLimit, JointType, Mimic, SafetyController
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.context import UrdfContext, shown
 from carom.formats.xml_tree import Element
 
 _TYPES = {kind.value: kind for kind in JointType}
@@ -31,7 +31,7 @@ def read_joint(context: UrdfContext, element: Element, link_indices: dict[str, i
     kind = _TYPES.get(context.required(element, "type"))
     if kind is None:
         raise context.error(
-            element, f"unknown joint type {element.attributes['type']!r}; known are {', '.join(_TYPES)}"
+            element, f"unknown joint type {shown(element.attributes['type'])}; known are {', '.join(_TYPES)}"
         )
     axis, axis_length = _read_axis(context, element, kind)
     damping, friction = _read_dynamics(context, element)
@@ -57,7 +57,7 @@ def _read_end(context: UrdfContext, joint: Element, tag: str, link_indices: dict
         raise context.error(joint, f"<{tag}> is missing")
     name = context.required(element, "link")
     if name not in link_indices:
-        raise context.error(element, f"there is no link {name!r}")
+        raise context.error(element, f"there is no link {shown(name)}")
     return link_indices[name]
 
 
@@ -68,9 +68,9 @@ def _read_axis(context: UrdfContext, joint: Element, kind: JointType) -> tuple[V
         return (1.0, 0.0, 0.0), 1.0
     vector = context.vector(element, "xyz")
     if vector is None:
-        raise context.error(element, f"xyz={element.attributes['xyz']!r} needs three numbers")
+        raise context.error(element, f"xyz={shown(element.attributes['xyz'])} needs three numbers")
     x, y, z = vector
-    length = sqrt(x * x + y * y + z * z)
+    length = hypot(x, y, z)
     if length == 0.0:
         if kind in _NEEDS_AXIS_LENGTH:
             raise context.error(element, f"the axis of a {kind.value} joint has no length")

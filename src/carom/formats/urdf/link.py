@@ -73,8 +73,8 @@ def _read_collision(context: UrdfContext, element: Element) -> Collision:
         geometry,
         frame=context.origin(element),
         name=element.attributes.get("name", ""),
-        group=context.integer(element, "group"),
-        mask=context.integer(element, "mask"),
+        group=context.bit_mask(element, "group"),
+        mask=context.bit_mask(element, "mask"),
     )
 
 

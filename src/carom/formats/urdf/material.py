@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description import Material
-from carom.description.link import Rgba
-from carom.formats.urdf.context import UrdfContext
+from carom.errors import DescriptionError
+from carom.formats.urdf.context import UrdfContext, shown
 from carom.formats.xml_tree import Element
 
 
@@ -37,28 +37,33 @@ def read_visual_material(context: UrdfContext, visual: Element) -> Material | No
 
 
 def _read_material(context: UrdfContext, element: Element, name: str) -> Material:
-    colour = element.first("color")
-    specular = element.first("specular")
     texture = element.first("texture")
+    colour = _components(context, element.first("color"), "rgba", 4)
+    specular = _components(context, element.first("specular"), "rgb", 3)
     return Material(
         name,
-        rgba=None if colour is None else _rgba(context, colour),
-        specular=None
-        if specular is None or "rgb" not in specular.attributes
-        else context.vector(specular, "rgb"),
+        rgba=None if colour is None else (colour[0], colour[1], colour[2], colour[3]),
+        specular=None if specular is None else (specular[0], specular[1], specular[2]),
         texture=None if texture is None else _texture(context, texture),
     )
 
 
-def _rgba(context: UrdfContext, colour: Element) -> Rgba | None:
-    words = colour.attributes.get("rgba", "").split()
-    if not words:
+def _components(
+    context: UrdfContext, element: Element | None, attribute: str, count: int
+) -> list[float] | None:
+    """The components of a colour; None, with a warning, where they cannot be read: looks stop no robot."""
+    text = "" if element is None else element.attributes.get(attribute, "")
+    if element is None or not text:
         return None
-    if len(words) != 4:
-        context.warn(colour, f"rgba={colour.attributes['rgba']!r} needs four numbers; ignored")
+    try:
+        components = [context.parse_number(element, attribute, word) for word in text.split()]
+    except DescriptionError as error:
+        context.warn(element, f"ignored: {error.reason}")
         return None
-    red, green, blue, alpha = (context.parse_number(colour, "rgba", word) for word in words)
-    return (red, green, blue, alpha)
+    if len(components) != count:
+        context.warn(element, f"{attribute}={shown(text)} needs {count} numbers; ignored")
+        return None
+    return components
 
 
 def _texture(context: UrdfContext, texture: Element) -> Path | None:
@@ -67,5 +72,5 @@ def _texture(context: UrdfContext, texture: Element) -> Path | None:
         return None
     path = context.find_file(name)
     if path is None:
-        context.warn(texture, f"texture {name!r} was not found; the material goes without")
+        context.warn(texture, f"texture {shown(name)} was not found; the material goes without")
     return path

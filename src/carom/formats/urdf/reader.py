@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import logging
 from dataclasses import replace
-from math import isfinite
 from pathlib import Path
 
 from carom.description import Joint, Link, Material, Robot, Visual
 from carom.errors import DescriptionError
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.context import MAX_MAGNITUDE, UrdfContext, shown
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.link import read_link
 from carom.formats.urdf.material import read_global_materials
@@ -40,9 +39,9 @@ def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = No
 
     Raises:
         DescriptionError: The file is missing, broken, or does not describe one tree of links.
-        ValueError: `scale` is not a positive number.
+        ValueError: `scale` is not a positive number of sensible size.
     """
-    if not (isfinite(scale) and scale > 0.0):
+    if not 0.0 < scale <= MAX_MAGNITUDE:
         raise ValueError(f"scale must be positive and finite, not {scale}")
     search = search or AssetSearch()
     found = search.find(path)
@@ -118,7 +117,7 @@ def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
 
 def _refuse_duplicate(context: UrdfContext, element: Element, name: str, lines: dict[str, int]) -> None:
     if name in lines:
-        raise context.error(element, f"the name {name!r} is taken already, on line {lines[name]}")
+        raise context.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
     lines[name] = element.line
 
 

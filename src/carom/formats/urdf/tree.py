@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from carom.description import Joint, Link
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.context import UrdfContext, shown
 from carom.formats.xml_tree import Element
 
 _MOST_NAMES = 8
@@ -25,7 +25,7 @@ def find_root(
         if first is not None:
             raise context.error(
                 joint_elements[index],
-                f"link {links[joint.child].name!r} is already the child of joint {joints[first].name!r}",
+                f"link {shown(links[joint.child].name)} already hangs on joint {shown(joints[first].name)}",
             )
         carrier[joint.child] = index
     roots = [index for index, joint in enumerate(carrier) if joint is None]
@@ -56,5 +56,5 @@ def _reachable(roots: list[int], joints: Sequence[Joint], count: int) -> set[int
 
 
 def _listed(names: list[str]) -> str:
-    shown = ", ".join(repr(name) for name in names[:_MOST_NAMES])
-    return shown if len(names) <= _MOST_NAMES else f"{shown} and {len(names) - _MOST_NAMES} more"
+    listed = ", ".join(shown(name) for name in names[:_MOST_NAMES])
+    return listed if len(names) <= _MOST_NAMES else f"{listed} and {len(names) - _MOST_NAMES} more"
