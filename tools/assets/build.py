@@ -8,7 +8,19 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from tools.assets import arms, cubes, floors, kuka, panda, r2d2, simple_meshes, spheres, textures, things
+from tools.assets import (
+    arms,
+    cubes,
+    floors,
+    kuka,
+    panda,
+    r2d2,
+    simple_meshes,
+    spheres,
+    textures,
+    things,
+    toys,
+)
 from tools.assets.fields import Field
 from tools.assets.obj_mesh import ObjMesh, material_text
 from tools.assets.parts import Robot, Vector3
@@ -29,12 +41,14 @@ ROBOTS: Mapping[str, Callable[[], Robot]] = {
     "cube_rotate.urdf": cubes.cube_rotate,
     "cube_small.urdf": cubes.cube_small,
     "domino/domino.urdf": things.domino,
+    "duck_vhacd.urdf": toys.duck,
     "franka_panda/panda.urdf": panda.panda,
     "jenga/jenga.urdf": things.jenga,
     "kuka_iiwa/model.urdf": kuka.model,
     "kuka_iiwa/model_free_base.urdf": kuka.model_free_base,
     "kuka_iiwa/model_vr_limits.urdf": kuka.model_vr_limits,
     "lego/lego.urdf": things.lego,
+    "objects/mug.urdf": toys.mug,
     "pendulum5.urdf": arms.pendulum5,
     "plane.urdf": floors.plane,
     "plane100.urdf": floors.plane100,
@@ -61,6 +75,7 @@ ROBOTS: Mapping[str, Callable[[], Robot]] = {
 
 MATERIALS: Mapping[str, tuple[str, str]] = {
     "plane.mtl": ("floor", "checker_blue.png"),
+    "duck.mtl": ("duck", "duck.png"),
     "cube.mtl": ("cube", "cube.png"),
     "textured_sphere_smooth.mtl": ("ball", "ball.png"),
     "soccerball.mtl": ("football", "football.png"),
@@ -73,6 +88,7 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
     "checker_blue.png": textures.floor,
     "cube.png": textures.framed,
     "ball.png": partial(textures.chessboard, 8, np.array((0.95, 0.95, 0.95)), np.array((0.75, 0.2, 0.18))),
+    "duck.png": toys.duck_palette,
     "football.png": textures.football,
     "table/table.png": textures.wood,
     "table_square/table.png": textures.wood,
@@ -87,6 +103,8 @@ MESHES: Mapping[str, Callable[[], ObjMesh]] = {
     "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),
     "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
     "cube.obj": partial(simple_meshes.textured_box, ("cube", "cube.mtl")),
+    "duck.obj": toys.duck_mesh,
+    "objects/mug.obj": toys.mug_mesh,
     "sphere_smooth.obj": partial(simple_meshes.globe, 1.0, 24, 14),
     "textured_sphere_smooth.obj": partial(
         simple_meshes.globe, 1.0, 24, 14, ("ball", "textured_sphere_smooth.mtl")
@@ -101,8 +119,8 @@ MESHES: Mapping[str, Callable[[], ObjMesh]] = {
 }
 
 HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
-    "franka_panda/meshes": (panda.fields, 0.0175),
-    "kuka_iiwa/meshes": (kuka.fields, 0.021),
+    "franka_panda/meshes": (panda.fields, 0.019),
+    "kuka_iiwa/meshes": (kuka.fields, 0.0235),
 }
 """Folders of blended bodies: the fields, and the grid cell they are meshed with [m]."""
 

@@ -109,6 +109,8 @@ def link_frame(body: int, link: int) -> tuple[tuple[float, ...], tuple[float, ..
     """World pose of a link frame."""
     if link >= 0:
         state = p.getLinkState(body, link, computeForwardKinematics=True)
+        if state is None:
+            raise RuntimeError(f"link {link} of body {body} has no state")
         return state[4], state[5]
     inertial = p.getDynamicsInfo(body, -1)[3:5]
     return p.multiplyTransforms(*p.getBasePositionAndOrientation(body), *p.invertTransform(*inertial))

@@ -52,6 +52,35 @@ def globe(radius: float, meridians: int, parallels: int, material: tuple[str, st
     return ObjMesh(radius * outward, faces, outward, texture, material)
 
 
+def lathe(profile: list[tuple[float, float]], segments: int) -> ObjMesh:
+    """A body of revolution about z, smooth-shaded.
+
+    Args:
+        profile: (radius, height) of points along the outline, the body on its left; its ends lie on the axis.
+        segments: Facets around the axis.
+    """
+    outline = np.array(profile)
+    along = np.gradient(outline, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    angle = 2.0 * np.pi * np.arange(segments) / segments
+    across = np.column_stack((np.cos(angle), np.sin(angle)))
+    vertices, normals = (
+        np.concatenate([np.column_stack((across * r, np.full(segments, z))) for r, z in rows])
+        for rows in (outline, np.column_stack((along[:, 1], -along[:, 0])))
+    )
+    faces: list[tuple[int, ...]] = []
+    for row in range(len(outline) - 1):
+        for i in range(segments):
+            here, after = row * segments + i, row * segments + (i + 1) % segments
+            if row == 0:
+                faces.append((here, after + segments, here + segments))
+            elif row == len(outline) - 2:
+                faces.append((here, after, here + segments))
+            else:
+                faces.append((here, after, after + segments, here + segments))
+    return ObjMesh(vertices, faces, normals)
+
+
 Rectangle = tuple[float, float, float, float]
 """Low x, low y, high x, high y [m]."""
 

@@ -1,0 +1,187 @@
+"""Our assets have the names, frames, limits, masses, inertias and contact parameters of the originals."""
+
+from __future__ import annotations
+
+import logging
+from functools import cache, reduce
+from typing import Any
+
+import pytest
+from original_facts import DATA, NAMES, facts
+
+from carom.description import Box, Collision, ContactParameters, Geometry, JointType, Plane, Sphere
+from carom.description.pose import Quaternion
+from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rotation_matrix
+from carom.formats.urdf import read_urdf
+from carom.model.assemble import assemble
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.bounds import MARGIN, Bounds, placed_bounds
+from carom.model.flags import LoadFlags
+
+TYPE_NUMBERS = {
+    JointType.REVOLUTE: 0,
+    JointType.CONTINUOUS: 0,
+    JointType.PRISMATIC: 1,
+    JointType.SPHERICAL: 2,
+    JointType.FIXED: 4,
+}
+CONTACT_DEFAULTS = {
+    "lateral_friction": 0.5,
+    "rolling_friction": 0.0,
+    "spinning_friction": 0.0,
+    "restitution": 0.0,
+    "stiffness": -1.0,
+    "damping": -1.0,
+}
+MESH_NUMBER = 5
+MARGIN_ALLOWANCE = 2.5 * MARGIN
+"""PyBullet counts margins once or twice, depending on the kind and number of shapes."""
+
+
+def exactly(value: Any) -> Any:
+    """A figure or several, compared up to rounding."""
+    return pytest.approx(value, rel=1e-12, abs=1e-12)
+
+
+def same_turn(ours: Quaternion, recorded: list[float]) -> bool:
+    """Two quaternions stand for the same rotation, whatever their signs."""
+    return any(
+        max(abs(a - sign * b) for a, b in zip(ours, recorded, strict=True)) < 1e-9 for sign in (1.0, -1.0)
+    )
+
+
+@cache
+def body(file: str, flags: LoadFlags = LoadFlags.NONE) -> BodySpec:
+    return assemble(read_urdf(DATA / file), flags=flags)
+
+
+def all_links(spec: BodySpec) -> list[LinkSpec]:
+    return [spec.base, *spec.links]
+
+
+def joint_view(spec: BodySpec, link: LinkSpec) -> dict[str, Any]:
+    """A joint as getJointInfo tells of it."""
+    parent = spec.base if link.parent < 0 else spec.links[link.parent]
+    in_parent = compose(inverse(parent.inertial_frame), link.joint_frame)
+    moves = TYPE_NUMBERS[link.joint_type] in (0, 1)
+    axis = rotate(conjugate(link.inertial_frame.orientation), link.joint_axis) if moves else (0.0, 0.0, 0.0)
+    return {
+        "name": link.joint_name,
+        "type": TYPE_NUMBERS[link.joint_type],
+        "damping": exactly(link.damping),
+        "friction": exactly(link.friction),
+        "lower": exactly(link.lower),
+        "upper": exactly(link.upper),
+        "effort": exactly(link.effort),
+        "velocity": exactly(link.velocity),
+        "link": link.name,
+        "axis": exactly(axis),
+        "parent_frame_position": exactly(in_parent.position),
+        "parent": link.parent,
+    }
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_names_and_joints_are_those_of_the_original(name: str) -> None:
+    original = facts(name)
+    spec = body(original["file"])
+    assert (spec.name, spec.base.name) == (original["robot"], original["base"])
+    recorded = [dict(joint) for joint in original["joints"]]
+    orientations = [joint.pop("parent_frame_orientation") for joint in recorded]
+    assert recorded == [joint_view(spec, link) for link in spec.links]
+    for link, recorded_turn in zip(spec.links, orientations, strict=True):
+        parent = spec.base if link.parent < 0 else spec.links[link.parent]
+        in_parent = compose(inverse(parent.inertial_frame), link.joint_frame)
+        turn = multiplied(conjugate(link.inertial_frame.orientation), conjugate(in_parent.orientation))
+        assert same_turn(turn, recorded_turn), link.name
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("key", "flags"),
+    [("default", LoadFlags.NONE), ("inertia_from_file", LoadFlags.USE_INERTIA_FROM_FILE)],
+)
+def test_masses_and_inertias_are_those_of_the_original(
+    name: str, key: str, flags: LoadFlags, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.ERROR)
+    original = facts(name)
+    for link, recorded in zip(all_links(body(original["file"], flags)), original[key], strict=True):
+        assert link.mass == exactly(recorded["mass"])
+        assert link.inertia == pytest.approx(recorded["inertia"], rel=1e-6, abs=0.0), link.name
+        assert link.inertial_frame.position == exactly(recorded["inertial_position"])
+        assert same_turn(link.inertial_frame.orientation, recorded["inertial_orientation"])
+
+
+def stated(contact: ContactParameters, name: str) -> float:
+    value = getattr(contact, name)
+    return CONTACT_DEFAULTS[name] if value is None else value
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_touch_as_in_the_original(name: str) -> None:
+    original = facts(name)
+    for link, recorded in zip(all_links(body(original["file"])), original["default"], strict=True):
+        for quantity in ("lateral_friction", "rolling_friction", "spinning_friction", "restitution"):
+            assert stated(link.contact, quantity) == recorded[quantity], f"{link.name}: {quantity}"
+        assert stated(link.contact, "stiffness") == recorded["contact_stiffness"]
+        assert stated(link.contact, "damping") == recorded["contact_damping"]
+
+
+def bounds_of(link: LinkSpec) -> Bounds:
+    boxes = [
+        placed_bounds(
+            shape.geometry,
+            rotation_matrix(shape.frame.orientation),
+            shape.frame.position,
+            implicit_cylinder=False,
+        )
+        for shape in link.collisions
+    ]
+    return reduce(Bounds.joined, boxes)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_collision_shapes_span_the_room_of_the_original(name: str) -> None:
+    original = facts(name)
+    for link, recorded in zip(all_links(body(original["file"])), original["bounds"], strict=True):
+        if recorded is None or not link.collisions or isinstance(link.collisions[0].geometry, Plane):
+            continue
+        bounds = bounds_of(link)
+        low = [c - h for c, h in zip(bounds.center, bounds.half, strict=True)]
+        high = [c + h for c, h in zip(bounds.center, bounds.half, strict=True)]
+        assert low == pytest.approx(recorded[0], abs=MARGIN_ALLOWANCE), link.name
+        assert high == pytest.approx(recorded[1], abs=MARGIN_ALLOWANCE), link.name
+
+
+def shape_view(link: LinkSpec, shape: Collision) -> dict[str, Any]:
+    """A primitive as getCollisionShapeData tells of it."""
+    number, dimensions = primitive(shape.geometry)
+    placed = compose(inverse(link.inertial_frame), shape.frame)
+    return {
+        "type": number,
+        "dimensions": exactly(dimensions),
+        "position": exactly(placed.position),
+        "orientation": exactly(placed.orientation),
+    }
+
+
+def primitive(geometry: Geometry) -> tuple[int, tuple[float, float, float]]:
+    match geometry:
+        case Sphere(radius):
+            return 2, (radius, radius, radius)
+        case Box((x, y, z)):
+            return 3, (2 * x, 2 * y, 2 * z)
+        case Plane(normal):
+            return 6, normal
+    raise AssertionError(f"the original has a primitive here, not {geometry}")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_where_the_original_has_boxes_and_balls_so_have_we(name: str) -> None:
+    original = facts(name)
+    for link, recorded in zip(all_links(body(original["file"])), original["collisions"], strict=True):
+        if any(shape["type"] == MESH_NUMBER for shape in recorded):
+            assert link.collisions, link.name
+        else:
+            assert recorded == [shape_view(link, shape) for shape in link.collisions], link.name

@@ -1,0 +1,73 @@
+"""The folder of assets: what is in it, that its files fit together, and that they are what the tools make."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from original_facts import DATA
+from tools.assets.build import mesh_files, texture_files, urdf_files
+
+import pybullet_data
+from carom.description import Mesh
+from carom.formats.urdf import read_urdf
+
+URDFS = sorted(str(path.relative_to(DATA)) for path in DATA.rglob("*.urdf"))
+
+
+def test_data_path_is_the_package_folder() -> None:
+    path = pybullet_data.getDataPath()
+    assert isinstance(path, str)
+    assert Path(path) == Path(pybullet_data.__file__).parent
+
+
+def test_the_folder_is_small() -> None:
+    assert sum(path.stat().st_size for path in DATA.rglob("*") if path.is_file()) < 1_000_000
+
+
+def test_every_file_is_made_by_the_tools() -> None:
+    made = {*urdf_files(), *mesh_files(), *texture_files(), "__init__.py", "py.typed"}
+    kept = {str(path.relative_to(DATA)) for path in DATA.rglob("*") if path.is_file()}
+    assert {path for path in kept if "__pycache__" not in path} == made
+
+
+def test_robot_files_are_what_the_tables_say() -> None:
+    for path, text in urdf_files().items():
+        assert (DATA / path).read_text() == text, f"{path} is stale: run python -m tools.assets.build"
+
+
+@pytest.mark.parametrize("file", URDFS)
+def test_robots_are_read_and_their_meshes_found(file: str) -> None:
+    robot = read_urdf(DATA / file)
+    shapes = [shape for link in robot.links for shape in (*link.visuals, *link.collisions)]
+    meshes = [shape.geometry.path for shape in shapes if isinstance(shape.geometry, Mesh)]
+    assert all(path.is_file() for path in meshes)
+    stated = [element.get("filename") for element in ElementTree.parse(DATA / file).iter("mesh")]
+    assert len(meshes) == len(stated)
+
+
+@pytest.mark.parametrize("mesh", sorted(DATA.rglob("*.obj")), ids=lambda path: path.name)
+def test_meshes_name_materials_and_pictures_that_exist(mesh: Path) -> None:
+    for line in mesh.read_text().splitlines():
+        if line.startswith("mtllib "):
+            library = mesh.parent / line.split()[1]
+            pictures = [
+                text.split()[1] for text in library.read_text().splitlines() if text.startswith("map_Kd")
+            ]
+            assert pictures
+            assert all((library.parent / picture).is_file() for picture in pictures)
+
+
+def test_rrbot_is_the_robot_of_the_gazebo_tutorials() -> None:
+    robot = read_urdf(DATA / "rrbot.urdf")
+    assert [joint.name for joint in robot.joints] == [
+        "fixed",
+        "joint1",
+        "joint2",
+        "hokuyo_joint",
+        "camera_joint",
+    ]
+    hinges = [joint for joint in robot.joints if joint.type.value == "continuous"]
+    assert [joint.frame.position for joint in hinges] == [(0.0, 0.1, 1.95), (0.0, 0.1, 0.9)]
+    assert all(joint.axis == (0.0, 1.0, 0.0) and joint.damping == 0.7 for joint in hinges)
