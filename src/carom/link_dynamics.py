@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from carom.description.pose import Vector3
 from carom.model.body_spec import LinkSpec
+from carom.model.bounds import MARGIN
+from carom.model.inertia import collision_margin
 
 DEFAULT_FRICTION = 0.5
-DEFAULT_COLLISION_MARGIN = 0.001
 DEFAULT_LIMIT_IMPULSE = 100.0
 DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
@@ -60,7 +61,7 @@ class LinkDynamics:
     contact_stiffness: float = UNSET
     contact_damping: float = UNSET
     friction_anchor: bool = False
-    collision_margin: float = DEFAULT_COLLISION_MARGIN
+    collision_margin: float = MARGIN
     ccd_swept_sphere_radius: float = 0.0
     contact_processing_threshold: float = DEFAULT_CONTACT_PROCESSING_THRESHOLD
     anisotropic_friction: Vector3 = (1.0, 1.0, 1.0)
@@ -80,6 +81,7 @@ class LinkDynamics:
             joint_lower_limit=link.lower,
             joint_upper_limit=link.upper,
             friction_anchor=contact.friction_anchor,
+            collision_margin=collision_margin(link.collisions, link.inertial_frame),
         )
         stated = {
             "lateral_friction": contact.lateral_friction,

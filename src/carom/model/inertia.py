@@ -37,6 +37,8 @@ _log = logging.getLogger(__name__)
 _TWELFTH = 0.08333333
 """The twelfth PyBullet uses for capsules and hulls, so that figures agree to the last digit."""
 
+_IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
+
 _EPSILON = 2.220446049250313e-16
 
 
@@ -61,7 +63,7 @@ def inertia_from_shapes(
         DescriptionError: The file of a mesh cannot be used.
     """
     placements = [_placement(inertial_frame, collision.frame) for collision in collisions]
-    if len(collisions) == 1 and placements[0] == (NO_ROTATION, (0.0, 0.0, 0.0)):
+    if len(collisions) == 1 and placements[0] == _IN_PLACE:
         return _shape_moments(mass, collisions[0].geometry, implicit_cylinder)
     boxes = [
         placed_bounds(collision.geometry, *placement, implicit_cylinder=implicit_cylinder)
@@ -69,6 +71,18 @@ def inertia_from_shapes(
     ]
     nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     return _box_moments(mass / 12.0, (reduce(Bounds.joined, boxes) if boxes else nothing).grown(MARGIN))
+
+
+def collision_margin(collisions: Sequence[Collision], inertial_frame: Pose) -> float:
+    """Distance by which a link's collision shape is thought to be rounded [m].
+
+    A single sphere or capsule that lies exactly in the inertial frame is all margin: its radius.
+    """
+    if len(collisions) == 1 and _placement(inertial_frame, collisions[0].frame) == _IN_PLACE:
+        match collisions[0].geometry:
+            case Sphere(radius) | Capsule(radius, _):
+                return radius
+    return MARGIN
 
 
 def _placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
