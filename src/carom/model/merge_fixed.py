@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Inertial, Joint, JointType, Link, Pose
+from carom.description import Inertial, Joint, JointType, Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, dot
 from carom.model.inertia import diagonalize
@@ -33,6 +33,9 @@ def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
 
 
 def _merge_children(node: TreeNode, is_static: bool) -> None:
+    inertial = replace(node.link.inertial, frame=IDENTITY)
+    collisions = list(node.link.collisions)
+    visuals = list(node.link.visuals)
     is_merged = False
     i = 0
     while i < len(node.children):
@@ -41,27 +44,22 @@ def _merge_children(node: TreeNode, is_static: bool) -> None:
         if joint is None or joint.type is not JointType.FIXED:
             i += 1
             continue
-        own = node.link.inertial if is_merged else replace(node.link.inertial, frame=IDENTITY)
         is_merged = True
-        inertial = own if is_static else _joined(own, child.link.inertial, joint.frame)
-        node.link = _with_shapes(node.link, child.link, joint.frame, inertial)
+        frame = joint.frame
+        if not is_static:
+            inertial = _joined(inertial, child.link.inertial, frame)
+        collisions += [replace(it, frame=compose(frame, it.frame)) for it in child.link.collisions]
+        visuals += [replace(it, frame=compose(frame, it.frame)) for it in child.link.visuals]
         last = node.children.pop()
         if last is not child:
             node.children[i] = last
         for grandchild in child.children:
-            grandchild.joint = _moved(grandchild.joint, joint.frame)
+            grandchild.joint = _moved(grandchild.joint, frame)
             node.children.append(grandchild)
-
-
-def _with_shapes(link: Link, merged: Link, frame: Pose, inertial: Inertial) -> Link:
-    collisions = (replace(shape, frame=compose(frame, shape.frame)) for shape in merged.collisions)
-    visuals = (replace(shape, frame=compose(frame, shape.frame)) for shape in merged.visuals)
-    return replace(
-        link,
-        inertial=inertial,
-        collisions=(*link.collisions, *collisions),
-        visuals=(*link.visuals, *visuals),
-    )
+    if is_merged:
+        node.link = replace(
+            node.link, inertial=inertial, collisions=tuple(collisions), visuals=tuple(visuals)
+        )
 
 
 def _moved(joint: Joint | None, frame: Pose) -> Joint | None:
