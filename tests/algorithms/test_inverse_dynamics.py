@@ -1,0 +1,116 @@
+"""Recursive Newton-Euler against the accelerations of a step, and against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from tests.physics.aba_reference import rotation
+from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulum, put_in_motion, random_tree
+
+from carom import Body, World
+from carom.algorithms import inverse_dynamics
+from carom.model.codes import MOTOR_MAX_IMPULSE
+
+GRAVITY = (0.4, -0.2, -9.81)
+
+
+def moving_body(seed: int, link_count: int, *, fixed_base: bool, is_chain: bool = False) -> Body:
+    world = World(time_step=1.0)
+    world.gravity = GRAVITY
+    body = world.load(random_tree(seed, link_count, fixed_base=fixed_base, is_chain=is_chain))
+    let_go(body)
+    put_in_motion(body, np.random.default_rng(seed), speed=0.2)
+    return body
+
+
+def forces_of_last_step(body: Body, position: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """What inverse dynamics says the step of 1 s that changed the velocity from `before` took."""
+    acceleration = coordinates(body)[1] - before
+    if body.fixed_base:
+        return inverse_dynamics(body, position[7:], before[6:], acceleration[6:])
+    to_base = rotation(position[3:7]).T
+
+    def along_base(rates: np.ndarray) -> np.ndarray:
+        return np.concatenate([to_base @ rates[:3], to_base @ rates[3:6], rates[6:]])
+
+    return inverse_dynamics(body, position, along_base(before), along_base(acceleration))
+
+
+@pytest.mark.parametrize("fixed_base", [True, False], ids=["fixed", "free"])
+@pytest.mark.parametrize(
+    ("link_count", "is_chain"), [(1, True), (8, False), (20, True), (60, False), (200, False)]
+)
+def test_it_finds_the_forces_that_caused_a_motion(link_count, is_chain, fixed_base):
+    body = moving_body(link_count, link_count, fixed_base=fixed_base, is_chain=is_chain)
+    position, velocity = (values.copy() for values in coordinates(body))
+    torque = np.random.default_rng(0).normal(size=len(velocity) - 6)
+    body.world.joint_torque[body.first_velocity + 6 :][: len(torque)] = torque
+    body.world.step()
+    # Nothing but gravity pushes a free base.
+    expected = torque if fixed_base else np.concatenate([np.zeros(6), torque])
+    assert_allclose(forces_of_last_step(body, position, velocity), expected, rtol=0, atol=1e-9)
+
+
+def test_forces_on_a_free_base_are_those_applied_to_it():
+    body = moving_body(3, 6, fixed_base=False)
+    position, velocity = (values.copy() for values in coordinates(body))
+    force, torque = np.array([1.0, -2.0, 3.0]), np.array([0.3, 0.2, -0.1])
+    body.world.link_force[body.first_link] = [*force, *torque]
+    body.world.step()
+    to_base = rotation(position[3:7]).T
+    found = forces_of_last_step(body, position, velocity)
+    assert_allclose(found[:3], to_base @ force, rtol=0, atol=1e-11)
+    assert_allclose(found[3:6], to_base @ torque, rtol=0, atol=1e-11)
+    assert_allclose(found[6:], 0.0, atol=1e-11)
+
+
+def test_a_pendulum_at_rest_weighs_on_its_joint():
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    body = world.load(pendulum())
+    for angle in (0.0, 0.4, math.pi / 2):
+        held = inverse_dynamics(body, [angle], [0.0], [0.0])
+        assert_allclose(held, [2.0 * 9.81 * 0.5 * math.sin(angle)], rtol=1e-14, atol=1e-14)
+
+
+def test_the_state_of_the_world_is_neither_used_nor_changed():
+    body = moving_body(4, 7, fixed_base=True)
+    other = body.world.load(random_tree(5, 3, fixed_base=False))
+    put_in_motion(other, np.random.default_rng(1))
+    rng = np.random.default_rng(2)
+    question = [rng.normal(size=len(values)) for values in joint_coordinates(body)]
+    rates = rng.normal(size=len(question[1]))
+    names = ("position", "velocity", "motor", "joint_torque", "link_pose", "link_force")
+    before = {name: getattr(body.world, name).copy() for name in names}
+    answer = inverse_dynamics(body, *question, rates)
+    for name, values in before.items():
+        np.testing.assert_array_equal(getattr(body.world, name), values)
+    body.set_joint_state(0, [0.5] * body.position_count[0], [1.0] * body.velocity_count[0])
+    np.testing.assert_array_equal(inverse_dynamics(body, *question, rates), answer)
+
+
+def test_it_compensates_gravity():
+    """An arm whose motors are off stays where it is under the torques for no acceleration."""
+    world = World()
+    world.gravity = GRAVITY
+    body = world.load(random_tree(11, 7, fixed_base=True))
+    put_in_motion(body, np.random.default_rng(11), speed=0.0)
+    world.motor[:, MOTOR_MAX_IMPULSE] = 0.0
+    position, velocity = joint_coordinates(body)
+    start = position.copy()
+    at_rest = np.zeros_like(velocity)
+    for _ in range(24):
+        first = body.first_velocity + 6
+        world.joint_torque[first : first + len(at_rest)] = inverse_dynamics(body, position, at_rest, at_rest)
+        world.step()
+    assert_allclose(position, start, rtol=0, atol=1e-11)
+    assert_allclose(velocity, 0.0, atol=1e-10)
+
+
+def test_gravity_changed_later_counts():
+    world = World()
+    body = world.load(pendulum())
+    assert inverse_dynamics(body, [1.0], [0.0], [0.0])[0] == 0.0
+    world.gravity = (0.0, 0.0, -1.0)
+    assert_allclose(inverse_dynamics(body, [1.0], [0.0], [0.0]), [math.sin(1.0)], rtol=1e-14)
