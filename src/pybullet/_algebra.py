@@ -119,9 +119,15 @@ def calculateInverseDynamics(
             f"not {len(q)} and {len(qd)}.",
         )
 
+    if full:
+        from carom.algorithms.extended_model import extended_bias_forces
+
+        _check_no_planar_joint(body, _INVERSE_DYNAMICS)
+        return tuple(extended_bias_forces(body, q, qd).tolist())
+
     from carom.algorithms import inverse_dynamics
 
-    return tuple(inverse_dynamics(body, q, qd, qdd, full=full).tolist())
+    return tuple(inverse_dynamics(body, q, qd, qdd).tolist())
 
 
 @exported
@@ -217,9 +223,15 @@ def calculateMassMatrix(
     if len(q) < needed:
         fail(_MASS_MATRIX_SIZES, f"Body {body.id} ({body.name}) takes {needed} positions, not {len(q)}.")
 
+    if full:
+        from carom.algorithms.extended_model import extended_mass_matrix
+
+        _check_no_planar_joint(body, problem)
+        return _rows(extended_mass_matrix(body, q[:needed]))
+
     from carom.algorithms import mass_matrix
 
-    return _rows(mass_matrix(body, q[:needed], full=full))
+    return _rows(mass_matrix(body, q[:needed]))
 
 
 def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
@@ -227,6 +239,13 @@ def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
     if body is None:
         fail(problem, no_body(body_id))
     return body
+
+
+def _check_no_planar_joint(body: Body, problem: str) -> None:
+    if JOINT_PLANAR in body.joint_types:
+        fail(
+            problem, f"Body {body.id} ({body.name}) has a planar joint, for which flags=1 has no coordinates."
+        )
 
 
 def _rows(matrix: Any) -> Matrix:

@@ -91,7 +91,7 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     if slot is None:
         fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
     if method in _TO_A_SERVER:
-        logger.warning("No physics server can be reached: Carom has none in this version.")
+        logger.info("No physics server can be reached: Carom has none in this version.")
         return _NO_SERVER
     if method in _AS_A_SERVER:
         fail(

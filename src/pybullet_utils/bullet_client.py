@@ -1,7 +1,8 @@
-"""A physics client as an object: `BulletClient().loadURDF(...)` instead of `physicsClientId=...` everywhere."""
+"""A physics client as an object: `client.stepSimulation()`, with no `physicsClientId` anywhere."""
 
 from __future__ import annotations
 
+import os
 from functools import partial
 from inspect import isbuiltin
 from types import TracebackType
@@ -16,26 +17,30 @@ class BulletClient:
     It is closed when it is garbage, at the end of a `with` block, or by `disconnect()`.
     """
 
-    def __init__(self, connection_mode: int | None = None, hostName: str | None = None) -> None:
+    def __init__(
+        self, connection_mode: int | None = None, hostName: str | None = None, options: str = ""
+    ) -> None:
         """Connects.
 
         Args:
             connection_mode: `pybullet.DIRECT`, `pybullet.GUI`, ...; without it a running server is looked
                 for, and failing that a `DIRECT` connection is made.
             hostName: Of a server.
+            options: Of the connection, see `pybullet.connect`.
 
         Raises:
             pybullet.error: The connection cannot be made.
         """
+        # A forked process has the object too, but the connection is not its own to close.
+        self._process = os.getpid()
         self._client = -1
         if connection_mode is None:
-            self._client = pybullet.connect(pybullet.SHARED_MEMORY)
+            self._client = pybullet.connect(pybullet.SHARED_MEMORY, options=options)
             connection_mode = pybullet.DIRECT
-        if self._client < 0:
-            if hostName is None:
-                self._client = pybullet.connect(connection_mode)
-            else:
-                self._client = pybullet.connect(connection_mode, hostName)
+        if self._client < 0 and hostName is None:
+            self._client = pybullet.connect(connection_mode, options=options)
+        elif self._client < 0:
+            self._client = pybullet.connect(connection_mode, hostName=hostName, options=options)
 
     def __enter__(self) -> BulletClient:
         return self
@@ -56,5 +61,5 @@ class BulletClient:
 
     def _close(self) -> None:
         client, self._client = self.__dict__.get("_client", -1), -1
-        if client >= 0 and pybullet.isConnected(client):
+        if client >= 0 and self._process == os.getpid() and pybullet.isConnected(client):
             pybullet.disconnect(client)
