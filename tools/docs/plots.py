@@ -50,7 +50,7 @@ def draw_panda(record: Record) -> Any:
         axis.set_xlabel("time [s]")
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("distance from the path [mrad]")
-    axes[-1].legend(fontsize="x-small")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside right center", fontsize="small")
     return figure
 
 
