@@ -16,11 +16,10 @@ from carom.constraints import Island, JointConstraints
 from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.errors import SimulationError
-from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.launch import Launch
-from carom.model.structs import Settings, State
+from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.physics.step import step_kernel
@@ -176,6 +175,8 @@ class World:
         self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
         for other in self.bodies.values():
             other.relocate()
+        if self._query_space is not None:
+            self._query_space.forget_bodies()
         self._free_ids.append(body_id)
         self.constraints_changed()
 
@@ -317,19 +318,7 @@ class World:
     def query_space(self) -> QuerySpace:
         """Spare coordinates for the algorithms that need no step."""
         if self._query_space is None:
-            spare = ArrayTable(State, 1)
-            spare.reserve(self.arrays.state.capacity)
-            model, _, scratch = self._structs
-            self._query_space = QuerySpace(
-                self._settings(),
-                (model, spare.struct(_DEVICE), scratch),
-                {
-                    "model": self.arrays.model.numpy,
-                    "state": spare.numpy,
-                    "scratch": self.arrays.scratch.numpy,
-                },
-                _DEVICE,
-            )
+            self._query_space = QuerySpace(self._settings(), self._structs, self.arrays, _DEVICE)
         return self._query_space
 
     def update_link_poses(self, body: Body) -> None:

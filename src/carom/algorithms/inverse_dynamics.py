@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.kernels import inverse_dynamics_kernel
-from carom.algorithms.query import Query
 from carom.description.transform import rotation_matrix
 
 if TYPE_CHECKING:
@@ -16,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def inverse_dynamics(
-    body: Body, positions: Sequence[float], velocities: Sequence[float], accelerations: Sequence[float]
+    body: Body,
+    positions: Sequence[float] | np.ndarray,
+    velocities: Sequence[float] | np.ndarray,
+    accelerations: Sequence[float] | np.ndarray,
 ) -> np.ndarray:
     """Generalized forces that give a body the stated accelerations, by recursive Newton-Euler.
 
@@ -34,22 +36,25 @@ def inverse_dynamics(
         Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base
         along its own axes before them.
     """
-    query = Query(body)
-    q, v, a = (np.asarray(values, dtype=float) for values in (positions, velocities, accelerations))
+    space = body.world.query_space()
+    at = space.coordinates(body)
     if body.fixed_base:
         first = body.first_position
-        query.place_base(body.world.position[first : first + 7])
-    else:
-        x, y, z, w = q[3:7]
-        to_world = np.array(rotation_matrix((x, y, z, w)))
-        query.place_base(q[:7])
-        query.move_base(to_world @ v[:3], to_world @ v[3:6], to_world @ a[:3], to_world @ a[3:6])
-        q, v, a = q[7:], v[6:], a[6:]
-    query.joint_position[:] = q
-    query.joint_velocity[:] = v
-    query.joint_acceleration[:] = a
-    query.run(*query.space.launch(inverse_dynamics_kernel, with_settings=True))
-    force = query.generalized_force
-    if body.fixed_base:
-        return force[6:]
-    return np.concatenate([to_world.T @ force[3:6], to_world.T @ force[:3], force[6:]])
+        at.base_position[:] = body.world.position[first : first + 7]
+        at.joint_position[:] = positions
+        at.velocity[6:] = velocities
+        at.acceleration[6:] = accelerations
+        space.run(inverse_dynamics_kernel, tree=body.rows.tree)
+        return -at.force[6:]
+
+    q, v, a = (np.asarray(values, dtype=float) for values in (positions, velocities, accelerations))
+    x, y, z, w = q[3:7]
+    to_world = np.array(rotation_matrix((x, y, z, w)))
+    at.base_position[:] = q[:7]
+    at.joint_position[:] = q[7:]
+    for target, values in ((at.velocity, v), (at.acceleration, a)):
+        target[:3] = to_world @ values[:3]
+        target[3:6] = to_world @ values[3:6]
+        target[6:] = values[6:]
+    space.run(inverse_dynamics_kernel, tree=body.rows.tree)
+    return -np.concatenate([at.force[3:6] @ to_world, at.force[:3] @ to_world, at.force[6:]])

@@ -3,19 +3,11 @@
 import warp as wp
 
 from carom.model.codes import INVERSE_DYNAMICS
-from carom.model.real import Int32, kernel
-from carom.model.structs import Model, Scratch, Settings, State
+from carom.model.real import Int32, Vector3, func, kernel
+from carom.model.structs import Model, Query, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia
-
-
-@kernel
-def motion_subspaces_kernel(model: Model, state: State, scratch: Scratch, tree: Int32):
-    """Link poses and motion subspaces at the coordinates of `state`."""
-    world = wp.tid()
-    forward_kinematics(model, state, state.link_pose, world, tree)
-    motion_subspaces(model, state.link_pose, scratch, world, tree)
 
 
 @kernel
@@ -31,9 +23,48 @@ def inverse_dynamics_kernel(settings: Settings, model: Model, state: State, scra
 
 @kernel
 def mass_matrix_kernel(model: Model, state: State, scratch: Scratch, tree: Int32):
-    """Leaves the lower triangle of the joint-space inertia in `block_factor`."""
+    """Leaves the joint-space inertia in `block_factor`, both triangles."""
     world = wp.tid()
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
     link_inertias(model, scratch, world, tree)
     composite_inertia(model, scratch, world, tree)
+    count = model.tree_dof_count[tree]
+    columns = 4 * ((count + 3) // 4)
+    matrix = 4 * model.tree_first_block[tree]
+    for row in range(count):
+        for column in range(row):
+            entry = scratch.entry_factor[world, matrix + row * columns + column]
+            scratch.entry_factor[world, matrix + column * columns + row] = entry
+
+
+@func
+def nearest_dof(model: Model, link: Int32) -> Int32:
+    """The last dof among those that move a link, -1 if none does."""
+    dof = Int32(-1)
+    while link >= 0 and dof < 0:
+        if model.link_dof_count[link] > 0:
+            dof = model.link_first_dof[link] + model.link_dof_count[link] - 1
+        link = model.link_parent[link]
+    return dof
+
+
+@kernel
+def jacobian_kernel(model: Model, state: State, scratch: Scratch, query: Query, tree: Int32, link: Int32):
+    """Fill `dof_linear` and `dof_angular` of the query with a point's Jacobian, column by column."""
+    world = wp.tid()
+    forward_kinematics(model, state, state.link_pose, world, tree)
+    motion_subspaces(model, state.link_pose, scratch, world, tree)
+    from_com = query.point_on_link[world, 0] - model.link_com_from_pivot[link]
+    point = scratch.link_offset[world, link] + scratch.link_rotation[world, link] * from_com
+
+    first = model.tree_first_dof[tree]
+    for dof in range(first, first + model.tree_dof_count[tree]):
+        query.dof_linear[world, dof] = Vector3(0.0, 0.0, 0.0)
+        query.dof_angular[world, dof] = Vector3(0.0, 0.0, 0.0)
+    moved_by = nearest_dof(model, link)
+    while moved_by >= 0:
+        axis = scratch.dof_angular[world, moved_by]
+        query.dof_angular[world, moved_by] = axis
+        query.dof_linear[world, moved_by] = scratch.dof_linear[world, moved_by] + wp.cross(axis, point)
+        moved_by = model.dof_parent[moved_by]

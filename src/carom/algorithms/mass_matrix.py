@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.kernels import mass_matrix_kernel
-from carom.algorithms.query import Query
 
 if TYPE_CHECKING:
     from carom.body import Body
 
 
-def mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
+def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarray:
     """Joint-space inertia at the given joint positions, by the composite rigid body algorithm.
 
     Args:
@@ -25,14 +24,12 @@ def mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
         Symmetric matrix, shape (n, n); of a free body (6 + n, 6 + n), the base first: angular, then
         linear velocity along its own axes.
     """
-    query = Query(body)
-    query.joint_position[:] = positions
-    query.run(*query.space.launch(mass_matrix_kernel))
+    space = body.world.query_space()
+    space.coordinates(body).joint_position[:] = positions
     tree = body.rows.tree
-    model = query.space.model
-    count = int(model["tree_dof_count"][tree])
+    space.run(mass_matrix_kernel, tree=tree)
+    count = int(space.model["tree_dof_count"][tree])
     blocks = (count + 3) // 4
-    first = int(model["tree_first_block"][tree])
-    rows = query.space.scratch["block_factor"][0, first : first + count * blocks]
-    lower = np.tril(rows.reshape(count, 4 * blocks)[:, :count])
-    return lower + np.tril(lower, -1).T
+    first = int(space.model["tree_first_block"][tree])
+    rows = space.scratch["block_factor"][0, first : first + count * blocks]
+    return rows.reshape(count, 4 * blocks)[:, :count].copy()

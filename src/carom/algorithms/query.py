@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.model.arrays import ArrayTable
+from carom.model.builder import WorldArrays
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.model.launch import Launch
+from carom.model.structs import Query, State
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -16,80 +18,96 @@ if TYPE_CHECKING:
 IDENTITY_BASE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
-class Query:
-    """One body's coordinates and motion in the world's spare state.
+class QuerySpace:
+    """Spare coordinates for all bodies of a world, and the kernels that work on them.
 
-    Everything starts as zero, the base at the origin. Arrays are views that hold until the next
-    body is added or removed.
-
-    Attributes:
-        joint_position: Coordinates of all joints, in order.
-        joint_velocity: Their rates.
-        joint_acceleration: Their second derivatives.
+    Args:
+        settings: Engine settings, for gravity.
+        structs: Model, state and scratch of the world.
+        arrays: The memory behind them.
+        device: Warp device name.
     """
 
-    def __init__(self, body: Body) -> None:
-        self.body = body
-        self.space = body.world.query_space()
-        state, scratch = self.space.state, self.space.scratch
-        first, count = body.first_position, sum(body.position_count)
-        self._base_position = state["position"][0, first : first + BASE_POSITIONS]
-        self.joint_position = state["position"][0, first + BASE_POSITIONS : first + BASE_POSITIONS + count]
-        dofs = slice(body.first_velocity, body.first_velocity + BASE_VELOCITIES + sum(body.velocity_count))
-        self._velocity = state["dof_velocity"][0, dofs]
-        self._acceleration = scratch["dof_acceleration"][0, dofs]
-        self._force = scratch["dof_force"][0, dofs]
-        self.joint_velocity = self._velocity[BASE_VELOCITIES:]
-        self.joint_acceleration = self._acceleration[BASE_VELOCITIES:]
-        self._velocity[:] = 0.0
-        self._acceleration[:] = 0.0
-        self._base_position[:] = IDENTITY_BASE
-
-    def place_base(self, pose: Sequence[float] | np.ndarray) -> None:
-        """Place the inertial frame of the base: position and quaternion."""
-        self._base_position[:] = pose
-
-    def move_base(
-        self,
-        angular: np.ndarray,
-        linear: np.ndarray,
-        angular_acceleration: np.ndarray,
-        acceleration: np.ndarray,
+    def __init__(
+        self, settings: Any, structs: tuple[Any, Any, Any], arrays: WorldArrays, device: str
     ) -> None:
-        """Velocities and accelerations of a free base's centre of mass, world axes."""
-        self._velocity[:3] = angular
-        self._velocity[3:6] = linear
-        self._acceleration[:3] = angular_acceleration
-        self._acceleration[3:6] = acceleration
+        model, _, scratch = structs
+        state, query = ArrayTable(State, 1), ArrayTable(Query, 1)
+        for table in (state, query):
+            table.reserve(arrays.state.capacity)
+        self.model = arrays.model.numpy
+        self.scratch = arrays.scratch.numpy
+        self.state = state.numpy
+        self.answer = query.numpy
+        self._structs = {
+            "settings": settings,
+            "model": model,
+            "state": state.struct(device),
+            "scratch": scratch,
+            "query": query.struct(device),
+        }
+        self._device = device
+        self._launches: dict[Any, tuple[Launch, dict[str, int]]] = {}
+        self._coordinates: dict[int, BodyCoordinates] = {}
 
-    @property
-    def generalized_force(self) -> np.ndarray:
-        """What `inverse_dynamics_kernel` found: base moment, base force, joint forces."""
-        return -self._force
+    def coordinates(self, body: Body) -> BodyCoordinates:
+        """Spare coordinates of a body, at the origin and at rest."""
+        coordinates = self._coordinates.get(body.id)
+        if coordinates is None:
+            coordinates = self._coordinates[body.id] = BodyCoordinates(self, body)
+        coordinates.clear()
+        return coordinates
 
-    def run(self, launch: Launch, tree_argument: int) -> None:
-        """Run a kernel on this body."""
-        launch.replace(tree_argument, self.body.rows.tree)
+    def forget_bodies(self) -> None:
+        """Bodies have moved in the arrays."""
+        self._coordinates.clear()
+
+    def run(self, kernel: Any, **integers: int) -> None:
+        """Run a kernel on the spare coordinates with the given integer arguments."""
+        if kernel not in self._launches:
+            names = [argument.label for argument in kernel.adj.args]
+            arguments = [self._structs.get(name, 0) for name in names]
+            self._launches[kernel] = (
+                Launch(kernel, 1, arguments, self._device),
+                {name: index for index, name in enumerate(names) if name not in self._structs},
+            )
+        launch, index = self._launches[kernel]
+        for name, value in integers.items():
+            launch.replace(index[name], value)
         launch()
 
 
-class QuerySpace:
-    """Spare coordinates for all bodies of a world, and the kernels that work on them."""
+class BodyCoordinates:
+    """Views of one body's spare coordinates and of what kernels find for it.
 
-    def __init__(
-        self, settings: Any, structs: tuple[Any, Any, Any], arrays: dict[str, dict], device: str
-    ) -> None:
-        model, state, scratch = structs
-        self.state = arrays["state"]
-        self.scratch = arrays["scratch"]
-        self.model = arrays["model"]
-        self._arguments = (settings, model, state, scratch)
-        self._device = device
-        self._launches: dict[Any, Launch] = {}
+    Attributes:
+        base_position: Position (3) and quaternion (4) of the base's inertial frame.
+        joint_position: Coordinates of all joints, in order.
+        velocity: Angular (3) and linear (3) velocity of the base, then the joint rates.
+        acceleration: Their derivatives.
+        force: Minus the generalized forces of `inverse_dynamics_kernel`, in that order.
+    """
 
-    def launch(self, kernel: Any, *, with_settings: bool = False) -> tuple[Launch, int]:
-        """A kernel over these coordinates, and which of its arguments is the tree."""
-        arguments = self._arguments if with_settings else self._arguments[1:]
-        if kernel not in self._launches:
-            self._launches[kernel] = Launch(kernel, 1, [*arguments, 0], self._device)
-        return self._launches[kernel], len(arguments)
+    def __init__(self, space: QuerySpace, body: Body) -> None:
+        first = body.first_position
+        positions = space.state["position"][0]
+        joints = first + BASE_POSITIONS
+        self.base_position = positions[first:joints]
+        self.joint_position = positions[joints : joints + sum(body.position_count)]
+        dofs = slice(body.first_velocity, body.first_velocity + BASE_VELOCITIES + sum(body.velocity_count))
+        self.velocity = space.state["dof_velocity"][0, dofs]
+        self.acceleration = space.scratch["dof_acceleration"][0, dofs]
+        self.force = space.scratch["dof_force"][0, dofs]
+
+    def clear(self) -> None:
+        """Put the body to rest at the origin; joint positions are left for the caller to set."""
+        self.base_position[:] = IDENTITY_BASE
+        self.velocity.fill(0.0)
+        self.acceleration.fill(0.0)
+
+
+def active_dofs(body: Body, model: dict[str, np.ndarray]) -> slice:
+    """Rows of the dofs that dynamics may change."""
+    tree = body.rows.tree
+    first = int(model["tree_first_dof"][tree])
+    return slice(first, first + int(model["tree_dof_count"][tree]))

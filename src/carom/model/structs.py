@@ -168,6 +168,15 @@ class Scratch:
     row_terms: Vector8Rows  # see the ROW_ columns in `codes`
 
 
+@wp.struct
+class Query:
+    """Questions about one body that need no step, and their answers."""
+
+    point_on_link: Vector3Rows  # its first entry: offset from the link frame, axes of the inertial frame
+    dof_linear: Vector3Rows  # columns of a point's Jacobian
+    dof_angular: Vector3Rows
+
+
 # Scratch arrays that show another array's blocks entry by entry.
 ENTRY_VIEWS = {
     "entry_factor": "block_factor",
