@@ -137,14 +137,19 @@ class Body:
         """
         if position is not None:
             first, count = self.position_index[joint], self.position_count[joint]
-            if count == 4:
+            if count == 1:
+                self.world.position_memory[first] = position[0]
+            elif count == 4:
                 length = sum(component * component for component in position) ** 0.5
-                position = [component / length for component in position]
-            if count:
+                self.world.position[first : first + 4] = [component / length for component in position]
+            elif count:
                 self.world.position[first : first + count] = position
-        if velocity is not None and self.velocity_count[joint]:
+        if velocity is not None:
             first, count = self.velocity_index[joint], self.velocity_count[joint]
-            self.world.velocity[first : first + count] = velocity
+            if count == 1:
+                self.world.velocity_memory[first] = velocity[0]
+            elif count:
+                self.world.velocity[first : first + count] = velocity
         self.update_link_poses()
 
     def update_link_poses(self) -> None:
