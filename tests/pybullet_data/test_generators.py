@@ -20,6 +20,7 @@ from tools.assets.surface import mesh_of
 ORIGIN = (0.0, 0.0, 0.0)
 BOWL = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0), (0.5, 0.2), (0.0, 0.2)]
 CLOSED_MESHES = {
+    "blocks": simple_meshes.blocks([((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)), ((2.0, 0.0, 0.0), (3.0, 1.0, 1.0))]),
     "globe": simple_meshes.globe(1.0, 24, 14),
     "lathe": simple_meshes.lathe(
         [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0), (0.5, 0.2), (0.0, 0.2)], 12

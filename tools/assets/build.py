@@ -104,6 +104,7 @@ MESHES: Mapping[str, Callable[[], ObjMesh]] = {
     "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
     "cube.obj": partial(simple_meshes.textured_box, ("cube", "cube.mtl")),
     "duck.obj": toys.duck_mesh,
+    "franka_panda/meshes/finger.obj": panda.finger_hull,
     "objects/mug.obj": toys.mug_mesh,
     "sphere_smooth.obj": partial(simple_meshes.globe, 1.0, 24, 14),
     "textured_sphere_smooth.obj": partial(

@@ -22,6 +22,7 @@ class ObjMesh:
         normals: (n, 3), one per vertex; None leaves shading flat.
         texture: (n, 2) texture coordinates, one per vertex, or None.
         material: Name of the material and of the library file that holds it.
+        decimals: Digits of the vertices after the point.
     """
 
     vertices: Points
@@ -29,11 +30,12 @@ class ObjMesh:
     normals: Points | None = None
     texture: NDArray[np.float64] | None = None
     material: tuple[str, str] | None = None
+    decimals: int = 4
 
-    def text(self, decimals: int = 4) -> str:
+    def text(self) -> str:
         """The OBJ file."""
         lines = [f"mtllib {self.material[1]}"] if self.material else []
-        lines += _rows("v", self.vertices, decimals)
+        lines += _rows("v", self.vertices, self.decimals)
         if self.texture is not None:
             lines += _rows("vt", self.texture, 4)
         if self.normals is not None:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, block, drum, rod
+from tools.assets.obj_mesh import ObjMesh
 from tools.assets.parts import (
+    HALF_TURN,
     QUARTER_TURN,
     ZERO,
     Box,
@@ -23,6 +25,7 @@ from tools.assets.parts import (
     Vector3,
     diagonal,
 )
+from tools.assets.simple_meshes import blocks
 
 WHITE = Paint("panda_white", (0.93, 0.94, 0.95, 1.0), (0.4, 0.4, 0.4))
 DARK = Paint("panda_dark", (0.17, 0.18, 0.2, 1.0), (0.3, 0.3, 0.3))
@@ -73,22 +76,29 @@ BOUNDS = {
         (-0.03563590012615, -0.1079900034018, -0.02992480140542),
         (0.03561580012615, 0.1044260034018, 0.06996220140542),
     ),
-    "leftfinger": Envelope(
-        (-0.01447949993522, -0.004132641095428, -0.003868332243391),
-        (0.01449479993522, 0.03040340109543, 0.05784897224339),
-    ),
-    "rightfinger": Envelope(
-        (-0.01449479993522, -0.03040340109543, -0.003868332243391),
-        (0.01447949993522, 0.00413264109543, 0.05784897224339),
-    ),
 }
 
 
+FINGER_BLOCKS = (
+    ((-0.0104795, 0.0025, 0.000131696), (0.0104948, 0.0264034, 0.0185)),
+    ((-0.0088, -0.000132643, 0.036), (0.0088, 0.0143, 0.053849)),
+)
+"""Opposite corners of the finger's root and of its pad, whose face all but lies in the plane y = 0."""
+
+
+def finger_hull() -> ObjMesh:
+    """What a finger touches with: the convex hull of its root and pad."""
+    return blocks(FINGER_BLOCKS, decimals=9)
+
+
 def _touching() -> dict[str, tuple[Shape, ...]]:
-    """Collision shapes: capsules along the tubes and housings, boxes for foot, flange and gripper."""
+    """Collision shapes: capsules along tubes and housings, boxes for foot, flange and hand.
+
+    The fingers are hulls, the only shapes whose faces lie where the original's do: they decide how it grasps.
+    """
     foot, one, two, three, four = (BOUNDS[f"link{number}"] for number in range(5))
     five, six, seven = (BOUNDS[f"link{number}"] for number in range(5, 8))
-    hand, left, right = BOUNDS["hand"], BOUNDS["leftfinger"], BOUNDS["rightfinger"]
+    finger = Mesh("meshes/finger.obj")
     tube = one.width("x") / 2.0
     bar = two.width("x") / 2.0
     forearm = five.width("x") / 2.0
@@ -125,15 +135,9 @@ def _touching() -> dict[str, tuple[Shape, ...]]:
             seven.box(x=(None, 0.045), y=(None, 0.045)),
             seven.box(x=(0.0, None), y=(0.0, None), z=(0.06, 0.1)),
         ),
-        "hand": (hand.box(),),
-        "leftfinger": (
-            left.box(z=(None, 0.035)),
-            left.box(x=(-0.0105, 0.0105), y=(None, 0.0115), z=(0.03, None)),
-        ),
-        "rightfinger": (
-            right.box(z=(None, 0.035)),
-            right.box(x=(-0.0105, 0.0105), y=(-0.0115, None), z=(0.03, None)),
-        ),
+        "hand": (BOUNDS["hand"].box(),),
+        "leftfinger": (Shape(finger),),
+        "rightfinger": (Shape(finger, rpy=(0.0, 0.0, HALF_TURN)),),
     }
 
 

@@ -8,6 +8,7 @@ Vector3 = tuple[float, float, float]
 ZERO: Vector3 = (0.0, 0.0, 0.0)
 ONE: Vector3 = (1.0, 1.0, 1.0)
 QUARTER_TURN = 1.57079632679
+HALF_TURN = 3.14159265359
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from tools.assets.fields import Points
 from tools.assets.obj_mesh import ObjMesh
@@ -30,6 +32,18 @@ def textured_box(material: tuple[str, str]) -> ObjMesh:
                 texture.append((s, t))
             faces += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
     return ObjMesh(np.array(vertices), faces, np.array(normals), np.array(texture), material)
+
+
+Corner = tuple[float, float, float]
+
+
+def blocks(corners: Sequence[tuple[Corner, Corner]], decimals: int = 4) -> ObjMesh:
+    """Cuboids side by side, each given by its lowest and highest corner; flat-shaded."""
+    unit = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+    sides = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    vertices = np.vstack([np.where(unit == 1, high, low) for low, high in corners])
+    faces = [tuple(8 * i + corner for corner in side) for i in range(len(corners)) for side in sides]
+    return ObjMesh(vertices, faces, decimals=decimals)
 
 
 def globe(radius: float, meridians: int, parallels: int, material: tuple[str, str] | None = None) -> ObjMesh:
