@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -36,7 +37,9 @@ class _MethodDefinition(ctypes.Structure):
 _new_builtin = ctypes.pythonapi.PyCFunction_NewEx
 _new_builtin.restype = ctypes.py_object
 _new_builtin.argtypes = (ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object)
-_vectorcall = ctypes.cast(ctypes.pythonapi.PyObject_Vectorcall, ctypes.c_void_p).value
+# Python 3.10 does not export that one, but the same for Python functions alone.
+_VECTORCALL = "PyObject_Vectorcall" if sys.version_info >= (3, 11) else "_PyFunction_Vectorcall"
+_vectorcall = ctypes.cast(getattr(ctypes.pythonapi, _VECTORCALL), ctypes.c_void_p).value
 
 # A builtin points to its definition for as long as it lives, and builtins of a module live for ever.
 _definitions: list[_MethodDefinition] = []
