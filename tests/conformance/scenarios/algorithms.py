@@ -114,6 +114,39 @@ def mass_matrices(p: Any) -> dict[str, Any]:
 
 
 @scenario()
+def extended_coordinates(p: Any) -> dict[str, Any]:
+    """Mass matrix and inverse dynamics in the coordinates of flag 1: base and quaternions included."""
+    results: dict[str, Any] = {}
+    generator = random.Random(36)
+    for robot in ("limits_arm.urdf", "tree.urdf", "random_tree.urdf"):
+        for base, fixed in (("fixed", True), ("floating", False)):
+            p.resetSimulation()
+            p.setGravity(0.5, -1.0, -9.81)
+            body = load(p, robot, useFixedBase=fixed)
+            randomise(p, body, 80)
+            states = p.getJointStatesMultiDof(body, movable_joints(p, body))
+            positions = [number for state in states for number in state[0]]
+            if not fixed:
+                place, turn = p.getBasePositionAndOrientation(body)
+                positions = [*place, *turn, *positions]
+            count = len(positions)
+            results |= under(
+                f"{robot}/{base}",
+                {
+                    "mass_matrix": p.calculateMassMatrix(body, positions, flags=1),
+                    "forces": p.calculateInverseDynamics(
+                        body,
+                        positions,
+                        _numbers(generator, count, 1.0),
+                        _numbers(generator, count, 2.0),
+                        flags=1,
+                    ),
+                },
+            )
+    return results
+
+
+@scenario()
 def algorithms_on_panda(p: Any) -> dict[str, Any]:
     """Inverse dynamics, Jacobian and mass matrix of the shipped Panda."""
     p.setGravity(0, 0, -9.81)
