@@ -87,11 +87,11 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _warmup(_options: argparse.Namespace) -> int:
-    from carom import physics
+    from carom.warmup import warmup
 
     print("Preparing the physics kernels (compiled once for this machine) ...", end=" ", flush=True)
     began = time.perf_counter()
-    physics.warmup()
+    warmup()
     print(f"ready after {time.perf_counter() - began:.1f} s.")
     return OK
 

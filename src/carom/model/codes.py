@@ -28,6 +28,19 @@ class ConstraintKind(IntEnum):
     SPHERICAL_LIMIT = 3
 
 
+class ShapeKind(IntEnum):
+    """Kinds of collision shape, and what `Shapes.shape_size` holds for each."""
+
+    SPHERE = 0  # radius
+    BOX = 1  # half extents
+    CAPSULE = 2  # radius, half length along z
+    CYLINDER = 3  # radius, half length along z
+    PLANE = 4  # unit normal
+    HULL = 5  # half extents of its bounds
+    TRIANGLES = 6  # half extents of its bounds
+    HEIGHTFIELD = 7  # half extents of its bounds
+
+
 JOINT_CODE = {
     JointType.REVOLUTE: JointCode.REVOLUTE,
     JointType.CONTINUOUS: JointCode.REVOLUTE,

@@ -37,7 +37,7 @@ class Launch:
             arguments: Its arguments.
             device: Warp device name.
         """
-        with _CompilationNotice():
+        with CompilationNotice():
             self._command = wp.launch(
                 kernel, dim=count, inputs=list(arguments), device=device, record_cmd=True
             )
@@ -73,7 +73,7 @@ class Launch:
         return functools.partial(self._entry_point, self._bounds, self._pointer)
 
 
-class _CompilationNotice:
+class CompilationNotice:
     """Tells the user what is going on when a first use compiles kernels, and that it happens once."""
 
     def __init__(self) -> None:

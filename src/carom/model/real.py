@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     Ints = Any
     Reals = Any
     Vectors3 = Any
+    Vectors4 = Any
     Quaternions = Any
+    Transforms = Any
     Index4 = Any
     IntRows = Any
     Index4Rows = Any
@@ -69,7 +71,9 @@ if not TYPE_CHECKING:
     Ints = wp.array(dtype=Int32)
     Reals = wp.array(dtype=real)
     Vectors3 = wp.array(dtype=Vector3)
+    Vectors4 = wp.array(dtype=Vector4)
     Quaternions = wp.array(dtype=Quaternion)
+    Transforms = wp.array(dtype=Transform)
 
     # The same with a leading world axis.
     IntRows = wp.array2d(dtype=Int32)

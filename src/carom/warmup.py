@@ -1,0 +1,22 @@
+"""Compiling every kernel ahead of its first use."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from carom.model.launch import CompilationNotice
+
+KERNEL_MODULES = ("carom.physics.kinematics", "carom.physics.step", "carom.algorithms.kernels")
+
+
+def warmup(device: str = "cpu") -> None:
+    """Compile, or load from the cache, the kernels of every module that has some.
+
+    Args:
+        device: Warp device name.
+    """
+    import warp as wp
+
+    with CompilationNotice():
+        for name in KERNEL_MODULES:
+            wp.get_module(import_module(name).__name__).load(wp.get_device(device))
