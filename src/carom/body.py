@@ -179,6 +179,10 @@ class Body:
         change_body(self, {name: changes[name] for name in _WHOLE_BODY if name in changes})
         change_link(self, link, {name: value for name, value in changes.items() if name not in _WHOLE_BODY})
 
+    def has_sensor(self, joint: int) -> bool:
+        """Whether the force-torque sensor of a joint is on."""
+        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint])
+
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         model = self.world.arrays.model.numpy

@@ -62,16 +62,16 @@ class World:
     link_velocity: np.ndarray
     link_force: np.ndarray
     joint_reaction: np.ndarray
-    position_memory: memoryview
-    velocity_memory: memoryview
-    motor_memory: memoryview
-    pd_memory: memoryview
-    joint_torque_memory: memoryview
-    motor_impulse_memory: memoryview
-    link_pose_memory: memoryview
-    link_velocity_memory: memoryview
-    link_force_memory: memoryview
-    joint_reaction_memory: memoryview
+    position_memory: memoryview[float]
+    velocity_memory: memoryview[float]
+    motor_memory: memoryview[float]
+    pd_memory: memoryview[float]
+    joint_torque_memory: memoryview[float]
+    motor_impulse_memory: memoryview[float]
+    link_pose_memory: memoryview[float]
+    link_velocity_memory: memoryview[float]
+    link_force_memory: memoryview[float]
+    joint_reaction_memory: memoryview[float]
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters = EngineParameters(time_step=time_step)
