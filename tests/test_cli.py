@@ -118,8 +118,6 @@ def test_version(capsys):
     assert capsys.readouterr().out.strip() == f"carom {__version__}"
 
 
-def test_warmup_says_what_it_does_and_when_it_is_done(capsys):
+def test_warmup_says_when_it_is_done(capsys):
     assert main(["warmup"]) == 0
-    output = capsys.readouterr().out
-    assert "kernels" in output
-    assert "ready after" in output
+    assert "kernels are ready" in capsys.readouterr().out

@@ -89,10 +89,9 @@ def _info(options: argparse.Namespace) -> int:
 def _warmup(_options: argparse.Namespace) -> int:
     from carom.warmup import warmup
 
-    print("Preparing the physics kernels (compiled once for this machine) ...", end=" ", flush=True)
     began = time.perf_counter()
     warmup()
-    print(f"ready after {time.perf_counter() - began:.1f} s.")
+    print(f"The physics kernels are ready, after {time.perf_counter() - began:.1f} s.")
     return OK
 
 
