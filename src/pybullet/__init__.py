@@ -14,6 +14,7 @@ from pybullet._bodies import *
 from pybullet._camera_maths import *
 from pybullet._connection import *
 from pybullet._constants import *
+from pybullet._debug_drawing import *
 from pybullet._dynamics import *
 from pybullet._engine import *
 from pybullet._errors import error as error

@@ -6,10 +6,11 @@ not work do they come here, to find out what is wrong or to convert what is mere
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable, Sequence
 from math import inf, isfinite
 from operator import index
-from typing import Any
+from typing import Any, SupportsFloat
 
 from pybullet._errors import fail
 
@@ -94,43 +95,61 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
     Raises:
         pybullet.error: It is not a sequence, or an item is not a finite number.
     """
-    items = sequence(values, problem, name)
-    result = []
-    for position, item in enumerate(items):
-        try:
-            number = _as_float(item, name)
-        except TypeError:
-            fail(problem, f"{name}[{position}] is {item!r}, not a number.")
-        if not isfinite(number):
-            fail(problem, f"{name}[{position}] is {number}.")
-        result.append(number)
+    result = array("d")
+    try:
+        result.extend(values)
+    except TypeError:
+        for position, item in enumerate(sequence(values, problem, name)):
+            if not isinstance(item, SupportsFloat):
+                fail(problem, f"{name}[{position}] is {item!r}, not a number.")
+        fail(problem, f"{name} is {values!r}.")
+    total = sum(result)
+    if total - total != 0.0:
+        for position, item in enumerate(result):
+            if not isfinite(item):
+                fail(problem, f"{name}[{position}] is {item}.")
     return tuple(result)
 
 
-def vector(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
-    """`count` finite numbers.
+def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
+    """Three finite numbers; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    try:
+        x, y, z = values
+        check = x + y + z
+        if check - check == 0.0:
+            return float(x), float(y), float(z)
+    except (TypeError, ValueError):
+        pass
+    x, y, z = _counted(values, 3, problem, name)
+    return x, y, z
 
-    Raises:
-        pybullet.error: There are more or fewer, it is not a sequence, or an item is not a finite number.
-    """
+
+def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
+    """Four finite numbers; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    try:
+        x, y, z, w = values
+        check = x + y + z + w
+        if check - check == 0.0:
+            return float(x), float(y), float(z), float(w)
+    except (TypeError, ValueError):
+        pass
+    x, y, z, w = _counted(values, 4, problem, name)
+    return x, y, z, w
+
+
+def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
+    """A quaternion (x, y, z, w) whose length is not zero; raises `pybullet.error`."""
+    x, y, z, w = vector4(values, problem, name)
+    if x == y == z == w == 0.0:
+        fail(problem, f"{name} is a quaternion of length 0, which is no rotation.")
+    return x, y, z, w
+
+
+def _counted(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
     result = numbers(values, problem, name)
     if len(result) != count:
         fail(problem, f"{name} has {len(result)} values instead of {count}.")
     return result
-
-
-def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
-    """Three finite numbers; raises `pybullet.error`."""
-    x, y, z = vector(values, 3, problem, name)
-    return x, y, z
-
-
-def quaternion(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
-    """A rotation (x, y, z, w) whose length is not zero; raises `pybullet.error`."""
-    x, y, z, w = vector(values, 4, problem, name)
-    if x == y == z == w == 0.0:
-        fail(problem, f"{name} is a quaternion of length 0, which is no rotation.")
-    return x, y, z, w
 
 
 def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:

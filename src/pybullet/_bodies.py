@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pybullet._arguments import Vector, integer, quaternion, vector3
+from pybullet._arguments import Vector, integer, rotation, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_FIXED, JOINT_PLANAR, JOINT_SPHERICAL
@@ -189,7 +189,7 @@ def resetBasePositionAndOrientation(
     body = client.body(bodyUniqueId)
     position = vector3(posObj, "position needs a 3 coordinates [x,y,z].", "posObj")
     problem = "orientation needs a 4 coordinates, quaternion [x,y,z,w]."
-    orientation = quaternion(ornObj, problem, "ornObj")
+    orientation = rotation(ornObj, problem, "ornObj")
     if body is not None:
         with client.lock:
             body.set_base_pose(position, orientation)

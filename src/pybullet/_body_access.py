@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Quaternion, Vector3
 from pybullet._joint_access import JointAccess, joint_access
 from pybullet._joint_info import JointInfo, joint_info
-from pybullet._link_access import LinkAccess, canonical
+from pybullet._link_access import LinkAccess
+from pybullet._rotations import canonical
 
 if TYPE_CHECKING:
     from carom.body import Body

@@ -221,7 +221,7 @@ def _connect_options(arguments: tuple[int | str, ...], keywords: dict[str, int |
     names = ("hostName", "port", "options") if server_named else ("key", "options")
     if len(arguments) > len(names):
         raise TypeError(f"connect() takes at most {len(names) + 1} arguments ({len(arguments) + 1} given)")
-    given = dict(zip(names, arguments, strict=False))
+    given: dict[str, int | str] = dict(zip(names, arguments, strict=False))
     for name, value in keywords.items():
         if name not in names:
             raise TypeError(f"connect() got an unexpected keyword argument {name!r}")

@@ -217,8 +217,10 @@ def enableJointForceTorqueSensor(
     index, enabled = integer(jointIndex, "jointIndex"), integer(enableSensor, "enableSensor") != 0
     if index not in access.joints:
         fail(problem, no_joint(access.body, index))
-    with client_of(physicsClientId).lock:
+    client = client_of(physicsClientId)
+    with client.lock:
         access.body.set_sensor(index, enabled)
+        client.bodies.pop(access.body.id, None)
 
 
 class _Changes:

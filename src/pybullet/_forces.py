@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose, Vector3
-from carom.description.transform import rotate
 from pybullet._arguments import Vector, integer, vector3
 from pybullet._builtin import exported
 from pybullet._camera_maths import cross, subtracted
@@ -13,6 +12,7 @@ from pybullet._clients import client_of
 from pybullet._constants import LINK_FRAME, WORLD_FRAME
 from pybullet._errors import fail, logger
 from pybullet._lookup import no_body
+from pybullet._rotations import turned
 
 if TYPE_CHECKING:
     from pybullet._clients import Client
@@ -60,7 +60,7 @@ def applyExternalForce(
     if pose is None:
         return
     if frame == LINK_FRAME:
-        force, arm = rotate(pose.orientation, force), rotate(pose.orientation, point)
+        force, arm = turned(pose.orientation, force), turned(pose.orientation, point)
     else:
         arm = subtracted(point, pose.position)
     _add(client, row, force, cross(arm, force))
@@ -92,7 +92,7 @@ def applyExternalTorque(
     if pose is None:
         return
     if frame == LINK_FRAME:
-        torque = rotate(pose.orientation, torque)
+        torque = turned(pose.orientation, torque)
     _add(client, row, (0.0, 0.0, 0.0), torque)
 
 

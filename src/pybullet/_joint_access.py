@@ -44,6 +44,7 @@ MultiDofState = tuple[tuple[float, ...], tuple[float, ...], Wrench, tuple[float,
 ILLEGAL_MODE = "Illegal control mode."
 _DOUBLE = 8
 _MOTOR_COLUMNS = 8
+_NO_WRENCH = (0.0,) * 6
 _MOTOR_ROW = _MOTOR_COLUMNS * _DOUBLE
 _WRENCH_ROW = 6 * _DOUBLE
 # The greatest force of a motor that was given a target but no force [N or N m].
@@ -74,11 +75,13 @@ class JointAccess:
     Attributes:
         q: Row of its first position.
         u: Row of its first velocity.
+        has_sensor: Its reaction is measured.
     """
 
     __slots__ = (
         "body",
         "client",
+        "has_sensor",
         "impulses",
         "index",
         "motors",
@@ -106,15 +109,16 @@ class JointAccess:
         self.pd_drives = world.pd_memory
         self.torques = world.joint_torque_memory
         self.reactions = world.joint_reaction_memory
+        self.has_sensor = body.has_sensor(index)
         self.reaction_at = (body.first_link + 1 + index) * _WRENCH_ROW
 
     def state(self) -> JointState:
         """Position, velocity, reaction wrench and motor torque, as `getJointState` returns them."""
-        return (0.0, 0.0, _read_wrench(self.reactions, self.reaction_at), 0.0)
+        return (0.0, 0.0, self._reaction(), 0.0)
 
     def multi_dof_state(self) -> MultiDofState:
         """The same with a tuple for each of position, velocity and torque."""
-        return ((), (), _read_wrench(self.reactions, self.reaction_at), ())
+        return ((), (), self._reaction(), ())
 
     def command(
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
@@ -126,6 +130,9 @@ class JointAccess:
         """
         if mode not in (VELOCITY_CONTROL, TORQUE_CONTROL, POSITION_CONTROL, PD_CONTROL):
             fail(ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
+
+    def _reaction(self) -> Wrench:
+        return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else _NO_WRENCH
 
     def add_torques(self, torques: Sequence[float]) -> None:
         """Adds to the torques of the next step; ignored unless there is one for each freedom."""
@@ -160,7 +167,7 @@ class AxisJoint(JointAccess):
     """A revolute or prismatic joint.
 
     Attributes:
-        lower: Least target position; `lower > upper` means no limits.
+        lower: Least target position; minus infinity where there are no limits.
         upper: Greatest target position.
     """
 
@@ -170,15 +177,16 @@ class AxisJoint(JointAccess):
         super().__init__(client, body, index)
         self.row_at = self.u * _MOTOR_ROW
         dynamics = body.dynamics(index)
-        self.lower = dynamics.joint_lower_limit
-        self.upper = dynamics.joint_upper_limit
+        limited = dynamics.joint_lower_limit <= dynamics.joint_upper_limit
+        self.lower = dynamics.joint_lower_limit if limited else -inf
+        self.upper = dynamics.joint_upper_limit if limited else inf
 
     def state(self) -> JointState:
         u = self.u
         return (
             self.positions[self.q],
             self.velocities[u],
-            _read_wrench(self.reactions, self.reaction_at),
+            _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else _NO_WRENCH,
             self.impulses[u] / self.client.time_step,
         )
 
@@ -190,15 +198,10 @@ class AxisJoint(JointAccess):
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
     ) -> None:
         if mode == POSITION_CONTROL:
-            _write_target(
-                self.motors,
-                self.row_at,
-                self._within_limits(position),
-                velocity,
-                kp,
-                kd,
-                force * self.client.time_step,
-            )
+            if not self.lower <= position <= self.upper:
+                position = self._within_limits(position)
+            impulse = force * self.client.time_step
+            _write_target(self.motors, self.row_at, position, velocity, kp, kd, impulse)
             if clamp > 0.0:
                 self.motors[self.u * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
         elif mode == VELOCITY_CONTROL:
@@ -258,9 +261,7 @@ class AxisJoint(JointAccess):
             )
 
     def _within_limits(self, position: float) -> float:
-        if self.lower <= self.upper:
-            return self.lower if position < self.lower else self.upper if position > self.upper else position
-        return position
+        return self.lower if position < self.lower else self.upper if position > self.upper else position
 
     def _drive(self, position: float, velocity: float, force: float, kp: float, kd: float) -> None:
         greatest = force if force >= _LEAST_PD_FORCE else 0.0
@@ -283,7 +284,7 @@ class MultiDofJoint(JointAccess):
         return (
             self.positions[self.q],
             self.velocities[self.u],
-            _read_wrench(self.reactions, self.reaction_at),
+            self._reaction(),
             0.0,
         )
 
@@ -292,7 +293,7 @@ class MultiDofJoint(JointAccess):
         return (
             tuple(self.positions[q : q + self.position_count].tolist()),
             tuple(self.velocities[u : u + self.dofs].tolist()),
-            _read_wrench(self.reactions, self.reaction_at),
+            self._reaction(),
             tuple([impulse / time_step for impulse in self.impulses[u : u + self.dofs].tolist()]),
         )
 

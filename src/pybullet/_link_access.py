@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import inverse, multiplied
+from pybullet._rotations import canonical, turned
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -25,7 +26,7 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 class LinkAccess:
     """One link other than the base."""
 
-    __slots__ = ("frame", "from_inertial", "pose_at", "poses", "turned", "velocities", "velocity_at")
+    __slots__ = ("frame", "from_inertial", "pose_at", "poses", "rotated", "velocities", "velocity_at")
 
     def __init__(self, client: Client, body: Body, index: int) -> None:
         row = body.first_link + 1 + index
@@ -36,28 +37,20 @@ class LinkAccess:
         frame = body.link_inertial_frame(index)
         self.frame = (frame.position, frame.orientation)
         self.from_inertial = inverse(frame)
-        self.turned = self.from_inertial.orientation != _NO_TURN
+        self.rotated = self.from_inertial.orientation != _NO_TURN
 
     def state(self) -> LinkState:
         """World poses of the inertial frame and of the link frame, and the former in the latter."""
         x, y, z, qx, qy, qz, qw = _read_pose(self.poses, self.pose_at)
         orientation = (qx, qy, qz, qw)
-        a, b, c = self.from_inertial.position
-        # The position of the link frame in the inertial frame, turned by the quaternion.
-        tx = 2.0 * (qy * c - qz * b)
-        ty = 2.0 * (qz * a - qx * c)
-        tz = 2.0 * (qx * b - qy * a)
+        dx, dy, dz = turned(orientation, self.from_inertial.position)
         return (
             (x, y, z),
             orientation,
             *self.frame,
-            (
-                x + a + qw * tx + qy * tz - qz * ty,
-                y + b + qw * ty + qz * tx - qx * tz,
-                z + c + qw * tz + qx * ty - qy * tx,
-            ),
+            (x + dx, y + dy, z + dz),
             canonical(multiplied(orientation, self.from_inertial.orientation))
-            if self.turned
+            if self.rotated
             else orientation,
         )
 
@@ -70,14 +63,3 @@ class LinkAccess:
         """World pose of the inertial frame."""
         x, y, z, qx, qy, qz, qw = _read_pose(self.poses, self.pose_at)
         return Pose((x, y, z), (qx, qy, qz, qw))
-
-
-def canonical(quaternion: Quaternion) -> Quaternion:
-    """The one of the two quaternions of a rotation that PyBullet reports.
-
-    It reads it off a rotation matrix: w is positive while the trace is, or else the largest of x, y
-    and z is.
-    """
-    x, y, z, w = quaternion
-    leading = w if w * w > 0.25 else max(x, y, z, key=abs)
-    return (-x, -y, -z, -w) if leading < 0.0 else quaternion

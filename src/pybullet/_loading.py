@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, overload
 
-from pybullet._arguments import Vector, integer, quaternion, real, text, vector3
+from pybullet._arguments import Vector, integer, real, rotation, text, vector3
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._errors import fail, logger
@@ -88,7 +88,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     options = _legacy_pose(arguments, keywords) or _named(arguments, keywords)
     name = text(fileName, "fileName")
     position = vector3(options["basePosition"], "Cannot convert basePosition.", "basePosition")
-    orientation = quaternion(options["baseOrientation"], "Cannot convert baseOrientation.", "baseOrientation")
+    orientation = rotation(options["baseOrientation"], "Cannot convert baseOrientation.", "baseOrientation")
     maximal = integer(options["useMaximalCoordinates"], "useMaximalCoordinates")
     fixed_base = integer(options["useFixedBase"], "useFixedBase") != 0
     flags = integer(options["flags"], "flags")

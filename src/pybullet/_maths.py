@@ -10,18 +10,11 @@ from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
 from struct import Struct
 
 from carom.description.pose import Quaternion, Vector3
-from carom.description.transform import (
-    conjugate,
-    matrix_product,
-    matrix_vector,
-    multiplied,
-    quaternion_from_matrix,
-    rotation_matrix,
-    transposed,
-)
-from pybullet._arguments import Vector, quaternion, real, vector, vector3
+from carom.description.transform import conjugate, multiplied, rotation_matrix, transposed
+from pybullet._arguments import Vector, real, rotation, vector3, vector4
 from pybullet._builtin import exported
 from pybullet._errors import fail
+from pybullet._rotations import canonical, turned, unit
 
 __all__ = [
     "calculateVelocityQuaternion",
@@ -90,7 +83,7 @@ def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vect
     Raises:
         pybullet.error: It is not a sequence of four finite numbers.
     """
-    x, y, z, w = vector(quaternion, 4, "Quaternion need a 4 components [x,y,z,w].", "quaternion")
+    x, y, z, w = vector4(quaternion, "Quaternion need a 4 components [x,y,z,w].", "quaternion")
     sine = -2.0 * (x * z - w * y)
     if sine <= -_GIMBAL_LOCK:
         return (0.0, -0.5 * pi, 2.0 * atan2(x, -y))
@@ -115,7 +108,7 @@ def getMatrixFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tup
     Raises:
         pybullet.error: It is not a sequence of four finite numbers, or its length is 0.
     """
-    rows = rotation_matrix(_rotation(quaternion, "Couldn't convert quaternion [x,y,z,w].", "quaternion"))
+    rows = rotation_matrix(rotation(quaternion, "Couldn't convert quaternion [x,y,z,w].", "quaternion"))
     return (*rows[0], *rows[1], *rows[2])
 
 
@@ -139,11 +132,11 @@ def multiplyTransforms(
         pybullet.error: An argument has not three, or four, finite numbers, or a quaternion has length 0.
     """
     problem = "Invalid input: expected positionA [x,y,z], orientationA [x,y,z,w], positionB, orientationB."
-    origin = vector3(positionA, problem, "positionA")
-    turn = rotation_matrix(_rotation(orientationA, problem, "orientationA"))
-    x, y, z = matrix_vector(turn, vector3(positionB, problem, "positionB"))
-    product = matrix_product(turn, rotation_matrix(_rotation(orientationB, problem, "orientationB")))
-    return (x + origin[0], y + origin[1], z + origin[2]), quaternion_from_matrix(product)
+    ax, ay, az = vector3(positionA, problem, "positionA")
+    turn = unit(rotation(orientationA, problem, "orientationA"))
+    x, y, z = turned(turn, vector3(positionB, problem, "positionB"))
+    product = multiplied(turn, unit(rotation(orientationB, problem, "orientationB")))
+    return (ax + x, ay + y, az + z), canonical(product)
 
 
 @exported
@@ -165,9 +158,9 @@ def invertTransform(
     """
     problem = "Invalid input: expected position [x,y,z] and orientation [x,y,z,w]."
     origin = vector3(position, problem, "position")
-    turn = transposed(rotation_matrix(_rotation(orientation, problem, "orientation")))
-    x, y, z = matrix_vector(turn, origin)
-    return (-x, -y, -z), quaternion_from_matrix(turn)
+    turn = canonical(unit(conjugate(rotation(orientation, problem, "orientation"))))
+    x, y, z = turned(turn, origin)
+    return (-x, -y, -z), turn
 
 
 @exported
@@ -186,10 +179,10 @@ def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -
         pybullet.error: An argument has not three, or four, finite numbers.
     """
     problem = "Require quaternion with 4 components [x,y,z,w] and a vector [x,y,z]."
-    q = _quaternion(quaternion, problem, "quaternion")
+    q = vector4(quaternion, problem, "quaternion")
     x, y, z = vector3(vector, problem, "vector")
-    turned = multiplied(multiplied(q, (x, y, z, 0.0)), conjugate(q))
-    return (turned[0], turned[1], turned[2])
+    x, y, z, _ = multiplied(multiplied(q, (x, y, z, 0.0)), conjugate(q))
+    return (x, y, z)
 
 
 @exported
@@ -233,7 +226,7 @@ def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> 
     Raises:
         pybullet.error: It is not a sequence of four finite numbers.
     """
-    x, y, z, w = _quaternion(quaternion, "Require a quaternion with 4 components [x,y,z,w].", "quaternion")
+    x, y, z, w = vector4(quaternion, "Require a quaternion with 4 components [x,y,z,w].", "quaternion")
     # This close to no rotation the answer hangs on the rounding of w to single precision.
     w = _rounded_to_single(w)
     sine_squared = 1.0 - w * w
@@ -262,8 +255,8 @@ def getQuaternionSlerp(
     Raises:
         pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
     """
-    a = _rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
-    b = _rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
+    a = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
+    b = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
     fraction = real(interpolationFraction, "interpolationFraction")
     cosine = _dot4(a, b) / sqrt(_dot4(a, a) * _dot4(b, b))
     if abs(cosine) >= 1.0:
@@ -298,8 +291,8 @@ def getDifferenceQuaternion(
         pybullet.error: An argument has not four finite numbers.
     """
     return _difference(
-        _quaternion(quaternionStart, _TWO_QUATERNIONS, "quaternionStart"),
-        _quaternion(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd"),
+        vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart"),
+        vector4(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd"),
     )
 
 
@@ -320,8 +313,8 @@ def getAxisDifferenceQuaternion(
     Raises:
         pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
     """
-    start = _rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
-    end = _rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
+    start = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
+    end = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
     m = transposed(rotation_matrix(multiplied(conjugate(start), end)))
     sine = m[0][2]
     if sine >= 1.0:
@@ -349,8 +342,8 @@ def calculateVelocityQuaternion(
     Raises:
         pybullet.error: An argument has not four finite numbers, or the time is 0 or not finite.
     """
-    start = _quaternion(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
-    end = _quaternion(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
+    start = vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
+    end = vector4(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
     duration = real(deltaTime, "deltaTime")
     if duration == 0.0:
         fail("deltaTime has to be different from 0.")
@@ -360,15 +353,6 @@ def calculateVelocityQuaternion(
         return (0.0, 0.0, 0.0)
     scale = 2.0 * atan2(sine, w) / (sine * duration)
     return (x * scale, y * scale, z * scale)
-
-
-def _quaternion(values: Vector, problem: str, name: str) -> Quaternion:
-    x, y, z, w = vector(values, 4, problem, name)
-    return x, y, z, w
-
-
-# Parameters named `quaternion` and `vector`, which PyBullet's signatures demand, hide the checks.
-_rotation = quaternion
 
 
 def _difference(start: Quaternion, end: Quaternion) -> Quaternion:

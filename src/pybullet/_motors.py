@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from struct import error as StructError
 from typing import Any, overload
 
@@ -25,6 +26,12 @@ DEFAULT_VELOCITY_GAIN = 1.0
 
 _ILLEGAL_MODE = "Illegal control mode."
 _UNPARSED = "Error parsing arguments in setJointControl."
+_WRONG_POSITIONS = "number of target positions should match the number of joint indices"
+_WRONG_VELOCITIES = "number of target velocies should match the number of joint indices"
+_WRONG_FORCES = "number of forces should match the joint indices"
+_WRONG_KPS = "number of kps should match the joint indices"
+_WRONG_KDS = "number of kds should match the number of joint indices"
+_NO_CLAMP = -1.0
 _MODES = (VELOCITY_CONTROL, TORQUE_CONTROL, POSITION_CONTROL, PD_CONTROL)
 
 
@@ -190,57 +197,65 @@ def setJointMotorControlArray(
         pybullet.error: Not connected, there is no such body, joint or mode, a list has not as many
             numbers as there are joints, or a number is not finite.
     """
-    body = _one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray")
-    _require("setJointMotorControlArray", jointIndices=jointIndices, controlMode=controlMode)
-    client_of(physicsClientId)
-    mode = integer(controlMode, "controlMode")
+    try:
+        joints = clients[physicsClientId].bodies[bodyUniqueId].joints
+        chosen = [joints[index] for index in jointIndices]
+        count = len(chosen)
+        positions = (0.0,) * count if targetPositions is None else _finite(targetPositions, count)
+        velocities = (0.0,) * count if targetVelocities is None else _finite(targetVelocities, count)
+        bounds = (DEFAULT_FORCE,) * count if forces is None else _finite(forces, count)
+        kps = (DEFAULT_POSITION_GAIN,) * count if positionGains is None else _finite(positionGains, count)
+        kds = (DEFAULT_VELOCITY_GAIN,) * count if velocityGains is None else _finite(velocityGains, count)
+        if controlMode in _MODES:
+            for joint, position, velocity, force, kp, kd in zip(
+                chosen, positions, velocities, bounds, kps, kds, strict=True
+            ):
+                joint.command(controlMode, position, velocity, force, kp, kd, _NO_CLAMP)
+            return
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
+    _set_array_carefully(
+        _one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
+        jointIndices,
+        controlMode,
+        (targetPositions, targetVelocities, forces, positionGains, velocityGains),
+        physicsClientId,
+    )
+
+
+def _finite(values: Any, count: int) -> Sequence[float]:
+    """As many finite numbers in a list or tuple; raises `ValueError` or `TypeError` for anything else."""
+    plain = values if isinstance(values, (list, tuple)) else list(values)
+    check = sum(plain)
+    if len(plain) != count or check - check != 0.0:
+        raise ValueError
+    return plain
+
+
+def _set_array_carefully(
+    body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
+) -> None:
+    """Sets the motors after checking, and where needed converting, every argument."""
+    _require("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
+    client_of(physics_client_id)
+    mode = integer(control_mode, "controlMode")
     if mode not in _MODES:
         fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of joints can have.")
-    requested = indices(jointIndices, NO_INDICES, "jointIndices")
+    requested = indices(joint_indices, NO_INDICES, "jointIndices")
     if not requested:
         return
-    joints = [joint_access(body, index, physicsClientId) for index in requested]
-    count = len(joints)
-    velocities = _one_each(
-        targetVelocities,
-        0.0,
-        count,
-        "number of target velocies should match the number of joint indices",
-        "targetVelocities",
-    )
-    positions = _one_each(
-        targetPositions,
-        0.0,
-        count,
-        "number of target positions should match the number of joint indices",
-        "targetPositions",
-    )
-    bounds = _one_each(
-        forces,
-        DEFAULT_FORCE,
-        count,
-        "number of forces should match the joint indices",
-        "forces",
-        infinite=mode != TORQUE_CONTROL,
-    )
-    kps = _one_each(
-        positionGains,
-        DEFAULT_POSITION_GAIN,
-        count,
-        "number of kps should match the joint indices",
-        "positionGains",
-    )
-    kds = _one_each(
-        velocityGains,
-        DEFAULT_VELOCITY_GAIN,
-        count,
-        "number of kds should match the number of joint indices",
-        "velocityGains",
-    )
-    for joint, position, velocity, force, kp, kd in zip(
-        joints, positions, velocities, bounds, kps, kds, strict=True
-    ):
-        joint.command(mode, position, velocity, force, kp, kd, -1.0)
+    joints = [joint_access(body, index, physics_client_id) for index in requested]
+    positions, velocities, forces, kps, kds = lists
+    count, torque = len(joints), mode == TORQUE_CONTROL
+    checked = [
+        _one_each(velocities, 0.0, count, _WRONG_VELOCITIES, "targetVelocities"),
+        _one_each(positions, 0.0, count, _WRONG_POSITIONS, "targetPositions"),
+        _one_each(forces, DEFAULT_FORCE, count, _WRONG_FORCES, "forces", infinite=not torque),
+        _one_each(kps, DEFAULT_POSITION_GAIN, count, _WRONG_KPS, "positionGains"),
+        _one_each(kds, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
+    ]
+    for joint, velocity, position, force, kp, kd in zip(joints, *checked, strict=True):
+        joint.command(mode, position, velocity, force, kp, kd, _NO_CLAMP)
 
 
 @overload
@@ -314,7 +329,7 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
     joint = joint_access(body, index, physicsClientId)
     if mode not in (POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position, velocity nor torque control.")
-    joint.command(mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, -1.0)
+    joint.command(mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP)
 
 
 def _one_body(body_unique_id: Any, body_index: Any, function: str) -> Any:

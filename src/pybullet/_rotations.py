@@ -1,0 +1,39 @@
+"""Quaternions as PyBullet reports them."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from carom.description.pose import Quaternion, Vector3
+
+
+def canonical(quaternion: Quaternion) -> Quaternion:
+    """The one of the two quaternions of a rotation that PyBullet reports.
+
+    It reads it off a rotation matrix: w is positive while the trace is, or else the largest of x, y
+    and z is.
+    """
+    x, y, z, w = quaternion
+    leading = w if w * w > 0.25 else max(x, y, z, key=abs)
+    return (-x, -y, -z, -w) if leading < 0.0 else quaternion
+
+
+def unit(quaternion: Quaternion) -> Quaternion:
+    """A quaternion shortened to length 1."""
+    x, y, z, w = quaternion
+    length = sqrt(x * x + y * y + z * z + w * w)
+    return (x / length, y / length, z / length, w / length)
+
+
+def turned(quaternion: Quaternion, v: Vector3) -> Vector3:
+    """A vector turned by a quaternion of unit length."""
+    qx, qy, qz, qw = quaternion
+    x, y, z = v
+    tx = 2.0 * (qy * z - qz * y)
+    ty = 2.0 * (qz * x - qx * z)
+    tz = 2.0 * (qx * y - qy * x)
+    return (
+        x + qw * tx + qy * tz - qz * ty,
+        y + qw * ty + qz * tx - qx * tz,
+        z + qw * tz + qx * ty - qy * tx,
+    )
