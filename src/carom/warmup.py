@@ -17,6 +17,10 @@ def warmup(device: str = "cpu") -> None:
     """
     import warp as wp
 
+    modules = [wp.get_module(import_module(name).__name__) for name in KERNEL_MODULES]
+    target = wp.get_device(device)
+    # A launch on CPU uses blocks of one thread, and a module is compiled for its block size.
+    block_size = 1 if target.is_cpu else None
     with CompilationNotice():
-        for name in KERNEL_MODULES:
-            wp.get_module(import_module(name).__name__).load(wp.get_device(device))
+        for module in modules:
+            module.load(target, block_size)
