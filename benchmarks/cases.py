@@ -27,6 +27,7 @@ IN_PROCESS = (
     Case("step_panda_free", "stepSimulation, Panda, motors off", speedup=5.0),
     Case("step_kuka", "stepSimulation, KUKA, default motors", speedup=3.0),
     Case("step_kuka_free", "stepSimulation, KUKA, motors off", speedup=3.0),
+    Case("step_tree", "stepSimulation, floating tree of 20 links, motors off"),
     Case("control_loop", "control loop: 9 targets by one call, step, read 9 joints", speedup=3.0),
     Case("get_joint_state", "getJointState", speedup=1.0),
     Case("get_joint_states", "getJointStates, 9 joints"),
@@ -37,6 +38,7 @@ IN_PROCESS = (
     Case("inverse_dynamics", "calculateInverseDynamics, Panda"),
     Case("jacobian", "calculateJacobian, Panda"),
     Case("mass_matrix", "calculateMassMatrix, Panda"),
+    Case("stable_pd", "STABLE_PD_CONTROL, floating tree of 20 links"),
     Case("load_panda", "loadURDF, our Panda", speedup=1.0),
     Case("load_original_panda", "loadURDF, the original Panda with its meshes", speedup=1.0),
 )

@@ -13,9 +13,11 @@ from typing import Any
 
 import pybullet as p
 
-ASSETS = Path(__file__).resolve().parents[1] / "src" / "pybullet_data"
+ROOT = Path(__file__).resolve().parents[1]
+ASSETS = ROOT / "src" / "pybullet_data"
 PANDA = str(ASSETS / "franka_panda" / "panda.urdf")
 KUKA = str(ASSETS / "kuka_iiwa" / "model.urdf")
+TREE = str(ROOT / "tests" / "conformance" / "robots" / "random_tree.urdf")
 MOVABLE = [0, 1, 2, 3, 4, 5, 6, 9, 10]
 HOME = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02]
 
@@ -66,6 +68,43 @@ def step_kuka(original_data: str) -> Prepared:
 def step_kuka_free(original_data: str) -> Prepared:
     _release(_kuka(), list(range(7)))
     return p.stepSimulation
+
+
+def _tree() -> tuple[int, list[int], list[int]]:
+    """The floating tree with its motors off, its joints of one dof, and those of three."""
+    _world()
+    tree = p.loadURDF(TREE)
+    kinds = [p.getJointInfo(tree, joint)[2] for joint in range(p.getNumJoints(tree))]
+    single = [joint for joint, kind in enumerate(kinds) if kind in (p.JOINT_REVOLUTE, p.JOINT_PRISMATIC)]
+    spherical = [joint for joint, kind in enumerate(kinds) if kind == p.JOINT_SPHERICAL]
+    _release(tree, single)
+    for joint in spherical:
+        p.setJointMotorControlMultiDof(
+            tree, joint, p.POSITION_CONTROL, targetPosition=[0, 0, 0, 1], force=[0, 0, 0]
+        )
+    return tree, single, spherical
+
+
+def step_tree(original_data: str) -> Prepared:
+    _tree()
+    return p.stepSimulation
+
+
+def stable_pd(original_data: str) -> Prepared:
+    tree, single, spherical = _tree()
+    joints = single + spherical
+    positions = [[0.1]] * len(single) + [[0.0, 0.0, 0.0, 1.0]] * len(spherical)
+    forces = [[10.0]] * len(single) + [[10.0, 10.0, 10.0]] * len(spherical)
+    gains, dampings = [5.0] * len(joints), [0.5] * len(joints)
+    return lambda: p.setJointMotorControlMultiDofArray(
+        tree,
+        joints,
+        p.STABLE_PD_CONTROL,
+        targetPositions=positions,
+        forces=forces,
+        positionGains=gains,
+        velocityGains=dampings,
+    )
 
 
 def control_loop(original_data: str) -> Prepared:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .scenario import load, movable_joints
+from .scenario import load, load_asset, movable_joints
 
 _STATUS = Path("/proc/self/statm")
 _PAGE = 4096
@@ -83,7 +83,10 @@ def loading(p: Any) -> Callable[[int], None]:
 
     def work(cycles: int) -> None:
         for cycle in range(cycles):
-            body = load(p, ("hand.urdf", "arm_on_world.urdf")[cycle % 2], basePosition=[9, 0, 0])
+            if cycle % 3 == 0:
+                body = load_asset(p, "franka_panda/panda.urdf", basePosition=[9, 0, 0])
+            else:
+                body = load(p, ("hand.urdf", "arm_on_world.urdf")[cycle % 2], basePosition=[9, 0, 0])
             p.stepSimulation()
             p.removeBody(body)
 

@@ -114,19 +114,21 @@ def row(scenario: Scenario, agreements: list[Agreement]) -> str:
     )
 
 
-def page(engine: str, rows: dict[str, list[str]], pictures: list[tuple[Plot, str]]) -> str:
+def page(engine: str, rows: dict[str, list[str]], pictures: dict[Plot, str], holding: int) -> str:
     """The report as Markdown."""
+    count = sum(len(lines) for lines in rows.values())
     parts = [
         "# Conformance",
         "",
-        f"Every scenario below ran in {engine} (recorded) and in Carom. The error is the greatest",
-        "difference of any series, divided by the greatest magnitude PyBullet's series reaches; for",
-        "tables of facts it is taken link by link. Made by `make report`.",
+        f"Every scenario below ran in {engine} (recorded) and in Carom; {holding} of {count} agree as",
+        "promised. The error is that of the series nearest to its bound: the greatest difference",
+        "divided by the greatest magnitude PyBullet's series reaches, or, for tables of facts, link by",
+        "link. [How it is measured](method.md). This page is made by `make report`.",
         "",
         "Lines are Carom, rings are PyBullet.",
         "",
     ]
-    parts += [f"![{plot.title}]({name})" for plot, name in pictures]
+    parts += [f"![{plot.title}]({pictures[plot]})" for plot in PLOTS]
     for group, lines in rows.items():
         parts += [
             "",
@@ -143,19 +145,18 @@ def main() -> None:
     """Run everything and write the pages."""
     OUTPUT.mkdir(parents=True, exist_ok=True)
     rows: dict[str, list[str]] = {}
-    pictures: list[tuple[Plot, str]] = []
-    engine = ""
+    pictures: dict[Plot, str] = {}
+    engine, holding = "", 0
     for scenario in select([]):
         expected, measured, agreements = measure(scenario)
-        engine = golden.read(golden.path_of(scenario.name)).engine
+        engine = golden.read(golden.path_of(scenario.name)).engine.replace("pybullet", "PyBullet")
         rows.setdefault(scenario.group, []).append(row(scenario, agreements))
-        pictures += [
-            (plot, draw(plot, expected[plot.series], measured[plot.series]))
-            for plot in PLOTS
-            if plot.scenario == scenario.name
-        ]
+        holding += all(agreement.holds for agreement in agreements)
+        for plot in PLOTS:
+            if plot.scenario == scenario.name:
+                pictures[plot] = draw(plot, expected[plot.series], measured[plot.series])
         print(f"{scenario.name:40} {'facts' if scenario.kind is Kind.INFO else 'motion'}", flush=True)
-    (OUTPUT / "index.md").write_text(page(engine, rows, pictures), encoding="utf-8")
+    (OUTPUT / "index.md").write_text(page(engine, rows, pictures, holding), encoding="utf-8")
 
 
 if __name__ == "__main__":

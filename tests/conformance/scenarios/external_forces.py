@@ -108,7 +108,7 @@ def forces_on_fixed_base(p: Any) -> dict[str, Any]:
 
 @scenario()
 def force_lasts_one_step(p: Any) -> dict[str, Any]:
-    """A force applied once acts for one step, also after collision detection on its own."""
+    """A force and a torque applied once act for one step each."""
     body, joints = _tree(p)
 
     def kick(step: int) -> None:
