@@ -14,6 +14,14 @@ def test_the_status_page_is_up_to_date():
     assert written == status["page"](), "run: python tools/docs/status.py"
 
 
+def test_the_reference_shows_every_module_of_the_drop_in_that_has_functions():
+    status = runpy.run_path(str(ROOT / "tools" / "docs" / "status.py"))
+    reference = (ROOT / "docs" / "api" / "pybullet.md").read_text(encoding="utf-8")
+    shown = {line.removeprefix("::: pybullet.") for line in reference.splitlines() if line.startswith(":::")}
+    homes = {status["home"](function) for function in status["functions"]().values()}
+    assert shown == homes - {status["UNAVAILABLE"]}
+
+
 def test_every_tutorial_shows_an_example_that_exists_and_every_example_is_shown():
     pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "tutorials").glob("*.md"))
     for example in (ROOT / "examples").glob("*.py"):

@@ -21,7 +21,8 @@ TITLES = {
     "_dynamics": "Masses, friction, damping, limits",
     "_forces": "External forces",
     "_algebra": "Inverse dynamics, Jacobians, mass matrices",
-    "_gui": "Sliders, keys and drawings",
+    "_gui": "Sliders, keys and the window's camera",
+    "_debug_drawing": "Drawings",
     "_camera_maths": "Camera matrices",
     "_maths": "Maths",
 }
