@@ -56,7 +56,11 @@ def _set_mass(body: Body, link: int, mass: float) -> None:
     spec = body.link_spec(link)
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     dynamics.inertia = inertia_from_shapes(
-        mass, spec.collisions, spec.inertial_frame, implicit_cylinder=implicit
+        mass,
+        spec.collisions,
+        spec.inertial_frame,
+        implicit_cylinder=implicit,
+        compound_margin=spec.compound_margin,
     )
     _write(body, link)
     if link == BASE and (mass > 0.0) == body.fixed_base:

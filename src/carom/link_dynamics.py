@@ -81,7 +81,7 @@ class LinkDynamics:
             joint_lower_limit=link.lower,
             joint_upper_limit=link.upper,
             friction_anchor=contact.friction_anchor,
-            collision_margin=collision_margin(link.collisions, link.inertial_frame),
+            collision_margin=collision_margin(link.collisions, link.inertial_frame, link.compound_margin),
         )
         stated = {
             "lateral_friction": contact.lateral_friction,

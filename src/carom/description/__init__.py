@@ -3,12 +3,15 @@
 from carom.description.geometry import (
     Box,
     Capsule,
+    ConvexHull,
     Cylinder,
     Geometry,
+    Heightfield,
     Mesh,
     Plane,
     SignedDistanceField,
     Sphere,
+    TriangleMesh,
 )
 from carom.description.joint import Joint, JointLimit, JointType, Mimic, SafetyController
 from carom.description.link import Collision, ContactParameters, Inertial, Link, Material, Visual
@@ -20,8 +23,10 @@ __all__ = [
     "Capsule",
     "Collision",
     "ContactParameters",
+    "ConvexHull",
     "Cylinder",
     "Geometry",
+    "Heightfield",
     "Inertial",
     "Joint",
     "JointLimit",
@@ -36,5 +41,6 @@ __all__ = [
     "SafetyController",
     "SignedDistanceField",
     "Sphere",
+    "TriangleMesh",
     "Visual",
 ]

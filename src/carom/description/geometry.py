@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from carom.description.pose import Vector3
 
 
@@ -67,4 +70,52 @@ class SignedDistanceField:
     path: Path
 
 
-Geometry = Sphere | Box | Cylinder | Capsule | Plane | Mesh | SignedDistanceField
+@dataclass(frozen=True, slots=True, eq=False)
+class ConvexHull:
+    """The convex hull of points; `points` is an (n, 3) array."""
+
+    points: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TriangleMesh:
+    """Triangles that collide as they are.
+
+    Attributes:
+        vertices: (n, 3) positions.
+        triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
+        margin: Distance by which the surface is thought to lie outside the triangles [m].
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+    margin: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Heightfield:
+    """A landscape: heights on a grid, centred on its frame, z up.
+
+    Attributes:
+        heights: (columns along y, rows along x) heights, unscaled.
+        scale: Distance between neighbours along x and y, and factor on the heights.
+        middle: Height, unscaled, that lies at the origin of the frame.
+    """
+
+    heights: NDArray[np.float64]
+    scale: Vector3
+    middle: float
+
+
+Geometry = (
+    Sphere
+    | Box
+    | Cylinder
+    | Capsule
+    | Plane
+    | Mesh
+    | SignedDistanceField
+    | ConvexHull
+    | TriangleMesh
+    | Heightfield
+)

@@ -7,6 +7,7 @@ import logging
 from carom.description import Joint, JointType, Link, Robot
 from carom.description.pose import Pose, Vector3
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.bounds import MARGIN
 from carom.model.flags import LoadFlags
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
@@ -16,7 +17,13 @@ from carom.model.tree import TreeNode, depth_first, file_order, make_tree
 _log = logging.getLogger(__name__)
 
 
-def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: bool = False) -> BodySpec:
+def assemble(
+    robot: Robot,
+    *,
+    flags: LoadFlags = LoadFlags.NONE,
+    fixed_base: bool = False,
+    compound_margin: float = MARGIN,
+) -> BodySpec:
     """Flattens a robot for the engine.
 
     Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in
@@ -26,6 +33,7 @@ def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: boo
         robot: What to build.
         flags: Loading options.
         fixed_base: The base is nailed to the world: its mass becomes zero.
+        compound_margin: `LinkSpec.compound_margin` of every link [m].
 
     Returns:
         A body whose base is fixed exactly when its mass is zero.
@@ -37,9 +45,9 @@ def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: boo
     if flags & LoadFlags.MERGE_FIXED_LINKS:
         merge_fixed_links(root, fixed_base=fixed_base)
     order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
-    base = _link_spec(root.link, flags, is_massless=fixed_base)
+    base = _link_spec(root.link, flags, compound_margin, is_massless=fixed_base)
     index_of = {id(node): index for index, node in enumerate(order, start=BASE)}
-    links = [_link_spec(node.link, flags) for node in order[1:]]
+    links = [_link_spec(node.link, flags, compound_margin) for node in order[1:]]
     for node in order:
         for child in node.children:
             _attach(links[index_of[id(child)]], child, index_of[id(node)])
@@ -57,7 +65,9 @@ def assemble(robot: Robot, *, flags: LoadFlags = LoadFlags.NONE, fixed_base: boo
     return body
 
 
-def _link_spec(link: Link, flags: LoadFlags, *, is_massless: bool = False) -> LinkSpec:
+def _link_spec(
+    link: Link, flags: LoadFlags, compound_margin: float, *, is_massless: bool = False
+) -> LinkSpec:
     collisions = () if flags & LoadFlags.IGNORE_COLLISION_SHAPES else link.collisions
     mass = 0.0 if is_massless else link.inertial.mass
     inertia: Vector3 = (0.0, 0.0, 0.0)
@@ -66,7 +76,11 @@ def _link_spec(link: Link, flags: LoadFlags, *, is_massless: bool = False) -> Li
         inertia, frame = inertia_from_file(link.inertial, link.name)
     elif mass != 0.0:
         inertia = inertia_from_shapes(
-            mass, collisions, frame, implicit_cylinder=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+            mass,
+            collisions,
+            frame,
+            implicit_cylinder=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
+            compound_margin=compound_margin,
         )
     scaling = link.contact.inertia_scaling
     if scaling is not None and mass != 0.0:
@@ -78,6 +92,7 @@ def _link_spec(link: Link, flags: LoadFlags, *, is_massless: bool = False) -> Li
         inertial_frame=frame,
         collisions=collisions,
         visuals=() if flags & LoadFlags.IGNORE_VISUAL_SHAPES else link.visuals,
+        compound_margin=compound_margin,
         contact=link.contact,
         user_data=dict(link.user_data),
     )

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.pose import IDENTITY, Vector3
+from carom.model.bounds import MARGIN
 
 BASE = -1
 DEFAULT_CONTACT = ContactParameters()
@@ -42,6 +43,8 @@ class LinkSpec:
         friction: Joint friction the file states; not simulated.
         collisions: Shapes that touch, in the link frame.
         visuals: Shapes that are seen, in the link frame.
+        compound_margin: Distance by which the bounds of several shapes, or of one that is not in the
+            inertial frame, are widened [m].
         contact: How the link touches.
         mimic: The joint this one follows, as the file states it; not simulated.
         user_data: Key and value pairs stated by the file for the link.
@@ -67,6 +70,7 @@ class LinkSpec:
     friction: float = 0.0
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
+    compound_margin: float = MARGIN
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     user_data: dict[str, str] = field(default_factory=dict)

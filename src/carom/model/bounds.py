@@ -8,7 +8,19 @@ from math import trunc
 
 import numpy as np
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
+from carom.description import (
+    Box,
+    Capsule,
+    ConvexHull,
+    Cylinder,
+    Geometry,
+    Heightfield,
+    Mesh,
+    Plane,
+    SignedDistanceField,
+    Sphere,
+    TriangleMesh,
+)
 from carom.description.pose import Vector3
 from carom.description.transform import NO_ROTATION, Matrix3
 from carom.formats.mesh import read_field_bounds, read_mesh
@@ -113,6 +125,19 @@ def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:
             return Bounds.between(*read_field_bounds(path))
         case Mesh():
             return mesh_bounds(geometry)
+        case ConvexHull(points):
+            return _point_bounds(points).grown(MARGIN).grown(MARGIN)
+        case TriangleMesh(vertices, _, margin):
+            return _point_bounds(vertices).grown(margin)
+        case Heightfield(heights, (sx, sy, sz), middle):
+            columns, rows = heights.shape
+            low, high = sorted((sz * (float(heights.min()) - middle), sz * (float(heights.max()) - middle)))
+            x, y = 0.5 * abs(sx) * (rows - 1), 0.5 * abs(sy) * (columns - 1)
+            return Bounds.between((-x, -y, low), (x, y, high))
+
+
+def _point_bounds(points: np.ndarray) -> Bounds:
+    return Bounds.between(*_scaled_corners(points, (1.0, 1.0, 1.0)))
 
 
 def mesh_bounds(mesh: Mesh) -> Bounds:

@@ -13,12 +13,14 @@ from carom.description import (
     Collision,
     Cylinder,
     Geometry,
+    Heightfield,
     Inertial,
     Mesh,
     Plane,
     Pose,
     SignedDistanceField,
     Sphere,
+    TriangleMesh,
 )
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
@@ -43,7 +45,12 @@ _EPSILON = 2.220446049250313e-16
 
 
 def inertia_from_shapes(
-    mass: float, collisions: Sequence[Collision], inertial_frame: Pose, *, implicit_cylinder: bool
+    mass: float,
+    collisions: Sequence[Collision],
+    inertial_frame: Pose,
+    *,
+    implicit_cylinder: bool,
+    compound_margin: float = MARGIN,
 ) -> Vector3:
     """Moments of inertia about the axes of the inertial frame, from the collision shapes.
 
@@ -55,6 +62,7 @@ def inertia_from_shapes(
         collisions: Shapes in the link frame.
         inertial_frame: Inertial frame in the link frame.
         implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
+        compound_margin: That margin [m].
 
     Returns:
         Moments about x, y and z [kg m²].
@@ -62,30 +70,71 @@ def inertia_from_shapes(
     Raises:
         DescriptionError: The file of a mesh cannot be used.
     """
-    placements = [_placement(inertial_frame, collision.frame) for collision in collisions]
-    if len(collisions) == 1 and placements[0] == _IN_PLACE:
+    if is_in_place(collisions, inertial_frame):
         return _shape_moments(mass, collisions[0].geometry, implicit_cylinder)
+    bounds = link_bounds(
+        collisions, inertial_frame, implicit_cylinder=implicit_cylinder, compound_margin=compound_margin
+    )
+    return _box_moments(mass / 12.0, bounds)
+
+
+def link_bounds(
+    collisions: Sequence[Collision],
+    inertial_frame: Pose,
+    *,
+    implicit_cylinder: bool,
+    compound_margin: float = MARGIN,
+) -> Bounds:
+    """Bounds of a link's collision shapes along the axes of its inertial frame, margins included.
+
+    Args:
+        collisions: Shapes in the link frame.
+        inertial_frame: Inertial frame in the link frame.
+        implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
+        compound_margin: Widens the bounds of anything but a single shape in the inertial frame [m].
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    if is_in_place(collisions, inertial_frame):
+        return shape_bounds(collisions[0].geometry, implicit_cylinder=implicit_cylinder)
     boxes = [
-        placed_bounds(collision.geometry, *placement, implicit_cylinder=implicit_cylinder)
-        for collision, placement in zip(collisions, placements, strict=True)
+        placed_bounds(
+            collision.geometry,
+            *placement(inertial_frame, collision.frame),
+            implicit_cylinder=implicit_cylinder,
+        )
+        for collision in collisions
     ]
     nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    return _box_moments(mass / 12.0, (reduce(Bounds.joined, boxes) if boxes else nothing).grown(MARGIN))
+    return (reduce(Bounds.joined, boxes) if boxes else nothing).grown(compound_margin)
 
 
-def collision_margin(collisions: Sequence[Collision], inertial_frame: Pose) -> float:
+def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
+    """Whether there is a single shape and its frame is exactly the inertial frame."""
+    return len(collisions) == 1 and placement(inertial_frame, collisions[0].frame) == _IN_PLACE
+
+
+def collision_margin(
+    collisions: Sequence[Collision], inertial_frame: Pose, compound_margin: float = MARGIN
+) -> float:
     """Distance by which a link's collision shape is thought to be rounded [m].
 
     A single sphere or capsule that lies exactly in the inertial frame is all margin: its radius.
     """
-    if len(collisions) == 1 and _placement(inertial_frame, collisions[0].frame) == _IN_PLACE:
-        match collisions[0].geometry:
-            case Sphere(radius) | Capsule(radius, _):
-                return radius
+    if not is_in_place(collisions, inertial_frame):
+        return compound_margin
+    match collisions[0].geometry:
+        case Sphere(radius) | Capsule(radius, _):
+            return radius
+        case TriangleMesh(margin=margin):
+            return margin
+        case Mesh(concave=True) | Heightfield():
+            return 0.0
     return MARGIN
 
 
-def _placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
+def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
     """Rotation and position of a shape in the inertial frame.
 
     The order of operations decides whether a shape given the very pose of the inertial frame comes out
@@ -106,7 +155,7 @@ def _shape_moments(mass: float, geometry: Geometry, implicit_cylinder: bool) -> 
         case Sphere(radius):
             moment = 0.4 * mass * radius * radius
             return (moment, moment, moment)
-        case Plane() | SignedDistanceField() | Mesh(concave=True):
+        case Plane() | SignedDistanceField() | Mesh(concave=True) | TriangleMesh() | Heightfield():
             return (0.0, 0.0, 0.0)
         case Cylinder(radius, length) if implicit_cylinder:
             across = mass / 12.0 * length * length + mass / 4.0 * radius * radius
