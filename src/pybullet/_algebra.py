@@ -10,6 +10,7 @@ from pybullet._clients import client_of
 from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail
 from pybullet._lookup import no_body
+from pybullet._maths import getQuaternionFromEuler
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -71,8 +72,9 @@ def calculateInverseDynamics(
     """Joint forces that give accelerations, under gravity and without damping or motors.
 
     The state of the body does not matter and does not change. The coordinates are those of the joints
-    that are not fixed, in the order of `getJointInfo`. With a floating base the base comes first: in
-    positions as position (3) and quaternion (4), in velocities, accelerations and forces as six numbers.
+    that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw for its
+    position. With a floating base the base comes first: in positions as position (3) and quaternion (4),
+    in velocities, accelerations and forces as six numbers.
 
     Args:
         bodyUniqueId: The body.
@@ -109,6 +111,8 @@ def calculateInverseDynamics(
     floating = not body.fixed_base
     if full:
         positions = velocities = sum(body.position_count) + (_BASE_POSITIONS if floating else 0)
+        # PyBullet takes longer lists here.
+        q, qd = q[:positions], qd[:velocities]
     else:
         positions = sum(body.velocity_count) + (_BASE_POSITIONS if floating else 0)
         velocities = sum(body.velocity_count) + (_BASE_VELOCITIES if floating else 0)
@@ -122,12 +126,15 @@ def calculateInverseDynamics(
     if full:
         from carom.algorithms.extended_model import extended_bias_forces
 
-        _check_no_planar_joint(body, _INVERSE_DYNAMICS)
+        _check_extended(body, q, _INVERSE_DYNAMICS)
         return tuple(extended_bias_forces(body, q, qd).tolist())
 
     from carom.algorithms import inverse_dynamics
 
-    return tuple(inverse_dynamics(body, q, qd, qdd).tolist())
+    base = q[: positions - sum(body.velocity_count)]
+    _check_rotation(base[3:], _INVERSE_DYNAMICS)
+    joints = _joint_positions(body, q[len(base) :])
+    return tuple(inverse_dynamics(body, (*base, *joints), qd, qdd).tolist())
 
 
 @exported
@@ -197,7 +204,7 @@ def calculateMassMatrix(
     """The matrix that turns accelerations of the coordinates into forces.
 
     The state of the body does not matter and does not change. The coordinates are those of the joints
-    that are not fixed, in the order of `getJointInfo`.
+    that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw.
 
     Args:
         bodyUniqueId: The body.
@@ -226,12 +233,12 @@ def calculateMassMatrix(
     if full:
         from carom.algorithms.extended_model import extended_mass_matrix
 
-        _check_no_planar_joint(body, problem)
+        _check_extended(body, q, problem)
         return _rows(extended_mass_matrix(body, q[:needed]))
 
     from carom.algorithms import mass_matrix
 
-    return _rows(mass_matrix(body, q[:needed]))
+    return _rows(mass_matrix(body, _joint_positions(body, q[:needed])))
 
 
 def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
@@ -241,11 +248,37 @@ def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
     return body
 
 
-def _check_no_planar_joint(body: Body, problem: str) -> None:
+def _joint_positions(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
+    """Positions as the engine has them: quaternions of spherical joints instead of three angles."""
+    if JOINT_SPHERICAL not in body.joint_types:
+        return values
+    result: list[float] = []
+    first = 0
+    for kind, freedoms in zip(body.joint_types, body.velocity_count, strict=True):
+        own = values[first : first + freedoms]
+        result += getQuaternionFromEuler(own) if kind == JOINT_SPHERICAL else own
+        first += freedoms
+    return tuple(result)
+
+
+def _check_extended(body: Body, positions: tuple[float, ...], problem: str) -> None:
+    """Checks that a body has extended coordinates, and that their quaternions are rotations."""
     if JOINT_PLANAR in body.joint_types:
         fail(
             problem, f"Body {body.id} ({body.name}) has a planar joint, for which flags=1 has no coordinates."
         )
+    first = 0 if body.fixed_base else _BASE_POSITIONS
+    if first:
+        _check_rotation(positions[3:7], problem)
+    for count in body.position_count:
+        if count == 4:
+            _check_rotation(positions[first : first + 4], problem)
+        first += count
+
+
+def _check_rotation(quaternion: tuple[float, ...], problem: str) -> None:
+    if quaternion and not any(quaternion):
+        fail(problem, "objPositions holds a quaternion of length 0, which is no rotation.")
 
 
 def _rows(matrix: Any) -> Matrix:

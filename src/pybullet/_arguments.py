@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Sequence
-from math import inf, isfinite
+from math import inf, isfinite, nan
 from operator import index
 from typing import Any, SupportsFloat
 
@@ -103,8 +103,7 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
             if not isinstance(item, SupportsFloat):
                 fail(problem, f"{name}[{position}] is {item!r}, not a number.")
         fail(problem, f"{name} is {values!r}.")
-    total = sum(result)
-    if total - total != 0.0:
+    if not -inf < sum(result) < inf:
         for position, item in enumerate(result):
             if not isfinite(item):
                 fail(problem, f"{name}[{position}] is {item}.")
@@ -116,7 +115,7 @@ def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
     try:
         x, y, z = values
         check = x + y + z
-        if check - check == 0.0:
+        if -inf < check < inf:
             return float(x), float(y), float(z)
     except (TypeError, ValueError):
         pass
@@ -129,7 +128,7 @@ def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, 
     try:
         x, y, z, w = values
         check = x + y + z + w
-        if check - check == 0.0:
+        if -inf < check < inf:
             return float(x), float(y), float(z), float(w)
     except (TypeError, ValueError):
         pass
@@ -164,17 +163,16 @@ def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:
     """Indices from any sequence of integers or of floats that stand for integers.
 
     Raises:
-        pybullet.error: It is not a sequence.
-        TypeError: An item is not a number.
+        pybullet.error: It is not a sequence, or an item is no index.
     """
-    return tuple(_as_index(item, name) for item in sequence(values, problem, name))
+    return tuple([_as_index(item, name) for item in sequence(values, problem, name)])
 
 
 def _as_index(item: Any, name: str) -> int:
     try:
         return index(item)
     except TypeError:
-        number = real(item, name)
-        if number != int(number):
-            fail("Joint index out-of-range.", f"{name} contains {number}, which is no index.")
-        return int(number)
+        number = float(item) if isinstance(item, SupportsFloat) else nan
+        if number.is_integer():
+            return int(number)
+    fail("Joint index out-of-range.", f"{name} contains {item!r}, which is no index.")

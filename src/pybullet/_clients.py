@@ -81,6 +81,21 @@ clients: dict[int, Client] = {}
 """Every connected client by its id."""
 
 
+def living_client(physics_client_id: Any) -> Client | None:
+    """The client of an id, unless there is none or its window was closed, which ends the connection.
+
+    Raises:
+        TypeError: The id is not an integer.
+    """
+    number = integer(physics_client_id, "physicsClientId")
+    client = clients.get(number)
+    if client is not None and not client.window.is_open():
+        del clients[number]
+        client.close()
+        return None
+    return client
+
+
 def client_of(physics_client_id: Any) -> Client:
     """The client of an id.
 
@@ -88,7 +103,7 @@ def client_of(physics_client_id: Any) -> Client:
         pybullet.error: There is none.
         TypeError: The id is not an integer.
     """
-    client = clients.get(integer(physics_client_id, "physicsClientId"))
+    client = living_client(physics_client_id)
     if client is None:
         fail(NOT_CONNECTED, f"There is no client {physics_client_id}.")
     return client

@@ -7,7 +7,7 @@ from typing import overload
 
 from pybullet._arguments import integer, real, text
 from pybullet._builtin import exported, exported_as
-from pybullet._clients import MAX_CLIENTS, Client, client_of, clients, free_slot
+from pybullet._clients import MAX_CLIENTS, Client, client_of, clients, free_slot, living_client
 from pybullet._constants import (
     DIRECT,
     GRAPHICS_CLIENT,
@@ -98,7 +98,7 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
             f"The connection method {method} is not available in this version of Carom.", "Use DIRECT or GUI."
         )
     if method in _WITH_WINDOW:
-        if any(client.method in _WITH_WINDOW for client in clients.values()):
+        if any(living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)):
             fail(_ONE_WINDOW)
         window: Window = RecordingWindow(**_window_size(options))
     elif method == DIRECT:
@@ -139,8 +139,7 @@ def isConnected(physicsClientId: int = 0) -> int:
     Returns:
         1 or 0.
     """
-    client = clients.get(integer(physicsClientId, "physicsClientId"))
-    return int(client is not None and client.window.is_open())
+    return int(living_client(physicsClientId) is not None)
 
 
 @exported
@@ -153,8 +152,8 @@ def getConnectionInfo(physicsClientId: int = 0) -> dict[str, int]:
     Returns:
         `isConnected`: 1 or 0; `connectionMethod`: `DIRECT`, `GUI`, ..., 0 when not connected.
     """
-    client = clients.get(integer(physicsClientId, "physicsClientId"))
-    if client is None or not client.window.is_open():
+    client = living_client(physicsClientId)
+    if client is None:
         return {"isConnected": 0, "connectionMethod": 0}
     return {"isConnected": 1, "connectionMethod": client.method}
 

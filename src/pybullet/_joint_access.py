@@ -21,6 +21,7 @@ from carom.model.codes import (
     MOTOR_VELOCITY,
     MOTOR_VELOCITY_CLAMP,
 )
+from pybullet._arguments import integer
 from pybullet._constants import (
     JOINT_FIXED,
     JOINT_PRISMATIC,
@@ -128,7 +129,12 @@ class JointAccess:
         Raises:
             pybullet.error: The mode is none of velocity, torque, position and PD control.
         """
-        if mode not in (VELOCITY_CONTROL, TORQUE_CONTROL, POSITION_CONTROL, PD_CONTROL):
+        if integer(mode, "controlMode") not in (
+            VELOCITY_CONTROL,
+            TORQUE_CONTROL,
+            POSITION_CONTROL,
+            PD_CONTROL,
+        ):
             fail(ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
 
     def _reaction(self) -> Wrench:

@@ -190,7 +190,7 @@ def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int 
     """Quaternion of a rotation about an axis.
 
     Args:
-        axis: Direction, of any length but 0.
+        axis: Direction, of any length; the x axis when the length is 0.
         angle: Angle [rad].
         physicsClientId: Not used.
 
@@ -198,14 +198,14 @@ def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int 
         (x, y, z, w), of unit length.
 
     Raises:
-        pybullet.error: The axis is not three finite numbers or has length 0, or the angle is not finite.
+        pybullet.error: The axis is not three finite numbers, or the angle is not finite.
     """
     problem = "Require axis [x,y,z] and angle."
     direction = vector3(axis, problem, "axis")
     half = 0.5 * real(angle, "angle")
     length = hypot(*direction)
     if length == 0.0:
-        fail(problem, "axis has length 0.")
+        return (sin(half), 0.0, 0.0, cos(half))
     s = sin(half) / length
     return (direction[0] * s, direction[1] * s, direction[2] * s, cos(half))
 
@@ -345,12 +345,12 @@ def calculateVelocityQuaternion(
     start = vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     end = vector4(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
     duration = real(deltaTime, "deltaTime")
-    if duration == 0.0:
-        fail("deltaTime has to be different from 0.")
     x, y, z, w = _difference(start, end)
     sine = hypot(x, y, z)
     if sine == 0.0:
         return (0.0, 0.0, 0.0)
+    if duration == 0.0:
+        fail("deltaTime has to be different from 0.")
     scale = 2.0 * atan2(sine, w) / (sine * duration)
     return (x * scale, y * scale, z * scale)
 

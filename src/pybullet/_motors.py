@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from struct import error as StructError
 from typing import Any, overload
 
@@ -112,7 +113,7 @@ def setJointMotorControl2(
     """
     try:
         check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
-        if check - check == 0.0:
+        if -inf < check < inf and bodyIndex is None:
             joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
             joint.command(
                 controlMode, targetPosition, targetVelocity, force, positionGain, velocityGain, maxVelocity
@@ -227,7 +228,7 @@ def _finite(values: Any, count: int) -> Sequence[float]:
     """As many finite numbers in a list or tuple; raises `ValueError` or `TypeError` for anything else."""
     plain = values if isinstance(values, (list, tuple)) else list(values)
     check = sum(plain)
-    if len(plain) != count or check - check != 0.0:
+    if len(plain) != count or not -inf < check < inf:
         raise ValueError
     return plain
 

@@ -21,6 +21,28 @@ _PERIOD = 1.0 / 240.0
 _running: WeakSet[RealTimeClock] = WeakSet()
 
 
+class Pace:
+    """How far a simulation is behind a clock. Steps are counted from one beginning, so nothing drifts."""
+
+    def __init__(self, now: float) -> None:
+        """Starts at a time of the clock [s]."""
+        self._simulated_until = now
+
+    def steps_due(self, now: float, time_step: float) -> int:
+        """How many steps are due; they count as done.
+
+        Args:
+            now: Time of the clock [s].
+            time_step: Of the simulation [s]; it may change from call to call.
+        """
+        earliest = now - max(_GREATEST_LAG, time_step)
+        if self._simulated_until < earliest:
+            self._simulated_until = earliest
+        count = int((now - self._simulated_until) / time_step)
+        self._simulated_until += count * time_step
+        return count
+
+
 class RealTimeClock:
     """Steps the world of a client so that simulated time passes as fast as real time.
 
@@ -42,13 +64,11 @@ class RealTimeClock:
         _running.discard(self)
 
     def _run(self) -> None:
-        client = self._client
-        simulated_until = monotonic()
+        client, pace = self._client, Pace(monotonic())
         while not self._stopping.wait(max(_PERIOD, client.time_step)):
-            now = monotonic()
-            simulated_until = max(simulated_until, now - max(_GREATEST_LAG, client.time_step))
-            while simulated_until + client.time_step <= now and not self._stopping.is_set():
-                simulated_until += client.time_step
+            for _ in range(pace.steps_due(monotonic(), client.time_step)):
+                if self._stopping.is_set():
+                    return
                 try:
                     with client.lock:
                         client.world.step()

@@ -1,0 +1,112 @@
+"""Simulation by the wall clock."""
+
+import logging
+from threading import Event
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import pybullet as p
+from pybullet._clients import clients
+from pybullet._real_time import Pace
+
+# Long enough for the busiest machine; nothing waits for it when all is well.
+PATIENCE = 60.0
+
+
+@given(st.lists(st.floats(0.0, 0.05), max_size=200), st.floats(0.001, 0.05))
+def test_nothing_drifts_while_the_world_keeps_up(pauses: list[float], time_step: float) -> None:
+    now, steps = 0.0, 0
+    pace = Pace(now)
+    for pause in pauses:
+        now += pause
+        steps += pace.steps_due(now, time_step)
+        assert -1e-9 <= now - steps * time_step < time_step + 1e-9
+
+
+def test_a_long_sleep_is_not_caught_up_with() -> None:
+    pace = Pace(0.0)
+    assert pace.steps_due(1000.0, 0.01) <= 10
+    assert pace.steps_due(1000.0, 0.01) == 0
+    assert pace.steps_due(1000.02, 0.01) in (1, 2)
+
+
+def test_steps_longer_than_the_lag_still_come() -> None:
+    pace = Pace(0.0)
+    assert [pace.steps_due(now, 1.0) for now in (0.5, 1.25, 2.5)] == [0, 1, 1]
+
+
+def test_the_world_moves_by_itself_and_stops(monkeypatch: pytest.MonkeyPatch) -> None:
+    p.connect(p.GUI)
+    stepped = _step_event(monkeypatch)
+    p.setRealTimeSimulation(1)
+    p.setRealTimeSimulation(1)
+    assert p.getPhysicsEngineParameters()["useRealTimeSimulation"] == 1
+    assert stepped.wait(PATIENCE)
+    p.setRealTimeSimulation(0)
+    stepped.clear()
+    assert clients[0].clock is None
+    assert p.getPhysicsEngineParameters()["useRealTimeSimulation"] == 0
+    assert not stepped.wait(0.05)
+
+
+def test_scripts_may_go_on_calling(monkeypatch: pytest.MonkeyPatch, arm_path: str) -> None:
+    p.connect(p.GUI)
+    stepped = _step_event(monkeypatch)
+    p.setRealTimeSimulation(1)
+    for _ in range(20):
+        body = p.loadURDF(arm_path, useFixedBase=1)
+        p.setJointMotorControl2(body, 0, p.POSITION_CONTROL, 0.3)
+        p.getJointStates(body, [0, 1])
+        p.stepSimulation()
+        p.removeBody(body)
+    assert stepped.wait(PATIENCE)
+    p.resetSimulation()
+
+
+def test_disconnecting_stops_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    p.connect(p.GUI)
+    stepped = _step_event(monkeypatch)
+    p.setRealTimeSimulation(1)
+    assert stepped.wait(PATIENCE)
+    p.disconnect()
+    stepped.clear()
+    assert not stepped.wait(0.05)
+
+
+def test_a_world_that_breaks_stops_with_a_message(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    p.connect(p.GUI)
+    failed = Event()
+
+    def fail() -> None:
+        failed.set()
+        raise RuntimeError("broken")
+
+    monkeypatch.setattr(clients[0].world, "step", fail)
+    with caplog.at_level(logging.ERROR, logger="pybullet"):
+        p.setRealTimeSimulation(1)
+        assert failed.wait(PATIENCE)
+        p.setRealTimeSimulation(0)
+    assert "Real-time simulation has stopped." in caplog.text
+
+
+def test_without_a_window_nothing_moves_by_itself(client: int) -> None:
+    p.setRealTimeSimulation(1)
+    assert p.getPhysicsEngineParameters()["useRealTimeSimulation"] == 1
+    assert clients[client].clock is None
+
+
+def _step_event(monkeypatch: pytest.MonkeyPatch) -> Event:
+    """Tells when the world of client 0 has made a step in the background."""
+    stepped, step = Event(), clients[0].world.step
+
+    def noted_step(*arguments: Any) -> None:
+        step(*arguments)
+        stepped.set()
+
+    monkeypatch.setattr(clients[0].world, "step", noted_step)
+    return stepped
