@@ -14,6 +14,7 @@ HELPERS = {"carom.checks", "carom.named"}
 # A world and what hangs on it know each other.
 WORLD = {
     "carom.algorithms",
+    "carom.alive",
     "carom.body",
     "carom.constraints",
     "carom.dynamics_changes",

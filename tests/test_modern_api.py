@@ -324,6 +324,36 @@ def test_handles_stay_valid_while_other_bodies_come_and_go(world, load):
     assert_allclose(others[0].joints.positions, 0.0, atol=1e-2)
 
 
+@pytest.mark.parametrize("end", ["remove", "reset", "leave"])
+def test_handles_of_a_body_that_is_gone_say_so(world, load, end):
+    body = load(SHOULDER)
+    joint, link = body.joints[0], body.links[0]
+    if end == "remove":
+        world.remove(body.id)
+        load(ELBOW)
+    elif end == "reset":
+        world.reset()
+    else:
+        world.__exit__(None, None, None)
+    uses = [
+        lambda: joint.position,
+        lambda: joint.reset(1.0),
+        lambda: joint.set_position_target(1.0),
+        lambda: joint.set_torque(1.0),
+        joint.enable_sensor,
+        lambda: joint.reaction,
+        lambda: body.joints.positions,
+        lambda: body.joints.set_velocity_targets(1.0),
+        lambda: link.pose,
+        lambda: link.velocity,
+        lambda: link.apply_force([1.0, 0.0, 0.0]),
+        lambda: link.apply_torque([1.0, 0.0, 0.0]),
+    ]
+    for use in uses:
+        with pytest.raises(ValueError, match="no longer in its world"):
+            use()
+
+
 @pytest.mark.parametrize(
     "command",
     [

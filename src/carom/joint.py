@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import joint_motor
+from carom.alive import world_of
 from carom.checks import Array, finite, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
@@ -100,23 +101,23 @@ class Joint:
     def position(self) -> float:
         """Present position."""
         self._require_one_freedom()
-        return float(self.body.world.position[self.body.position_index[self.index]])
+        return float(world_of(self.body).position[self.body.position_index[self.index]])
 
     @property
     def velocity(self) -> float:
         """Present velocity."""
-        return float(self.body.world.velocity[self._dof])
+        return float(world_of(self.body).velocity[self._dof])
 
     @property
     def coordinates(self) -> Array:
         """All position coordinates, shape (0,), (1,), or (4,) for the quaternion of a spherical joint."""
         first, count = self.body.position_index[self.index], self.body.position_count[self.index]
-        return self.body.world.position[first : first + count].copy()
+        return world_of(self.body).position[first : first + count].copy()
 
     @property
     def rates(self) -> Array:
         """All velocity coordinates, shape (0,), (1,), or (3,)."""
-        return self.body.world.velocity[self._dofs].copy()
+        return world_of(self.body).velocity[self._dofs].copy()
 
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
         """Place the joint without simulating the way there; its motor keeps its target.
@@ -128,6 +129,7 @@ class Joint:
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
+        world_of(self.body)  # refuses joints of a body that is gone
         position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
         if self.type is JointType.SPHERICAL and not position.any():
             raise ValueError("position must be a quaternion other than 0")
@@ -161,7 +163,7 @@ class Joint:
         """
         target = float(np.clip(target, *self.limits))
         joint_motor.aim_at_position(
-            self.body.world,
+            world_of(self.body),
             self._one_dof,
             target,
             velocity,
@@ -181,7 +183,7 @@ class Joint:
             gain: Share of the velocity error taken away per substep.
             max_force: Greatest force; `effort_limit` by default.
         """
-        joint_motor.aim_at_velocity(self.body.world, self._one_dof, target, gain, self._force(max_force))
+        joint_motor.aim_at_velocity(world_of(self.body), self._one_dof, target, gain, self._force(max_force))
 
     def set_spring(
         self,
@@ -202,7 +204,7 @@ class Joint:
             max_force: Greatest force; `effort_limit` by default.
         """
         joint_motor.pull_like_a_spring(
-            self.body.world, self._one_dof, target, velocity, stiffness, damping, self._force(max_force)
+            world_of(self.body), self._one_dof, target, velocity, stiffness, damping, self._force(max_force)
         )
 
     def set_orientation_target(
@@ -228,7 +230,7 @@ class Joint:
         if length == 0.0:
             raise ValueError("target must be a quaternion other than 0")
         joint_motor.aim_at_orientation(
-            self.body.world, self._dofs, quaternion / length, gain, damping, self._force(max_force)
+            world_of(self.body), self._dofs, quaternion / length, gain, damping, self._force(max_force)
         )
 
     def set_torque(self, torque: ArrayLike) -> None:
@@ -236,22 +238,23 @@ class Joint:
 
         The motor is not switched off; see `disable_motor`.
         """
-        self.body.world.joint_torque[self._dofs] = finite(torque, "torque")
+        world_of(self.body).joint_torque[self._dofs] = finite(torque, "torque")
 
     def disable_motor(self) -> None:
         """Let go of the joint: its motor, with which every joint starts, and its spring stop acting."""
-        joint_motor.switch_off(self.body.world, self._dofs)
+        joint_motor.switch_off(world_of(self.body), self._dofs)
 
     @property
     def motor_torque(self) -> float:
         """Force of the motor in the last substep."""
-        world = self.body.world
+        world = world_of(self.body)
         return float(world.motor_impulse[self._dof] / world.parameters.substep_time)
 
     # Force-torque sensor
 
     def enable_sensor(self, enabled: bool = True) -> None:
         """Switch the force-torque sensor on or off; it reads 0 until the step after."""
+        world_of(self.body)  # refuses joints of a body that is gone
         self.body.set_sensor(self.index, enabled)
 
     @property
@@ -261,7 +264,7 @@ class Joint:
         In the inertial frame of the child link, unless `EngineParameters.joint_feedback_mode` says
         otherwise.
         """
-        return self.body.world.joint_reaction[self.body.first_link + 1 + self.index].copy()
+        return world_of(self.body).joint_reaction[self.body.first_link + 1 + self.index].copy()
 
     # Rows in the world's arrays
 
@@ -311,17 +314,17 @@ class Joints(Named[Joint]):
     def positions(self) -> Array:
         """Position coordinates of all movable joints."""
         first, count = self._body.first_position + BASE_POSITIONS, sum(self._body.position_count)
-        return self._body.world.position[first : first + count].copy()
+        return world_of(self._body).position[first : first + count].copy()
 
     @property
     def velocities(self) -> Array:
         """Velocity coordinates of all movable joints."""
-        return self._body.world.velocity[self._dofs].copy()
+        return world_of(self._body).velocity[self._dofs].copy()
 
     @property
     def motor_torques(self) -> Array:
         """Forces of the motors in the last substep, one for each velocity coordinate."""
-        world = self._body.world
+        world = world_of(self._body)
         return world.motor_impulse[self._dofs] / world.parameters.substep_time
 
     @property
@@ -367,7 +370,7 @@ class Joints(Named[Joint]):
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
         """
         joint_motor.aim_at_position(
-            self._body.world,
+            world_of(self._body),
             self._one_dof_each,
             np.clip(targets, *self.limits),
             velocities,
@@ -382,16 +385,16 @@ class Joints(Named[Joint]):
     ) -> None:
         """`Joint.set_velocity_target` for all movable joints; scalars are for all of them."""
         joint_motor.aim_at_velocity(
-            self._body.world, self._one_dof_each, targets, gains, self._forces(max_forces)
+            world_of(self._body), self._one_dof_each, targets, gains, self._forces(max_forces)
         )
 
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
-        self._body.world.joint_torque[self._dofs] = finite(torques, "torques")
+        world_of(self._body).joint_torque[self._dofs] = finite(torques, "torques")
 
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
-        joint_motor.switch_off(self._body.world, self._dofs)
+        joint_motor.switch_off(world_of(self._body), self._dofs)
 
     @property
     def _dofs(self) -> slice:

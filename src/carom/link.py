@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom.alive import world_of
 from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse, rotate
@@ -112,9 +113,10 @@ class Link:
     @property
     def velocity(self) -> LinkVelocity:
         """Velocity of the centre of mass and angular velocity, in world axes."""
+        world = world_of(self.body)
         self.body.update_link_poses()
         self.body.update_link_velocities()
-        row = self.body.world.link_velocity[self._row]
+        row = world.link_velocity[self._row]
         return LinkVelocity(row[:3].copy(), row[3:].copy())
 
     # Forces
@@ -140,7 +142,7 @@ class Link:
             if frame == "link":
                 place = np.array(compose(self._link_frame(), Pose(_triple(place))).position)
             arm = place - centre
-        wrench = self.body.world.link_force[self._row]
+        wrench = world_of(self.body).link_force[self._row]
         wrench[:3] += world_force
         wrench[3:] += np.cross(arm, world_force)
 
@@ -154,16 +156,17 @@ class Link:
         Raises:
             ValueError: It is not three finite numbers, or the frame is unknown.
         """
-        self.body.world.link_force[self._row, 3:] += self._in_world(vector(torque, 3, "torque"), frame)
+        world_of(self.body).link_force[self._row, 3:] += self._in_world(vector(torque, 3, "torque"), frame)
 
     @property
     def _row(self) -> int:
         return self.body.first_link + 1 + self.index
 
     def _inertial_frame(self) -> Pose:
+        world = world_of(self.body)
         # After a step the rows of the poses are those of its start.
         self.body.update_link_poses()
-        x, y, z, qx, qy, qz, qw = self.body.world.link_pose[self._row].tolist()
+        x, y, z, qx, qy, qz, qw = world.link_pose[self._row].tolist()
         return Pose((x, y, z), (qx, qy, qz, qw))
 
     def _link_frame(self) -> Pose:

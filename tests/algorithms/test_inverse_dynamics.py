@@ -79,15 +79,15 @@ def test_the_state_of_the_world_is_neither_used_nor_changed():
     other = body.world.load(random_tree(5, 3, fixed_base=False))
     put_in_motion(other, np.random.default_rng(1))
     rng = np.random.default_rng(2)
-    question = [rng.normal(size=len(values)) for values in joint_coordinates(body)]
-    rates = rng.normal(size=len(question[1]))
+    positions, rates = (rng.normal(size=len(values)) for values in joint_coordinates(body))
+    accelerations = rng.normal(size=len(rates))
     names = ("position", "velocity", "motor", "joint_torque", "link_pose", "link_force")
     before = {name: getattr(body.world, name).copy() for name in names}
-    answer = inverse_dynamics(body, *question, rates)
+    answer = inverse_dynamics(body, positions, rates, accelerations)
     for name, values in before.items():
         np.testing.assert_array_equal(getattr(body.world, name), values)
     body.set_joint_state(0, [0.5] * body.position_count[0], [1.0] * body.velocity_count[0])
-    np.testing.assert_array_equal(inverse_dynamics(body, *question, rates), answer)
+    np.testing.assert_array_equal(inverse_dynamics(body, positions, rates, accelerations), answer)
 
 
 def test_it_compensates_gravity():

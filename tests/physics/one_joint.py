@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from tests.physics.robots import pendulum
@@ -65,7 +66,7 @@ def free_rate(
     return max(-100.0, min(100.0, rate))
 
 
-def hanging_rod(time_step: float = DT, **joint: object) -> Body:
+def hanging_rod(time_step: float = DT, **joint: Any) -> Body:
     """A world with gravity and the rod of `free_rate` in it."""
     world = World(time_step)
     world.gravity = (0.0, 0.0, -9.81)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -84,7 +85,7 @@ def random_rotation(rng: np.random.Generator) -> Quaternion:
     return x, y, z, w
 
 
-def rod(parent: int = BASE, *, mass: float = 2.0, length: float = 1.0, **joint: object) -> LinkSpec:
+def rod(parent: int = BASE, *, mass: float = 2.0, length: float = 1.0, **joint: Any) -> LinkSpec:
     """A thin rod that hangs down from a joint about y at its upper end."""
     moment = mass * length**2 / 12.0
     settings: dict = {
@@ -104,7 +105,7 @@ def rod(parent: int = BASE, *, mass: float = 2.0, length: float = 1.0, **joint: 
     )
 
 
-def pendulum(link_count: int = 1, **joint: object) -> BodySpec:
+def pendulum(link_count: int = 1, **joint: Any) -> BodySpec:
     """A chain of 1 m rods of 2 kg hanging from a fixed base."""
     return BodySpec(
         "pendulum", LinkSpec("base"), [rod(j - 1, **joint) for j in range(link_count)], fixed_base=True
@@ -128,7 +129,7 @@ def put_in_motion(body: Body, rng: np.random.Generator, speed: float = 1.0) -> N
     x, y, z = rng.normal(size=3)
     body.set_base_pose((x, y, z), random_rotation(rng))
     if not body.fixed_base:
-        body.set_base_velocity(speed * rng.normal(size=3), speed * rng.normal(size=3))
+        body.set_base_velocity((speed * rng.normal(size=3)).tolist(), (speed * rng.normal(size=3)).tolist())
     for joint, count in enumerate(body.position_count):
         position = random_rotation(rng) if count == 4 else rng.uniform(-math.pi, math.pi, count)
         body.set_joint_state(

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.testing import assert_allclose
 from tests.physics.one_joint import (
     DT,
     INERTIA,
@@ -18,9 +17,8 @@ from tests.physics.one_joint import (
     joint_state,
     place,
 )
-from tests.physics.robots import joint_coordinates, pendulum
 
-from carom import Body, World
+from carom import Body
 from carom.description import JointType
 from carom.model.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_VELOCITY, MOTOR_VELOCITY_CLAMP
 
@@ -140,44 +138,3 @@ def test_a_strong_motor_drives_a_prismatic_joint():
     carried = body.world.motor_impulse[6] / DT
     k = float(np.float32(0.04))
     assert carried == pytest.approx(2.0 * 9.81 + 2.0 * 0.5 * k * 1.5, rel=1e-9)
-
-
-def test_motors_of_a_chain_reach_their_speeds_together():
-    world = World()
-    world.gravity = (0.0, 0.0, -9.81)
-    world.parameters.solver_residual_threshold = 0.0
-    world.parameters.solver_iterations = 2000
-    world.apply_parameters()
-    body = world.load(pendulum(6))
-    wanted = [0.5, -0.4, 0.3, -0.2, 0.1, 0.6]
-    for joint, rate in enumerate(wanted):
-        Motor(velocity=rate, max_impulse=1e6).set_on(body, joint)
-    world.step()
-    assert_allclose(joint_coordinates(body)[1], wanted, atol=1e-10)
-
-
-def test_more_sweeps_come_closer_to_the_targets():
-    worst = []
-    for sweeps in (5, 50, 500):
-        world = World()
-        world.parameters.solver_residual_threshold = 0.0
-        world.parameters.solver_iterations = sweeps
-        world.apply_parameters()
-        body = world.load(pendulum(6))
-        Motor(velocity=1.0, max_impulse=1e6).set_on(body, 5)
-        world.step()
-        worst.append(np.abs(joint_coordinates(body)[1] - [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]).max())
-        assert world.analytics()[0]["numIterationsUsed"] == sweeps
-    assert worst[0] > 10 * worst[1] > 100 * worst[2]
-
-
-def test_sweeps_end_when_rows_no_longer_change():
-    body = hanging_rod()
-    for rate, sweeps in ((0.0, 1), (1.0, 2)):
-        # The first sweep solves a single row; only the second finds nothing left to do.
-        place(body, 0.0, rate)
-        body.world.step()
-        (report,) = body.world.analytics()
-        assert report["numIterationsUsed"] == sweeps
-        assert report["remainingResidual"] <= 1e-7
-        assert report["numBodies"] == 1

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 DEFAULT_TIME_STEP = 1.0 / 240.0
+# Bullet's -0.04 is a float32.
+DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 
 
 @dataclass(slots=True)
@@ -54,7 +56,7 @@ class EngineParameters:
     contact_slop: float = 1e-5
     restitution_velocity_threshold: float = 0.2
     split_impulse: bool = True
-    split_impulse_penetration_threshold: float = -0.04
+    split_impulse_penetration_threshold: float = DEFAULT_SPLIT_THRESHOLD
     cone_friction: bool = True
     deterministic_overlapping_pairs: bool = False
     joint_feedback_mode: int = 0

@@ -6,7 +6,7 @@ import warp as wp
 
 from carom.model.real import Matrix3, Quaternion, Vector3, func, real
 
-# An orientation must not turn by more than this in one step (Bullet's integrator has this bound).
+# An orientation is not meant to turn by more than this in one step (as in Bullet).
 MAX_ANGLE_PER_STEP = real(0.25 * math.pi)
 _SMALL_RATE = real(0.001)
 
@@ -52,7 +52,8 @@ def canonical(q: Quaternion) -> Quaternion:
 def rotation_step(rate: Vector3, dt: real) -> Quaternion:
     """Rotation after turning for `dt` at the angular velocity `rate`, by the exponential map.
 
-    Faster turning than the bound per step is slowed down to it.
+    Beyond the bound per step, which is Bullet's, the rotation falls short of the angle; the result is
+    then not of unit length.
     """
     speed = wp.length(rate)
     if speed * dt > MAX_ANGLE_PER_STEP:

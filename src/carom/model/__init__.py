@@ -1,0 +1,1 @@
+"""Descriptions become bodies, and bodies the flat arrays that kernels work on."""

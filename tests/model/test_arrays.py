@@ -1,0 +1,104 @@
+"""Tables of arrays that grow."""
+
+import numpy as np
+import pytest
+import warp as wp
+
+from carom.model.arrays import ArrayTable, fields_of
+from carom.model.structs import ENTRY_VIEWS, Model, Scratch, State
+
+
+@pytest.fixture(params=[None, 1, 3], ids=["shared", "one world", "three worlds"])
+def table(request) -> ArrayTable:
+    return ArrayTable(Model if request.param is None else State, request.param)
+
+
+def rows(table: ArrayTable, name: str) -> np.ndarray:
+    """An array with its rows in front, whether or not it has a world axis."""
+    array = table.numpy[name]
+    return array if table.numpy.get("link_mass") is not None else array.swapaxes(0, 1)
+
+
+def test_fields_belong_to_the_axis_they_are_named_after():
+    fields = fields_of(Model)
+    assert fields["link_mass"].axis == "link"
+    assert fields["dof_parent"].axis == "dof"
+    assert fields["link_inertia"].shape == (3,)
+    assert fields["link_joint_rotation"].shape == (4,)
+    assert fields["link_parent"].scalar is np.int32
+    assert fields["link_mass"].scalar is np.float64
+    assert fields_of(State)["link_pose"].shape == (7,)
+    assert fields_of(State)["dof_motor"].shape == (8,)
+
+
+def test_arrays_start_zeroed_with_some_room(table):
+    for array in table.numpy.values():
+        assert not array.any()
+    assert set(table.capacity.values()) == {16}
+
+
+def test_reserving_what_there_is_changes_nothing(table):
+    before = dict(table.numpy)
+    assert table.reserve({"link": 16, "dof": 3, "no such axis": 99}) is False
+    assert all(table.numpy[name] is array for name, array in before.items())
+
+
+def test_growth_is_geometric_and_keeps_what_was_there(table):
+    name = "link_mass" if "link_mass" in table.numpy else "link_pose"
+    view = rows(table, name)
+    view[:] = np.arange(16.0).reshape(16, *[1] * (view.ndim - 1))
+    assert table.reserve({"link": 17}) is True
+    assert table.capacity["link"] == 32
+    assert table.capacity["dof"] == 16
+    grown = rows(table, name)
+    assert len(grown) == 32
+    np.testing.assert_array_equal(grown[:16], view)
+    assert not grown[16:].any()
+    table.reserve({"link": 1000})
+    assert table.capacity["link"] == 1000
+    np.testing.assert_array_equal(rows(table, name)[:16], view)
+
+
+def test_adding_rows_one_by_one_replaces_arrays_seldom():
+    table = ArrayTable(Model, None)
+    assert sum(table.reserve({"link": count}) for count in range(1, 2000)) == 7
+
+
+@pytest.mark.parametrize(("start", "count"), [(0, 4), (5, 3), (13, 3), (15, 1), (0, 16)])
+def test_deleted_rows_close_up_and_leave_zeros(table, start, count):
+    name = "link_mass" if "link_mass" in table.numpy else "link_twist"
+    view = rows(table, name)
+    view[:] = np.arange(1.0, 17.0).reshape(16, *[1] * (view.ndim - 1))
+    other = rows(table, "dof_parent" if "dof_parent" in table.numpy else "dof_velocity")
+    other[:] = 5
+    expected = np.concatenate([np.delete(view, np.s_[start : start + count], axis=0), 0 * view[:count]])
+    table.delete("link", start, count)
+    np.testing.assert_array_equal(view, expected)
+    assert (other == 5).all()
+
+
+def test_structs_share_the_memory_of_the_arrays(table):
+    struct = table.struct("cpu")
+    for name, array in table.numpy.items():
+        assert getattr(struct, name).ptr == array.ctypes.data
+        assert getattr(struct, name).shape == array.shape[: getattr(struct, name).ndim]
+
+
+def test_entry_views_show_blocks_column_by_column():
+    table = ArrayTable(Scratch, 2, ENTRY_VIEWS)
+    assert not set(ENTRY_VIEWS) & set(table.numpy)
+    struct = table.struct("cpu")
+    for name, source in ENTRY_VIEWS.items():
+        blocks = table.numpy[source]
+        blocks[:] = np.arange(blocks.size).reshape(blocks.shape)
+        entries = getattr(struct, name)
+        assert isinstance(entries, wp.array)
+        assert entries.ptr == blocks.ctypes.data
+        np.testing.assert_array_equal(entries.numpy(), blocks.reshape(2, -1))
+
+
+def test_clear_sets_everything_to_zero(table):
+    for array in table.numpy.values():
+        array.fill(3)
+    table.clear()
+    assert not any(array.any() for array in table.numpy.values())
