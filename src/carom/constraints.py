@@ -40,23 +40,6 @@ class JointConstraint:
     max_impulse: float = DEFAULT_LIMIT_IMPULSE
 
 
-@dataclass(frozen=True, slots=True)
-class Island:
-    """Constraints that are solved together.
-
-    Attributes:
-        tag: Number of the first of the solver's islands in it.
-        first: Its first constraint in the sorted list.
-        count: Number of constraints.
-        link_count: Number of moving links it holds.
-    """
-
-    tag: int
-    first: int
-    count: int
-    link_count: int
-
-
 class JointConstraints:
     """All motors and limits of a world."""
 
@@ -66,7 +49,7 @@ class JointConstraints:
 
     def add_body(self, body: Body) -> None:
         """Append the limits, then the motors, of a new body."""
-        self._tags.add(body.id, _moving_links(body))
+        self._tags.add(body.id, moving_links(body))
         for joint, link in enumerate(body.spec.links):
             if link.joint_type == JointType.SPHERICAL:
                 if link.lower > 0.0 and link.upper > 0.0 and link.twist > 0.0 and link.effort > 0.0:
@@ -122,51 +105,51 @@ class JointConstraints:
 
     def base_freedom_changed(self, body: Body) -> None:
         """Number the islands anew after the base of a body was freed or held."""
-        self._tags.move_base_to_end(body.id, _moving_links(body))
+        self._tags.move_base_to_end(body.id, moving_links(body))
 
-    def write(self, arrays: WorldArrays, minimum_island_size: int) -> tuple[list[Island], bool]:
-        """Write the sorted constraints and their islands to the model.
+    def write(self, arrays: WorldArrays, minimum_island_size: int) -> bool:
+        """Write the sorted constraints, and which trees are solved together, to the model.
 
         Args:
             arrays: Where to.
             minimum_island_size: Islands are solved together until they have more constraints.
 
         Returns:
-            The islands, and whether arrays were replaced.
+            Whether arrays were replaced.
         """
         tags = self._tags.tags()
         keys = [tags[constraint.body.id] for constraint in self._constraints]
         order = quicksort_order(keys)
         islands = batch_islands([keys[i] for i in order], minimum_island_size)
         ordered = [self._constraints[i] for i in order]
-
-        arrays.used["constraint"] = arrays.used["island"] = arrays.used["row"] = 0
+        arrays.used["constraint"] = arrays.used["row"] = 0
         count = len(ordered)
-        grown = arrays.reserve(constraint=count, island=len(islands), row=count * MAX_ROWS_PER_CONSTRAINT)
-        arrays.used.update(constraint=count, island=len(islands), row=count * MAX_ROWS_PER_CONSTRAINT)
+        grown = arrays.reserve(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
+        arrays.used.update(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
         model = arrays.model.numpy
+        trees = [constraint.body.rows.tree for constraint in ordered]
         model["constraint_kind"][:count] = [constraint.kind for constraint in ordered]
-        model["constraint_tree"][:count] = [constraint.body.rows.tree for constraint in ordered]
+        model["constraint_tree"][:count] = trees
         model["constraint_link"][:count] = [
             constraint.body.first_link + 1 + constraint.joint for constraint in ordered
         ]
         for name in ("lower", "upper", "twist", "max_impulse"):
             model[f"constraint_{name}"][:count] = [getattr(constraint, name) for constraint in ordered]
-        trees = arrays.used["tree"]
-        model["tree_constraint_count"][:trees] = np.bincount(
-            model["constraint_tree"][:count], minlength=trees
-        )
-        result = []
-        for i, (first, length) in enumerate(islands):
-            model["island_first_constraint"][i] = first
-            model["island_constraint_count"][i] = length
-            members = {constraint.body.id: constraint.body for constraint in ordered[first : first + length]}
-            links = sum(sum(_moving_links(body)) for body in members.values())
-            result.append(Island(keys[order[first]], first, length, links))
-        return result, grown
+
+        tree_count = arrays.used["tree"]
+        model["tree_constraint_count"][:tree_count] = np.bincount(trees, minlength=tree_count)
+        model["tree_batch"][:tree_count] = np.arange(tree_count)
+        for i in range(count - 1, -1, -1):
+            model["tree_first_constraint"][trees[i]] = i
+        for first, length in islands:
+            model["tree_batch"][trees[first : first + length]] = min(trees[first : first + length])
+        constrained = list(dict.fromkeys(trees))
+        free = [tree for tree in range(tree_count) if tree not in set(constrained)]
+        model["order_tree"][:tree_count] = [*constrained, *free]
+        return grown
 
 
-def _moving_links(body: Body) -> list[bool]:
+def moving_links(body: Body) -> list[bool]:
     """Which links, base first, are not rigidly tied to a fixed base."""
     moving = [not body.fixed_base]
     for link, code in zip(body.spec.links, body.joint_types, strict=True):

@@ -12,7 +12,7 @@ import numpy as np
 
 from carom.algorithms.query import QuerySpace
 from carom.body import Body
-from carom.constraints import Island, JointConstraints
+from carom.constraints import JointConstraints, moving_links
 from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.errors import SimulationError
@@ -20,12 +20,14 @@ from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.launch import Launch
 from carom.model.structs import Settings
+from carom.model.touch_arrays import TouchArrays
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.physics.quarantine import OVERFLOW
 from carom.physics.step import step_kernel
 
 _DEVICE = "cpu"
-_SUBSTEPS_ARGUMENT = 4
+_SUBSTEPS_ARGUMENT = 8
 # Flat arrays of the state that users read or write: attribute of `World`, field of `State`.
 _VIEWS = {
     "position": "position",
@@ -82,12 +84,12 @@ class World:
     def _start_empty(self) -> None:
         self.bodies.clear()
         self.arrays = WorldArrays()
+        self.touch = TouchArrays(self.arrays, _DEVICE)
         self.constraints = JointConstraints()
         self._free_ids: list[int] = []
         self._next_id = 0
         self._unspent_time = 0.0
         self._step: Callable[[], None] | None = None
-        self._islands: list[Island] = []
         self._take_arrays()
 
     def __enter__(self) -> World:
@@ -227,11 +229,16 @@ class World:
         for _ in range(count):
             step = self._step or self._prepare_step()
             step()
-            if self._fault[0]:
-                self._raise_fault()
+            while self._fault[0]:
+                step = self._handle_fault()
+                step()
             self.time += self.parameters.time_step
 
-    def _raise_fault(self) -> None:
+    def _handle_fault(self) -> Callable[[], None]:
+        """After a step that did not happen: make room and return the step to take, or raise."""
+        if self._fault[0] == OVERFLOW:
+            self.touch.grow()
+            return self._prepare_step()
         tree = self._fault[0] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
         raise SimulationError(
@@ -241,10 +248,9 @@ class World:
 
     def _prepare_step(self) -> Callable[[], None]:
         """The function that performs one step with the bodies and parameters there are."""
-        self._islands, grown = self.constraints.write(self.arrays, self.parameters.minimum_island_size)
-        if grown:
+        if self.constraints.write(self.arrays, self.parameters.minimum_island_size):
             self._take_arrays()
-        launch = Launch(step_kernel, 1, [self._settings(), *self._structs, 1], _DEVICE)
+        launch = Launch(step_kernel, 1, [self._settings(), *self._structs, *self.touch.structs(), 1], _DEVICE)
         if self.parameters.substeps > 1:
             self._step = partial(self._step_in_parts, launch)
         else:
@@ -279,7 +285,13 @@ class World:
         settings.feedback_in_world = p.joint_feedback_mode & 1
         settings.feedback_in_joint = p.joint_feedback_mode >> 1 & 1
         settings.tree_count = self.arrays.used["tree"]
-        settings.island_count = len(self._islands)
+        settings.user_count = self.touch.user_count
+        settings.contact_erp = p.contact_erp
+        settings.friction_erp = p.friction_erp
+        settings.contact_softness = p.global_cfm
+        settings.contact_slop = p.contact_slop
+        settings.restitution_threshold = p.restitution_velocity_threshold
+        settings.cone_friction = int(p.cone_friction)
         return settings
 
     def analytics(self) -> list[dict[str, float]]:
@@ -290,14 +302,19 @@ class World:
             `remainingResidual` (greatest squared change of a row's velocity in the last sweep).
         """
         state = self.arrays.state.numpy
+        bodies: dict[int, list[Body]] = {}
+        for body in self.bodies.values():
+            if body.rows.tree < self.arrays.used["tree"]:
+                bodies.setdefault(int(state["tree_island"][0, body.rows.tree]), []).append(body)
         return [
             {
-                "islandId": island.tag,
-                "numBodies": island.link_count,
-                "numIterationsUsed": int(state["island_iterations"][0, i]),
-                "remainingResidual": float(state["island_residual"][0, i]),
+                "islandId": root,
+                "numBodies": sum(sum(moving_links(body)) for body in members),
+                "numIterationsUsed": int(state["tree_iterations"][0, root]),
+                "remainingResidual": float(state["tree_residual"][0, root]),
             }
-            for i, island in enumerate(self._islands)
+            for root, members in sorted(bodies.items())
+            if state["tree_iterations"][0, root]
         ]
 
     # Memory

@@ -46,6 +46,7 @@ _INDEX_FIELDS = {
     "link_parent": "link",
     "link_first_position": "position",
     "link_first_dof": "dof",
+    "link_nearest_dof": "dof",
     "dof_parent": "dof",
 }
 
@@ -68,7 +69,7 @@ class WorldArrays:
         self.state = ArrayTable(State, world_count)
         self.scratch = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.used = dict.fromkeys(
-            ("tree", "link", "position", "dof", "block", "delta", "constraint", "island", "row"), 0
+            ("tree", "order", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
         )
 
     @property
@@ -99,6 +100,7 @@ class WorldArrays:
         blocks = (dofs + 3) // 4
         count = {
             "tree": 1,
+            "order": 1,
             "link": 1 + len(spec.links),
             "position": BASE_POSITIONS + sum(POSITION_COUNT[code] for code in codes),
             "dof": dofs,
@@ -126,7 +128,9 @@ class WorldArrays:
         model["tree_first_block"][tree] = first["block"]
         model["tree_first_delta"][tree] = first["delta"]
         model["tree_sensor_count"][tree] = 0
+        model["tree_first_constraint"][tree] = 0
         model["tree_constraint_count"][tree] = 0
+        model["tree_batch"][tree] = tree
         model["tree_linear_damping"][tree] = DEFAULT_LINK_DAMPING
         model["tree_angular_damping"][tree] = DEFAULT_LINK_DAMPING
         model["tree_max_velocity"][tree] = DEFAULT_MAX_VELOCITY
@@ -176,10 +180,22 @@ class WorldArrays:
         parents[roots] = last_base_dof if free else -1
         parents[first:joints] = np.arange(first - 1, last_base_dof)
         parents[first] = -1
+        self._link_dofs(rows, last_base_dof if free else -1)
         model["tree_fixed"][tree] = not free
         model["tree_first_dof"][tree] = first if free else joints
         model["tree_dof_count"][tree] = count if free else count - BASE_VELOCITIES
         model["link_dof_count"][rows.first["link"]] = BASE_VELOCITIES if free else 0
+
+    def _link_dofs(self, rows: TreeRows, base_dof: int) -> None:
+        """Note for each link the last of the dofs that move it."""
+        model = self.model.numpy
+        first = rows.first["link"]
+        nearest = model["link_nearest_dof"]
+        nearest[first] = base_dof
+        for row in range(first + 1, first + rows.count["link"]):
+            dofs = model["link_dof_count"][row]
+            last = model["link_first_dof"][row] + dofs - 1
+            nearest[row] = last if dofs else nearest[model["link_parent"][row]]
 
     def write_inertia(self, row: int, mass: float, inertia: Vector3) -> None:
         """Set a link's mass [kg] and principal moments [kg m²]."""

@@ -28,6 +28,15 @@ class ConstraintKind(IntEnum):
     SPHERICAL_LIMIT = 3
 
 
+class UserConstraintKind(IntEnum):
+    """Constraints between links; the values are PyBullet's."""
+
+    PRISMATIC = 1
+    FIXED = 4
+    POINT_TO_POINT = 5
+    GEAR = 6
+
+
 class ShapeKind(IntEnum):
     """Kinds of collision shape, and what `Shapes.shape_size` holds for each."""
 
@@ -73,6 +82,9 @@ PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 # Columns of a constraint row's numbers (`Scratch.row_terms`); ROW_SHARE is the impulse that would
 # bring about the whole change of velocity if nothing else pushed.
 ROW_SHARE, ROW_EFFECTIVE_MASS, ROW_INVERSE_MASS, ROW_LOWER, ROW_UPPER, ROW_IMPULSE = 0, 1, 2, 3, 4, 5
+ROW_SOFTNESS, ROW_FRICTION = 6, 7
+# Columns of a contact's rows (`Couplings.contact_rows`); -1 where there is none.
+NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 # Columns of its place (`Scratch.row_place`): entry of its dof in the change of velocity, first block
 # of its response to an impulse, first block of the tree's change of velocity, number of blocks.
 PLACE_ENTRY, PLACE_RESPONSE, PLACE_DELTA, PLACE_BLOCKS = 0, 1, 2, 3
@@ -87,6 +99,11 @@ MOTOR = wp.constant(int(ConstraintKind.MOTOR))
 LIMIT = wp.constant(int(ConstraintKind.LIMIT))
 SPHERICAL_MOTOR = wp.constant(int(ConstraintKind.SPHERICAL_MOTOR))
 SPHERICAL_LIMIT = wp.constant(int(ConstraintKind.SPHERICAL_LIMIT))
+
+USER_PRISMATIC = wp.constant(int(UserConstraintKind.PRISMATIC))
+USER_FIXED = wp.constant(int(UserConstraintKind.FIXED))
+USER_POINT_TO_POINT = wp.constant(int(UserConstraintKind.POINT_TO_POINT))
+USER_GEAR = wp.constant(int(UserConstraintKind.GEAR))
 
 # What link forces are computed for; see `physics.dynamics.link_bias_forces`.
 FREE_MOTION = wp.constant(0)

@@ -10,11 +10,14 @@ from carom.model.real import (
     Index4Rows,
     IntRows,
     Ints,
+    Quaternions,
     RealRows,
     Reals,
     Transforms,
     Vector3Rows,
     Vector4Rows,
+    Vector6Rows,
+    Vector8Rows,
     Vectors3,
     Vectors4,
 )
@@ -90,3 +93,55 @@ class Contacts:
     contact_impulse: Vector4Rows  # normal, along direction 1, along direction 2, 0; of the last substep
     contact_age: IntRows  # substeps
     count_contacts: IntRows  # its first entry; more than the capacity of `contact` means overflow
+
+
+@wp.struct
+class UserConstraints:
+    """Constraints that users put between two links, or a link and the world."""
+
+    user_kind: Ints  # `codes.UserConstraintKind`
+    user_tree_a: Ints
+    user_link_a: Ints
+    user_tree_b: Ints  # -1: the world
+    user_link_b: Ints
+    user_pivot_a: Vectors3  # in the inertial frame of the link
+    user_pivot_b: Vectors3  # likewise; in world axes where there is no body b
+    user_frame_a: Quaternions
+    user_frame_b: Quaternions
+    user_axis: Vectors3  # in the inertial frame of link a
+    user_max_impulse: Reals
+    user_gear_ratio: Reals
+    user_gear_auxiliary: Ints  # link row of a joint whose motion is taken off, -1 for none
+    user_relative_target: Reals
+    user_erp: Reals
+
+
+@wp.struct
+class Couplings:
+    """Constraint rows over up to two trees, and the islands they join: intermediate results."""
+
+    coupling_place: Index4Rows  # first block in `delta_velocity` and number of blocks, of a and of b
+    coupling_start: IntRows  # first block of the row in `jacobian_row`: those of a, then those of b
+    coupling_terms: Vector8Rows  # see the ROW_ columns in `codes`
+    coupling_bound: IntRows  # row whose impulse bounds this one, -1 for none
+    jacobian_row: Vector4Rows
+    jacobian_response: Vector4Rows  # inverse mass matrix times the row
+    entry_row: RealRows
+    entry_response: RealRows
+
+    tree_first_tree: IntRows  # islands as linked lists; the lists of an island start at its root
+    tree_next_tree: IntRows
+    tree_first_contact: IntRows
+    tree_first_user: IntRows
+    contact_next: IntRows
+    contact_rows: (
+        Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
+    )
+    user_next: IntRows
+    user_impulse: Vector6Rows  # of the last substep, by row of the constraint
+    user_first_row: IntRows
+    count_overflow: IntRows  # its first two entries: rows and blocks that did not fit
+
+
+# Couplings that show another array's blocks entry by entry.
+COUPLING_ENTRY_VIEWS = {"entry_row": "jacobian_row", "entry_response": "jacobian_response"}

@@ -40,12 +40,18 @@ class Settings:
     inner_iterations: Int32
     residual_threshold: real
     joint_erp: real
+    contact_erp: real
+    friction_erp: real
+    contact_softness: real
+    contact_slop: real
+    restitution_threshold: real
+    cone_friction: Int32
     split_impulse: Int32
     split_threshold: real
     feedback_in_world: Int32
     feedback_in_joint: Int32
     tree_count: Int32
-    island_count: Int32
+    user_count: Int32
 
 
 @wp.struct
@@ -67,7 +73,10 @@ class Model:
     tree_first_block: Ints  # of its matrices, in rows of four columns
     tree_first_delta: Ints  # of its vectors, in blocks of four
     tree_sensor_count: Ints
+    tree_first_constraint: Ints
     tree_constraint_count: Ints
+    tree_batch: Ints  # first tree of those solved together with it for lack of constraints
+    order_tree: Ints  # trees in the order of their constraints
     tree_linear_damping: Reals
     tree_angular_damping: Reals
     tree_max_velocity: Reals
@@ -77,6 +86,7 @@ class Model:
     link_first_position: Ints
     link_first_dof: Ints
     link_dof_count: Ints
+    link_nearest_dof: Ints  # last of the dofs that move it, -1 if none does
     link_sensor: Ints
     link_mass: Reals
     link_inertia: Vectors3  # principal moments
@@ -99,9 +109,6 @@ class Model:
     constraint_twist: Reals
     constraint_max_impulse: Reals
 
-    island_first_constraint: Ints
-    island_constraint_count: Ints
-
 
 @wp.struct
 class State:
@@ -117,9 +124,10 @@ class State:
     link_twist: Vector6Rows  # velocity of the centre of mass, angular velocity
     link_wrench: Vector6Rows  # force, torque about the centre of mass
     link_reaction: Vector6Rows  # force, torque of the force-torque sensor
-    island_iterations: IntRows
-    island_residual: RealRows
-    fault_tree: IntRows  # its first entry: 1 + the tree whose velocities were not finite, or 0
+    tree_island: IntRows  # root of its island; the next two are those of roots
+    tree_iterations: IntRows
+    tree_residual: RealRows
+    fault_tree: IntRows  # its first entry: 1 + the tree whose velocities were not finite, 0, or OVERFLOW
 
 
 @wp.struct
@@ -148,6 +156,7 @@ class Scratch:
 
     position_start: RealRows
     dof_start_velocity: RealRows
+    dof_start_torque: RealRows
     dof_angular: Vector3Rows  # motion subspace
     dof_linear: Vector3Rows
     dof_force: RealRows

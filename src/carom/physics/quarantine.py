@@ -1,13 +1,17 @@
 """A state that is not finite never leaves the step it arose in.
 
 Each step keeps the coordinates it started from. If a velocity comes out as NaN or infinite, all
-trees of that world go back to them and `State.fault_tree` tells which tree was at fault.
+trees of that world go back to them and `State.fault_tree` tells which tree was at fault. The same
+happens when contacts or rows do not fit into their arrays; then the step is done again with larger ones.
 """
 
 import warp as wp
 
 from carom.model.real import Int32, func, real
 from carom.model.structs import Model, Scratch, State
+
+# Value of `State.fault_tree` when contacts or rows did not fit into their arrays.
+OVERFLOW = -1
 
 
 @func
@@ -20,6 +24,7 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
     dof = model.tree_first_dof[tree]
     while dof < model.tree_first_dof[tree] + model.tree_dof_count[tree]:
         scratch.dof_start_velocity[world, dof] = state.dof_velocity[world, dof]
+        scratch.dof_start_torque[world, dof] = state.dof_torque[world, dof]
         dof += 1
 
 
@@ -33,6 +38,7 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
     dof = model.tree_first_dof[tree]
     while dof < model.tree_first_dof[tree] + model.tree_dof_count[tree]:
         state.dof_velocity[world, dof] = scratch.dof_start_velocity[world, dof]
+        state.dof_torque[world, dof] = scratch.dof_start_torque[world, dof]
         dof += 1
 
 

@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.model.codes import FREE_MOTION
+from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Int32, Vector6, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
@@ -12,10 +13,11 @@ from carom.physics.feedback import (
     measure_joint_wrenches,
 )
 from carom.physics.integration import integrate_positions
+from carom.physics.islands import build_islands
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd, joint_damping
-from carom.physics.quarantine import keep_start, return_to_start
+from carom.physics.quarantine import OVERFLOW, keep_start, return_to_start
 from carom.physics.solver import apply_delta_velocities, clear_delta_velocities, solve_island
 
 
@@ -51,8 +53,37 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
         state.dof_torque[world, dof] = 0.0
 
 
+@func
+def solve_constraints(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    world: Int32,
+):
+    """Find the changes of velocity that motors, limits, user constraints and contacts ask for."""
+    build_islands(settings, model, state, shapes, contacts, users, couplings, world)
+    for tree in range(settings.tree_count):
+        if state.tree_island[world, tree] == tree:
+            solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
+
+
 @kernel
-def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, substeps: Int32):
+def step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    substeps: Int32,
+):
     """Advance each world by one step of `substeps` substeps."""
     world = wp.tid()
     state.fault_tree[world, 0] = 0
@@ -63,15 +94,16 @@ def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch
     for _substep in range(substeps):
         for tree in range(settings.tree_count):
             free_motion(model, settings, state, scratch, world, tree)
-        for island in range(settings.island_count):
-            solve_island(model, settings, state, scratch, world, island)
+        solve_constraints(settings, model, state, scratch, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
             if model.tree_sensor_count[tree] > 0:
                 constraint_feedback(model, settings, state, scratch, world, tree)
             apply_delta_velocities(model, state, scratch, world, tree)
             integrate_positions(model, state, world, tree, settings.time_step)
 
+    fault = state.fault_tree[world, 0]
     for tree in range(settings.tree_count):
-        if state.fault_tree[world, 0] != 0:
+        if fault != 0:
             return_to_start(model, state, scratch, world, tree)
-        clear_forces(model, state, world, tree)
+        if fault != OVERFLOW:
+            clear_forces(model, state, world, tree)

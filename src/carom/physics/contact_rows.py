@@ -1,0 +1,182 @@
+"""Rows of contacts: normal, friction in the plane, rolling and spinning friction."""
+
+import math
+
+import warp as wp
+
+from carom.model.codes import (
+    LATERAL_ROW,
+    NORMAL_ROW,
+    ROLLING_ROW,
+    ROW_IMPULSE,
+    SPINNING_ROW,
+)
+from carom.model.contact_structs import Contacts, Couplings, Shapes
+from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.couplings import write_pair_jacobian, write_row
+
+_UNBOUNDED = real(1e10)
+_GREATEST_FRICTION = real(10.0)
+_HALF_ROOT = real(math.sqrt(0.5))
+_LEAST_DENOMINATOR = real(2.220446049250313e-16)
+
+
+@func
+def friction_direction(normal: Vector3) -> Vector3:
+    """A unit vector perpendicular to `normal`, a function of it alone."""
+    if wp.abs(normal[2]) > _HALF_ROOT:
+        scale = 1.0 / wp.sqrt(normal[1] * normal[1] + normal[2] * normal[2])
+        return Vector3(0.0, -normal[2] * scale, normal[1] * scale)
+    scale = 1.0 / wp.sqrt(normal[0] * normal[0] + normal[1] * normal[1])
+    return Vector3(-normal[1] * scale, normal[0] * scale, 0.0)
+
+
+@func
+def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) -> Vector3:
+    """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
+    stiffness_a = shapes.link_stiffness[a]
+    stiffness_b = shapes.link_stiffness[b]
+    if stiffness_a < 0.0 and stiffness_b < 0.0:
+        return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
+    # Springs in series, dampers side by side; a link without a spring is rigid.
+    compliance = real(0.0)
+    damping = real(0.0)
+    if stiffness_a > 0.0:
+        compliance += 1.0 / stiffness_a
+        damping += shapes.link_contact_damping[a]
+    if stiffness_b > 0.0:
+        compliance += 1.0 / stiffness_b
+        damping += shapes.link_contact_damping[b]
+    stiffness = 1.0 / wp.max(compliance, _LEAST_DENOMINATOR)
+    denominator = wp.max(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
+    return Vector3(
+        1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
+    )
+
+
+@func
+def normal_change(
+    settings: Settings, shapes: Shapes, velocity: real, distance: real, erp: real, a: Int32, b: Int32
+) -> real:
+    """Change of the approaching velocity that keeps a contact from closing.
+
+    A gap may close within the step but not more. Penetration is taken back at the rate `erp`, on top
+    of what restitution asks for.
+    """
+    change = -velocity
+    if wp.abs(velocity) >= settings.restitution_threshold:
+        change += wp.max(-shapes.link_restitution[a] * shapes.link_restitution[b] * velocity, 0.0)
+    gap = distance + settings.contact_slop
+    if gap > 0.0:
+        return change - gap / settings.time_step
+    return change - gap * erp / settings.time_step
+
+
+@func
+def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
+    """Combined coefficients of two links: lateral, rolling, spinning."""
+    lateral_a = shapes.link_lateral_friction[a]
+    lateral_b = shapes.link_lateral_friction[b]
+    lateral = lateral_a * lateral_b
+    rolling = shapes.link_rolling_friction[a] * lateral_b + shapes.link_rolling_friction[b] * lateral_a
+    spinning = shapes.link_spinning_friction[a] * lateral_b + shapes.link_spinning_friction[b] * lateral_a
+    return Vector3(
+        wp.clamp(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        wp.clamp(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        wp.clamp(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+    )
+
+
+@func
+def add_contact_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    couplings: Couplings,
+    world: Int32,
+    contact: Int32,
+    row: Int32,
+    block: Int32,
+) -> Index4:
+    """Write all rows of one contact: normal, two lateral, two rolling, spinning, as far as there are.
+
+    Returns:
+        Next free row and block.
+    """
+    pair = contacts.contact_shapes[world, contact]
+    a = pair[2]
+    b = pair[3]
+    ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
+    normal = contacts.contact_normal[world, contact]
+    direction1 = friction_direction(normal)
+    direction2 = wp.cross(normal, direction1)
+    contacts.contact_direction1[world, contact] = direction1
+    contacts.contact_direction2[world, contact] = direction2
+    friction = contact_friction(shapes, a, b)
+    soft = contact_stiffness(settings, shapes, a, b)
+
+    rows = Index4(row, row + 1, -1, -1)
+    end = row + 3
+    if friction[1] > 0.0:
+        rows[ROLLING_ROW] = end
+        end += 2
+    if friction[2] > 0.0:
+        rows[SPINNING_ROW] = end
+        end += 1
+    couplings.contact_rows[world, contact] = rows
+
+    zero = Vector3(0.0, 0.0, 0.0)
+    for place in range(row, end):
+        linear = zero
+        angular = zero
+        coefficient = friction[0]
+        if place == row:
+            linear = normal
+        elif place == rows[LATERAL_ROW]:
+            linear = direction1
+        elif place == rows[LATERAL_ROW] + 1:
+            linear = direction2
+        elif place == rows[SPINNING_ROW]:
+            angular = normal
+            coefficient = friction[2]
+        else:
+            angular = direction1
+            coefficient = friction[1]
+            if place > rows[ROLLING_ROW]:
+                angular = direction2
+
+        found = write_pair_jacobian(
+            model, state, scratch, couplings, world, place, block, ends,
+            contacts.contact_point_a[world, contact], contacts.contact_point_b[world, contact], linear, angular,
+        )  # fmt: skip
+        block = Int32(found[2])
+        change = -found[1]
+        lower = -coefficient
+        upper = coefficient
+        softness = real(0.0)
+        if place == row:
+            change = normal_change(
+                settings, shapes, found[1], contacts.contact_distance[world, contact], soft[1], a, b
+            )
+            lower = real(0.0)
+            upper = real(0.0) + _UNBOUNDED
+            softness = soft[0]
+        write_row(couplings, world, place, found[0], change, softness, lower, upper, coefficient)
+        couplings.coupling_bound[world, place] = row
+    return Index4(end, block, 0, 0)
+
+
+@func
+def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32, contact: Int32):
+    """Report the impulses of a contact's rows."""
+    rows = couplings.contact_rows[world, contact]
+    contacts.contact_impulse[world, contact] = Vector4(
+        couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
+        0.0,
+    )

@@ -1,0 +1,282 @@
+"""Constraint rows over up to two trees: their Jacobians, and relaxing them."""
+
+import warp as wp
+
+from carom.model.codes import (
+    ROW_EFFECTIVE_MASS,
+    ROW_IMPULSE,
+    ROW_INVERSE_MASS,
+    ROW_LOWER,
+    ROW_SHARE,
+    ROW_SOFTNESS,
+    ROW_UPPER,
+)
+from carom.model.contact_structs import Couplings
+from carom.model.real import Index4, Int32, Vector3, Vector4, Vector8, func, real
+from carom.model.structs import Model, Scratch, State
+from carom.physics.rows import inverse_or_off
+
+
+@func
+def tree_blocks(model: Model, tree: Int32) -> Int32:
+    """Number of four-wide blocks of a vector over a tree's active dofs; 0 for the world, -1."""
+    if tree < 0:
+        return Int32(0)
+    return (model.tree_dof_count[tree] + 3) // 4
+
+
+@func
+def write_jacobian(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    linear: Vector3,
+    angular: Vector3,
+    start: Int32,
+) -> Vector3:
+    """Write how dofs move a point of a link along `linear` and turn it about `angular`.
+
+    Args:
+        start: Block of the row to write to; the response of the tree to the row goes beside it.
+        point: World position.
+
+    Returns:
+        Inverse mass of the row on this tree, its present velocity, 0.
+    """
+    inverse_mass = real(0.0)
+    velocity = real(0.0)
+    blocks = tree_blocks(model, tree)
+    if blocks > 0:
+        block = Int32(0)
+        while block < blocks:
+            couplings.jacobian_row[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
+            couplings.jacobian_response[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
+            block += 1
+        reference = wp.transform_get_translation(state.link_pose[world, model.tree_first_link[tree]])
+        moment = wp.cross(point - reference, linear) + angular
+        first = model.tree_first_dof[tree]
+        matrix = model.tree_first_block[tree]
+        dof = model.link_nearest_dof[link]
+        while dof >= 0:
+            share = wp.dot(scratch.dof_linear[world, dof], linear) + wp.dot(
+                scratch.dof_angular[world, dof], moment
+            )
+            velocity += share * state.dof_velocity[world, dof]
+            couplings.entry_row[world, 4 * start + dof - first] = share
+            response = matrix + (dof - first) * blocks
+            block = Int32(0)
+            while block < blocks:
+                couplings.jacobian_response[world, start + block] += (
+                    share * scratch.block_inverse_mass[world, response + block]
+                )
+                block += 1
+            dof = model.dof_parent[dof]
+        block = Int32(0)
+        while block < blocks:
+            inverse_mass += wp.dot(
+                couplings.jacobian_row[world, start + block],
+                couplings.jacobian_response[world, start + block],
+            )
+            block += 1
+    return Vector3(inverse_mass, velocity, 0.0)
+
+
+@func
+def place_row(
+    model: Model, couplings: Couplings, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
+) -> Int32:
+    """Note which trees a row acts on and where its Jacobian is; returns the next free block."""
+    blocks_a = tree_blocks(model, tree_a)
+    blocks_b = tree_blocks(model, tree_b)
+    delta_a = Int32(0)
+    delta_b = Int32(0)
+    if tree_a >= 0:
+        delta_a = model.tree_first_delta[tree_a]
+    if tree_b >= 0:
+        delta_b = model.tree_first_delta[tree_b]
+    couplings.coupling_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
+    couplings.coupling_start[world, row] = start
+    couplings.coupling_bound[world, row] = Int32(-1)
+    return start + blocks_a + blocks_b
+
+
+@func
+def write_row(
+    couplings: Couplings,
+    world: Int32,
+    row: Int32,
+    inverse_mass: real,
+    change: real,
+    softness: real,
+    lower: real,
+    upper: real,
+    friction: real,
+):
+    """Write the numbers of a row that wants its velocity to change by `change`.
+
+    `softness` (constraint force mixing) is the velocity the row gives way by per unit of impulse.
+    """
+    effective_mass = inverse_or_off(inverse_mass + softness)
+    diagonal = real(0.0)
+    if effective_mass > 0.0:
+        diagonal = 1.0 / effective_mass
+    couplings.coupling_terms[world, row] = Vector8(
+        change * effective_mass,
+        effective_mass,
+        diagonal,
+        lower,
+        upper,
+        0.0,
+        softness * effective_mass,
+        friction,
+    )
+
+
+@func
+def row_velocity_change(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+    """What the solver has changed so far about the velocity of a row."""
+    place = couplings.coupling_place[world, row]
+    start = couplings.coupling_start[world, row]
+    total = real(0.0)
+    delta = place[0]
+    end = place[0] + place[1]
+    while delta < end:
+        total += wp.dot(couplings.jacobian_row[world, start], scratch.delta_velocity[world, delta])
+        delta += 1
+        start += 1
+    delta = place[2]
+    end = place[2] + place[3]
+    while delta < end:
+        total += wp.dot(couplings.jacobian_row[world, start], scratch.delta_velocity[world, delta])
+        delta += 1
+        start += 1
+    return total
+
+
+@func
+def push_row(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, impulse: real):
+    """Apply an impulse along a row to the changes of velocity of its trees."""
+    place = couplings.coupling_place[world, row]
+    start = couplings.coupling_start[world, row]
+    delta = place[0]
+    end = place[0] + place[1]
+    while delta < end:
+        scratch.delta_velocity[world, delta] += impulse * couplings.jacobian_response[world, start]
+        delta += 1
+        start += 1
+    delta = place[2]
+    end = place[2] + place[3]
+    while delta < end:
+        scratch.delta_velocity[world, delta] += impulse * couplings.jacobian_response[world, start]
+        delta += 1
+        start += 1
+
+
+@func
+def wanted_impulse(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+    """Impulse that would bring a row to its target if it had no bounds."""
+    terms = couplings.coupling_terms[world, row]
+    return (
+        terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
+        + terms[ROW_SHARE]
+        - row_velocity_change(scratch, couplings, world, row) * terms[ROW_EFFECTIVE_MASS]
+    )
+
+
+@func
+def set_impulse(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, impulse: real) -> real:
+    """Change a row's impulse to `impulse`; returns the change of its velocity."""
+    change = impulse - couplings.coupling_terms[world, row][ROW_IMPULSE]
+    couplings.coupling_terms[world, row][ROW_IMPULSE] = impulse
+    push_row(scratch, couplings, world, row, change)
+    return change * couplings.coupling_terms[world, row][ROW_INVERSE_MASS]
+
+
+@func
+def relax_coupling(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+    """Bring one row to its target as far as its bounds allow; returns the change of its velocity."""
+    impulse = wanted_impulse(scratch, couplings, world, row)
+    lower = couplings.coupling_terms[world, row][ROW_LOWER]
+    upper = couplings.coupling_terms[world, row][ROW_UPPER]
+    if impulse < lower:
+        impulse = lower
+    if impulse > upper:
+        impulse = upper
+    return set_impulse(scratch, couplings, world, row, impulse)
+
+
+@func
+def relax_within(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, bound: real) -> real:
+    """As `relax_coupling`, with the bounds ± `bound`."""
+    impulse = wanted_impulse(scratch, couplings, world, row)
+    if impulse < -bound:
+        impulse = -bound
+    if impulse > bound:
+        impulse = bound
+    return set_impulse(scratch, couplings, world, row, impulse)
+
+
+@func
+def relax_in_circle(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, bound: real) -> real:
+    """Relax two perpendicular rows, this and the next, their impulses together within `bound`."""
+    first = wanted_impulse(scratch, couplings, world, row)
+    second = wanted_impulse(scratch, couplings, world, row + 1)
+    size = wp.sqrt(first * first + second * second)
+    if size >= bound:
+        scale = real(0.0)
+        if size > 0.0:
+            scale = bound / size
+        first = first * scale
+        second = second * scale
+    return set_impulse(scratch, couplings, world, row, first) + set_impulse(
+        scratch, couplings, world, row + 1, second
+    )
+
+
+@func
+def write_pair_jacobian(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    row: Int32,
+    block: Int32,
+    ends: Index4,
+    point_a: Vector3,
+    point_b: Vector3,
+    linear: Vector3,
+    angular: Vector3,
+) -> Vector4:
+    """Write a row that is the velocity of a point of a against one of b, along or about an axis.
+
+    Args:
+        ends: Tree and link of a, tree and link of b; tree -1 is the world.
+        block: First free block of the Jacobians.
+
+    Returns:
+        Inverse mass, relative velocity, next free block, 0.
+    """
+    after = place_row(model, couplings, world, row, ends[0], ends[2], block)
+    inverse_mass = real(0.0)
+    velocity = real(0.0)
+    start = block + 0
+    for side in range(2):
+        point = point_a
+        sign = real(1.0)
+        if side == 1:
+            point = point_b
+            sign = real(-1.0)
+        found = write_jacobian(
+            model, state, scratch, couplings, world, ends[2 * side], ends[2 * side + 1], point,
+            sign * linear, sign * angular, start,
+        )  # fmt: skip
+        inverse_mass += found[0]
+        velocity += found[1]
+        start += couplings.coupling_place[world, row][1]
+    return Vector4(inverse_mass, velocity, real(after), 0.0)

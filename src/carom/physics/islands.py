@@ -1,0 +1,89 @@
+"""Islands: groups of trees that contacts or user constraints join, solved one after the other.
+
+Union-find over the trees; then each root gets linked lists of its trees, contacts and user
+constraints, in ascending order.
+"""
+
+import warp as wp
+
+from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
+from carom.model.real import Int32, func
+from carom.model.structs import Model, Settings, State
+
+_NONE = wp.constant(-1)
+
+
+@func
+def island_root(state: State, world: Int32, tree: Int32) -> Int32:
+    """Root of the island of a tree; shortens the way there."""
+    root = tree + 0
+    while state.tree_island[world, root] != root:
+        above = state.tree_island[world, root]
+        state.tree_island[world, root] = state.tree_island[world, above]
+        root = state.tree_island[world, root]
+    return root
+
+
+@func
+def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
+    """Put two trees into one island, unless one of them cannot move."""
+    if a >= 0 and b >= 0:
+        if model.tree_dof_count[a] > 0 and model.tree_dof_count[b] > 0:
+            root_a = island_root(state, world, a)
+            root_b = island_root(state, world, b)
+            state.tree_island[world, wp.max(root_a, root_b)] = wp.min(root_a, root_b)
+
+
+@func
+def moving_tree(model: Model, a: Int32, b: Int32) -> Int32:
+    """The first of two trees that can move."""
+    if a >= 0:
+        if model.tree_dof_count[a] > 0:
+            return a
+    return b
+
+
+@func
+def build_islands(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    world: Int32,
+):
+    """Join trees that touch or are tied together, and list what belongs to each island."""
+    contact_count = contacts.count_contacts[world, 0]
+    for tree in range(settings.tree_count):
+        state.tree_island[world, tree] = model.tree_batch[tree]
+    for contact in range(contact_count):
+        pair = contacts.contact_shapes[world, contact]
+        unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
+    for user in range(settings.user_count):
+        unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
+
+    for tree in range(settings.tree_count):
+        state.tree_island[world, tree] = island_root(state, world, tree)
+        couplings.tree_first_tree[world, tree] = _NONE
+        couplings.tree_first_contact[world, tree] = _NONE
+        couplings.tree_first_user[world, tree] = _NONE
+    for i in range(settings.tree_count):
+        tree = model.order_tree[settings.tree_count - 1 - i]
+        root = state.tree_island[world, tree]
+        couplings.tree_next_tree[world, tree] = couplings.tree_first_tree[world, root]
+        couplings.tree_first_tree[world, root] = tree
+    for i in range(contact_count):
+        contact = contact_count - 1 - i
+        pair = contacts.contact_shapes[world, contact]
+        tree = moving_tree(model, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
+        root = state.tree_island[world, tree]
+        couplings.contact_next[world, contact] = couplings.tree_first_contact[world, root]
+        couplings.tree_first_contact[world, root] = contact
+    for i in range(settings.user_count):
+        user = settings.user_count - 1 - i
+        tree = moving_tree(model, users.user_tree_a[user], users.user_tree_b[user])
+        root = state.tree_island[world, tree]
+        couplings.user_next[world, user] = couplings.tree_first_user[world, root]
+        couplings.tree_first_user[world, root] = user

@@ -1,0 +1,149 @@
+"""One sweep of projected Gauss-Seidel over the rows of an island, group by group."""
+
+import warp as wp
+
+from carom.model.codes import (
+    LATERAL_ROW,
+    NORMAL_ROW,
+    PLACE_BLOCKS,
+    PLACE_DELTA,
+    PLACE_ENTRY,
+    PLACE_RESPONSE,
+    ROW_EFFECTIVE_MASS,
+    ROW_FRICTION,
+    ROW_IMPULSE,
+    ROW_INVERSE_MASS,
+    ROW_LOWER,
+    ROW_SHARE,
+    ROW_UPPER,
+    SPINNING_ROW,
+)
+from carom.model.contact_structs import Couplings
+from carom.model.real import Int32, func, real
+from carom.model.structs import Scratch, Settings
+from carom.physics.couplings import relax_coupling, relax_in_circle, relax_within
+
+
+@func
+def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
+    """Bring one row to its target as far as its bounds allow; returns the change of its velocity."""
+    terms = scratch.row_terms[world, row]
+    place = scratch.row_place[world, row]
+    before = terms[ROW_IMPULSE]
+    # The order of operations keeps the chain from one row to the next short.
+    already = scratch.entry_delta_velocity[world, place[PLACE_ENTRY]] * terms[ROW_EFFECTIVE_MASS]
+    after = (before + terms[ROW_SHARE]) - already
+    if after < terms[ROW_LOWER]:
+        after = terms[ROW_LOWER]
+    if after > terms[ROW_UPPER]:
+        after = terms[ROW_UPPER]
+    change = after - before
+    scratch.row_terms[world, row][ROW_IMPULSE] = after
+
+    delta = place[PLACE_DELTA]
+    response = place[PLACE_RESPONSE]
+    end = delta + place[PLACE_BLOCKS]
+    while delta < end:
+        scratch.delta_velocity[world, delta] += change * scratch.block_inverse_mass[world, response]
+        delta += 1
+        response += 1
+    return change * terms[ROW_INVERSE_MASS]
+
+
+@func
+def joint_sweep(
+    settings: Settings,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    row_count: Int32,
+    user_rows: Int32,
+    sweep: Int32,
+) -> real:
+    """Relax motors, limits and user constraints once; returns the greatest change squared."""
+    residual = real(0.0)
+    for _inner in range(settings.inner_iterations):
+        residual = real(0.0)
+        for i in range(row_count + user_rows):
+            row = i
+            if sweep % 2 == 0:
+                row = row_count + user_rows - 1 - i
+            change = real(0.0)
+            if row < row_count:
+                change = relax_row(scratch, world, row)
+            else:
+                change = relax_coupling(scratch, couplings, world, row - row_count)
+            if change * change > residual:
+                residual = change * change
+    return residual
+
+
+@func
+def normal_sweep(scratch: Scratch, couplings: Couplings, world: Int32, first_contact: Int32) -> real:
+    """Relax the normal rows of an island's contacts once; returns the greatest change squared."""
+    residual = real(0.0)
+    contact = first_contact + 0
+    while contact >= 0:
+        change = relax_coupling(scratch, couplings, world, couplings.contact_rows[world, contact][NORMAL_ROW])
+        if change * change > residual:
+            residual = change * change
+        contact = couplings.contact_next[world, contact]
+    return residual
+
+
+@func
+def friction_bound(couplings: Couplings, world: Int32, row: Int32) -> real:
+    """Greatest impulse of a friction row: its coefficient times the normal impulse."""
+    normal = couplings.coupling_bound[world, row]
+    return (
+        couplings.coupling_terms[world, row][ROW_FRICTION]
+        * couplings.coupling_terms[world, normal][ROW_IMPULSE]
+    )
+
+
+@func
+def friction_sweep(
+    settings: Settings,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    first_contact: Int32,
+    kind: Int32,
+) -> real:
+    """Relax the spinning, rolling or lateral rows of an island's contacts; returns as `normal_sweep`."""
+    residual = real(0.0)
+    contact = first_contact + 0
+    while contact >= 0:
+        row = couplings.contact_rows[world, contact][kind]
+        if row >= 0:
+            bound = friction_bound(couplings, world, row)
+            in_circle = settings.cone_friction != 0 and kind != SPINNING_ROW
+            change = real(0.0)
+            if in_circle and (bound > 0.0 or kind == LATERAL_ROW):
+                change = relax_in_circle(scratch, couplings, world, row, bound)
+            elif not in_circle and bound > 0.0:
+                last = row + 1
+                if kind == SPINNING_ROW:
+                    last = row + 0
+                while row <= last:
+                    change = wp.max(
+                        wp.abs(change), wp.abs(relax_within(scratch, couplings, world, row, bound))
+                    )
+                    row += 1
+            residual = wp.max(residual, change * change)
+        contact = couplings.contact_next[world, contact]
+    return residual
+
+
+@func
+def contact_sweep(
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, first_contact: Int32
+) -> real:
+    """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction."""
+    residual = normal_sweep(scratch, couplings, world, first_contact)
+    for kind in range(3):
+        # SPINNING_ROW, ROLLING_ROW, LATERAL_ROW
+        residual = wp.max(
+            residual, friction_sweep(settings, scratch, couplings, world, first_contact, SPINNING_ROW - kind)
+        )
+    return residual
