@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, overload
 
+from carom.description.transform import multiplied, quaternion_from_rpy
 from pybullet._arguments import Vector, integer, numbers
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail
 from pybullet._lookup import no_body
-from pybullet._maths import getQuaternionFromEuler
+from pybullet._maths import Quaternion, getEulerFromQuaternion, getQuaternionFromEuler
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -25,6 +26,8 @@ Matrix = tuple[tuple[float, ...], ...]
 
 _FULL_MODEL = 1
 _BASE_POSITIONS, _BASE_VELOCITIES = 7, 6
+# PyBullet takes the inertial frame of a fixed base to be parallel to the world, whatever it is.
+_NOT_TURNED = (0.0, 0.0, 0.0, 1.0)
 _INVERSE_DYNAMICS = "Error in calculateInverseDynamics, please check arguments."
 _INVERSE_DYNAMICS_SIZES = (
     "calculateInverseDynamics numDofs needs to be positive and [joint velocities] and[joint accelerations] "
@@ -75,6 +78,10 @@ def calculateInverseDynamics(
     that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw for its
     position. With a floating base the base comes first: in positions as position (3) and quaternion (4),
     in velocities, accelerations and forces as six numbers.
+
+    Gravity is PyBullet's: the base's inertial frame counts as parallel to the world when the base is
+    fixed, and turns by yaw, pitch and roll in the wrong order when it floats. So for a base that is turned
+    the forces that bear the weight are wrong; those of `carom.algorithms.inverse_dynamics` are right.
 
     Args:
         bodyUniqueId: The body.
@@ -132,9 +139,11 @@ def calculateInverseDynamics(
     from carom.algorithms import inverse_dynamics
 
     base = q[: positions - sum(body.velocity_count)]
-    _check_rotation(base[3:], _INVERSE_DYNAMICS)
-    joints = _joint_positions(body, q[len(base) :])
-    return tuple(inverse_dynamics(body, (*base, *joints), qd, qdd).tolist())
+    joints = joint_coordinates(body, q[len(base) :])
+    if floating:
+        _check_rotation(base[3:], _INVERSE_DYNAMICS)
+        joints = (*base[:3], *_turned_in_opposite_order(base[3:]), *joints)
+    return tuple(inverse_dynamics(body, joints, qd, qdd, base_orientation=_NOT_TURNED).tolist())
 
 
 @exported
@@ -238,7 +247,7 @@ def calculateMassMatrix(
 
     from carom.algorithms import mass_matrix
 
-    return _rows(mass_matrix(body, _joint_positions(body, q[:needed])))
+    return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
 
 
 def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
@@ -248,7 +257,20 @@ def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
     return body
 
 
-def _joint_positions(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
+def _turned_in_opposite_order(quaternion: tuple[float, ...]) -> Quaternion:
+    """What PyBullet's inverse dynamics makes of the orientation of a floating base.
+
+    It takes it apart into roll, pitch and yaw and puts these together the other way round. Only gravity
+    feels it, and only if the base is turned about more than one axis.
+    """
+    roll, pitch, yaw = getEulerFromQuaternion(quaternion)
+    about_x, about_y, about_z = (
+        quaternion_from_rpy(*angles) for angles in ((roll, 0.0, 0.0), (0.0, pitch, 0.0), (0.0, 0.0, yaw))
+    )
+    return multiplied(multiplied(about_x, about_y), about_z)
+
+
+def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
     """Positions as the engine has them: quaternions of spherical joints instead of three angles."""
     if JOINT_SPHERICAL not in body.joint_types:
         return values

@@ -114,3 +114,16 @@ def test_gravity_changed_later_counts():
     assert inverse_dynamics(body, [1.0], [0.0], [0.0])[0] == 0.0
     world.gravity = (0.0, 0.0, -1.0)
     assert_allclose(inverse_dynamics(body, [1.0], [0.0], [0.0]), [math.sin(1.0)], rtol=1e-14)
+
+
+def test_a_fixed_base_can_be_taken_to_be_turned_otherwise():
+    turn = [0.0, math.sin(0.4), 0.0, math.cos(0.4)]
+    spec = random_tree(3, 5, fixed_base=True)
+    turned, level = World(), World()
+    turned.gravity = level.gravity = GRAVITY
+    one, other = turned.load(spec, orientation=turn), level.load(spec)
+    rest = np.zeros(sum(one.velocity_count))
+    position = coordinates(one)[0][7:]
+    as_if_level = inverse_dynamics(one, position, rest, rest, base_orientation=coordinates(other)[0][3:7])
+    assert_allclose(as_if_level, inverse_dynamics(other, position, rest, rest), rtol=0, atol=1e-12)
+    assert np.abs(as_if_level - inverse_dynamics(one, position, rest, rest)).max() > 0.01

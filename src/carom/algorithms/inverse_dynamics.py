@@ -19,6 +19,7 @@ def inverse_dynamics(
     positions: Sequence[float] | np.ndarray,
     velocities: Sequence[float] | np.ndarray,
     accelerations: Sequence[float] | np.ndarray,
+    base_orientation: Sequence[float] | None = None,
 ) -> np.ndarray:
     """Generalized forces that give a body the stated accelerations, by recursive Newton-Euler.
 
@@ -31,6 +32,8 @@ def inverse_dynamics(
         velocities: Joint rates, shape (n,); of a free body, angular (3) and linear (3) velocity of
             the base along its own axes before them.
         accelerations: Their derivatives, shape as `velocities`; the base's along its own axes.
+        base_orientation: How a fixed base is taken to be turned, quaternion of its inertial frame;
+            None for how it is.
 
     Returns:
         Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base
@@ -41,6 +44,8 @@ def inverse_dynamics(
     if body.fixed_base:
         first = body.first_position
         at.base_position[:] = body.world.position[first : first + 7]
+        if base_orientation is not None:
+            at.base_position[3:] = base_orientation
         at.joint_position[:] = positions
         at.velocity[6:] = velocities
         at.acceleration[6:] = accelerations
