@@ -89,6 +89,9 @@ NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 # of its response to an impulse, first block of the tree's change of velocity, number of blocks.
 PLACE_ENTRY, PLACE_RESPONSE, PLACE_DELTA, PLACE_BLOCKS = 0, 1, 2, 3
 
+# Columns of a contact candidate (`Pairs.candidate_terms`): point on shape b, normal on b, distance.
+CANDIDATE_POINT, CANDIDATE_NORMAL, CANDIDATE_DISTANCE = 0, 3, 6
+
 # Kernels read codes as Warp constants.
 REVOLUTE = wp.constant(int(JointCode.REVOLUTE))
 PRISMATIC = wp.constant(int(JointCode.PRISMATIC))
@@ -99,6 +102,14 @@ MOTOR = wp.constant(int(ConstraintKind.MOTOR))
 LIMIT = wp.constant(int(ConstraintKind.LIMIT))
 SPHERICAL_MOTOR = wp.constant(int(ConstraintKind.SPHERICAL_MOTOR))
 SPHERICAL_LIMIT = wp.constant(int(ConstraintKind.SPHERICAL_LIMIT))
+SPHERE = wp.constant(int(ShapeKind.SPHERE))
+BOX = wp.constant(int(ShapeKind.BOX))
+CAPSULE = wp.constant(int(ShapeKind.CAPSULE))
+CYLINDER = wp.constant(int(ShapeKind.CYLINDER))
+PLANE = wp.constant(int(ShapeKind.PLANE))
+HULL = wp.constant(int(ShapeKind.HULL))
+TRIANGLES = wp.constant(int(ShapeKind.TRIANGLES))
+HEIGHTFIELD = wp.constant(int(ShapeKind.HEIGHTFIELD))
 
 USER_PRISMATIC = wp.constant(int(UserConstraintKind.PRISMATIC))
 USER_FIXED = wp.constant(int(UserConstraintKind.FIXED))

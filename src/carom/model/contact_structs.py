@@ -10,6 +10,7 @@ from carom.model.real import (
     Index4Rows,
     IntRows,
     Ints,
+    Matrix3Rows,
     Quaternions,
     RealRows,
     Reals,
@@ -39,14 +40,21 @@ class Shapes:
     shape_vertex_count: Ints
     shape_first_face: Ints
     shape_face_count: Ints
+    shape_center: Vectors3  # of the bounds in the shape frame; of hulls, triangle meshes, height fields
+    shape_columns: Ints  # points in one row of a height field
+    shape_first_node: Ints  # of a triangle mesh's hierarchy, see `triangle_hierarchy`
+    shape_leaf_count: Ints  # leaves of that hierarchy; a power of two
 
     # Polyhedra: vertices in the shape frame; faces with their outward planes (n, d), n x = d, and
     # their corners counter-clockwise as seen from outside. A triangle mesh's faces are its triangles.
+    # The vertices of a height field are its grid points row by row, x fastest.
     vertex_position: Vectors3
     face_plane: Vectors4
     face_first_corner: Ints
     face_corner_count: Ints
     corner_vertex: Ints
+    node_lower: Vectors3  # bounds in the shape frame
+    node_upper: Vectors3
 
     link_first_shape: Ints
     link_shape_count: Ints
@@ -69,12 +77,50 @@ class Shapes:
 
 @wp.struct
 class Pairs:
-    """Intermediate results of collision detection."""
+    """Intermediate results of collision detection; `collision.capacity` says how long they must be."""
 
-    shape_lower: Vector3Rows  # bounds in world axes
+    shape_position: Vector3Rows  # of the shape frame, in world axes
+    shape_frame: Matrix3Rows  # its rotation matrix
+    shape_lower: Vector3Rows  # bounds in world axes, without any threshold
     shape_upper: Vector3Rows
-    pair_shapes: Index4Rows  # shape a, shape b, 0, 0
-    count_pairs: IntRows  # its first entry; more than the capacity of `pair` means overflow
+    shape_code: IntRows  # place along a space-filling curve
+    shape_order: IntRows  # shapes sorted by it
+    shape_sorted: IntRows  # the same halfway through a sort
+    shape_pair_end: IntRows  # end of the pairs whose first shape it is
+
+    # Bounds of the hierarchy over `shape_order`; node 1 is the root, nodes 2n and 2n + 1 are below n.
+    node_lower: Vector3Rows
+    node_upper: Vector3Rows
+    bucket_end: IntRows  # of a radix sort
+
+    pair_shapes: Index4Rows  # shape a, shape b, 0, 0; sorted
+    pair_found: Index4Rows  # the same as found
+
+    candidate_terms: Vector8Rows  # see the CANDIDATE_ columns in `codes`
+    polygon_a: Vector3Rows  # corners of touching faces
+    polygon_b: Vector3Rows
+    polygon_clipped: Vector3Rows
+    polytope_point: Vector3Rows  # difference of a point of shape a and one of shape b
+    polytope_point_a: Vector3Rows
+    polytope_plane: Vector4Rows  # of a face: outward normal, distance from the origin
+    polytope_face: Index4Rows  # its corners, and 1 if it is in use
+    polytope_edge: Index4Rows  # edges of the hole where a new corner goes
+
+    # The contacts of the last step.
+    previous_shapes: Index4Rows
+    previous_local_a: Vector3Rows
+    previous_local_b: Vector3Rows
+    previous_point_a: Vector3Rows
+    previous_point_b: Vector3Rows
+    previous_normal: Vector3Rows
+    previous_direction1: Vector3Rows
+    previous_direction2: Vector3Rows
+    previous_distance: RealRows
+    previous_impulse: Vector4Rows
+    previous_age: IntRows
+
+    # Its first entries: pairs found, leaves of the hierarchy, shapes in it.
+    count_pairs: IntRows
 
 
 @wp.struct

@@ -103,8 +103,7 @@ class _RealLiterals(ast.NodeTransformer):
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 
-def func(function: _F) -> _F:
-    """Make `function` callable from kernels."""
+def _warp_function(function: _F, inline_hint: str) -> _F:
     function.__globals__.setdefault("real", real)
     module = wp.get_module(function.__module__)
     key = function.__qualname__
@@ -116,10 +115,26 @@ def func(function: _F) -> _F:
         doc=function.__doc__ or "",
         code_transformers=[_RealLiterals()],
         scope_locals={},
-        # Warp passes structs by value; only inlined calls spare copying all their arrays.
-        inline_hint="forceinline",
+        inline_hint=inline_hint,
     )
     return functools.update_wrapper(module.functions[key], function)  # type: ignore[return-value]
+
+
+def func(function: _F) -> _F:
+    """Make `function` callable from kernels, inlined wherever it is called.
+
+    Warp passes structs by value; only inlined calls spare copying all their arrays.
+    """
+    return _warp_function(function, "forceinline")
+
+
+def shared_func(function: _F) -> _F:
+    """Make `function` callable from kernels, compiled once and called.
+
+    For long functions with several callers, which inlining would multiply. Their arguments should be
+    numbers, vectors and a few arrays: see `func`.
+    """
+    return _warp_function(function, "noinline")
 
 
 def kernel(function: _F) -> _F:

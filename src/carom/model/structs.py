@@ -52,6 +52,9 @@ class Settings:
     feedback_in_joint: Int32
     tree_count: Int32
     user_count: Int32
+    shape_count: Int32
+    filter_count: Int32  # entries of `Shapes.filter_link_a`
+    filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
 
 
 @wp.struct
