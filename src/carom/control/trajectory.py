@@ -85,7 +85,7 @@ class TrapezoidalTrajectory:
         # Bounds on the rate and acceleration of the share of the way done, which all joints have in common.
         slowest = float(np.max(distance / velocity, initial=0.0))
         laziest = float(np.max(distance / acceleration, initial=0.0))
-        if slowest == 0.0:
+        if min(slowest, laziest) < np.finfo(np.float64).tiny:
             self.ramp = self.duration = 0.0
             self._acceleration = 0.0
             return
