@@ -50,9 +50,9 @@ class Shapes:
     # The vertices of a height field are its grid points row by row, x fastest.
     vertex_position: Vectors3
     face_plane: Vectors4
-    face_first_corner: Ints
+    face_first_corner: Ints  # row of `corner_vertex`
     face_corner_count: Ints
-    corner_vertex: Ints
+    corner_vertex: Ints  # row of `vertex_position`
     node_lower: Vectors3  # bounds in the shape frame
     node_upper: Vectors3
 
@@ -175,18 +175,16 @@ class Couplings:
     entry_row: RealRows
     entry_response: RealRows
 
-    tree_first_tree: IntRows  # islands as linked lists; the lists of an island start at its root
-    tree_next_tree: IntRows
+    tree_first_constraint: IntRows  # islands as linked lists that start at their root
     tree_first_contact: IntRows
-    tree_first_user: IntRows
+    constraint_next: IntRows
     contact_next: IntRows
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )
-    user_next: IntRows
     user_impulse: Vector6Rows  # of the last substep, by row of the constraint
     user_first_row: IntRows
-    count_overflow: IntRows  # its first two entries: rows and blocks that did not fit
+    visit_row: IntRows  # rows of motors, limits and user constraints in their order: -1 - row of the latter
 
 
 # Couplings that show another array's blocks entry by entry.
