@@ -1,0 +1,76 @@
+"""Memory stays the same, however long a world runs and however many bodies come and go."""
+
+import gc
+import sys
+from collections.abc import Callable
+
+import pytest
+from tests.physics.robots import pendulum, random_tree
+
+from carom import World
+from carom.algorithms import inverse_dynamics, jacobian, mass_matrix
+
+# Peak memory is counted in pages and taken in chunks. A leak of 10 kB per round would show.
+SOME_CHUNKS = 2**20
+
+
+def peak_memory() -> int:
+    """The most memory this process has held so far, in bytes."""
+    resource = pytest.importorskip("resource")
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else 1024 * peak
+
+
+def assert_leaves_nothing_behind(work: Callable[[], object], rounds: int) -> None:
+    """Neither objects nor memory stay when `work` is done many times."""
+    for _ in range(10):
+        work()
+    gc.collect()
+    memory, objects = peak_memory(), len(gc.get_objects())
+    for _ in range(rounds):
+        work()
+    gc.collect()
+    assert len(gc.get_objects()) - objects < rounds / 10
+    assert peak_memory() - memory < SOME_CHUNKS
+
+
+def test_steps_leave_nothing_behind():
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    world.load(pendulum(3))
+    assert_leaves_nothing_behind(lambda: world.step(200), rounds=100)
+
+
+def test_loading_and_removing_leaves_nothing_behind():
+    world = World()
+    world.load(pendulum(2))
+    arm, tree = pendulum(4), random_tree(1, 6, fixed_base=False)
+
+    def cycle() -> None:
+        bodies = [world.load(arm), world.load(tree)]
+        world.step()
+        bodies[1].set_joint_state(0, [0.1] * bodies[1].position_count[0], None)
+        inverse_dynamics(bodies[0], [0.0] * 4, [0.0] * 4, [0.0] * 4)
+        mass_matrix(bodies[0], [0.0] * 4)
+        jacobian(bodies[0], 3, (0.0, 0.0, 0.0), [0.0] * 4)
+        for body in bodies:
+            world.remove(body.id)
+
+    assert_leaves_nothing_behind(cycle, rounds=300)
+    capacity = [dict(table.capacity) for table in world.arrays.tables]
+    cycle()
+    assert [dict(table.capacity) for table in world.arrays.tables] == capacity
+
+
+def test_resets_and_new_worlds_leave_nothing_behind():
+    world = World()
+
+    def cycle() -> None:
+        world.reset()
+        world.load(pendulum(2))
+        world.step()
+        with World() as other:
+            other.load(pendulum(2))
+            other.step()
+
+    assert_leaves_nothing_behind(cycle, rounds=100)
