@@ -15,11 +15,12 @@ from carom.model.solver_order import IslandTags, batch_islands, quicksort_order,
 
 if TYPE_CHECKING:
     from carom.body import Body
+    from carom.user_constraints import UserConstraint
 
 
 @dataclass(slots=True, eq=False)
 class JointConstraint:
-    """A motor or a limit on one joint.
+    """A motor or a limit on one joint, or a constraint that users created.
 
     Attributes:
         body: The body it acts on.
@@ -28,6 +29,7 @@ class JointConstraint:
         lower: Lower limit; swing range about x of a spherical joint [rad or m].
         upper: Upper limit; swing range about y of a spherical joint [rad or m].
         twist: Twist range of a spherical joint [rad].
+        user: The constraint users created, if it is one.
         max_impulse: Greatest impulse of a limit per substep.
     """
 
@@ -37,7 +39,14 @@ class JointConstraint:
     lower: float = 0.0
     upper: float = 0.0
     twist: float = 0.0
+    user: UserConstraint | None = None
     max_impulse: float = DEFAULT_LIMIT_IMPULSE
+
+    @property
+    def moving_body(self) -> Body:
+        """The body, or where that cannot move, the other one of a user constraint."""
+        other = None if self.user is None else self.user.child
+        return other if other is not None and not any(moving_links(self.body)) else self.body
 
 
 class JointConstraints:
@@ -77,7 +86,7 @@ class JointConstraints:
     def remove_body(self, body: Body) -> None:
         """Remove the constraints of a body, the last first."""
         for constraint in reversed(self._constraints.copy()):
-            if constraint.body is body:
+            if constraint.body is body or (constraint.user is not None and constraint.user.child is body):
                 remove_unordered(self._constraints, constraint)
         self._tags.remove(body.id, 1 + body.joint_count)
 
@@ -91,6 +100,43 @@ class JointConstraints:
             self._constraints.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
         else:
             limit.lower, limit.upper = lower, upper
+
+    def add_user(self, user: UserConstraint) -> None:
+        """Append a constraint that a user creates."""
+        self._constraints.append(
+            JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user)
+        )
+
+    def remove_user(self, user: UserConstraint) -> None:
+        """Remove a constraint that a user created."""
+        remove_unordered(self._constraints, next(c for c in self._constraints if c.user is user))
+
+    def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
+        """Constraints that can act, and the island of each.
+
+        A constraint between two bodies makes their islands one; one between two fixed bodies does
+        nothing.
+        """
+        tags = self._tags.tags()
+        above = {tag: tag for tag in tags.values()}
+
+        def root(tag: int) -> int:
+            while above[tag] != tag:
+                tag = above[tag]
+            return tag
+
+        for constraint in self._constraints:
+            user = constraint.user
+            if (
+                user is not None
+                and user.child is not None
+                and user.child.id in tags
+                and user.parent.id in tags
+            ):
+                parent, child = root(tags[user.parent.id]), root(tags[user.child.id])
+                above[parent] = child
+        active = [constraint for constraint in self._constraints if constraint.moving_body.id in tags]
+        return active, [root(tags[constraint.moving_body.id]) for constraint in active]
 
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
@@ -107,45 +153,47 @@ class JointConstraints:
         """Number the islands anew after the base of a body was freed or held."""
         self._tags.move_base_to_end(body.id, moving_links(body))
 
-    def write(self, arrays: WorldArrays, minimum_island_size: int) -> bool:
+    def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> bool:
         """Write the sorted constraints, and which trees are solved together, to the model.
 
         Args:
             arrays: Where to.
+            user_rows: Row of each user constraint, by number.
             minimum_island_size: Islands are solved together until they have more constraints.
 
         Returns:
             Whether arrays were replaced.
         """
-        tags = self._tags.tags()
-        keys = [tags[constraint.body.id] for constraint in self._constraints]
+        constraints, keys = self._by_island()
         order = quicksort_order(keys)
         islands = batch_islands([keys[i] for i in order], minimum_island_size)
-        ordered = [self._constraints[i] for i in order]
+        ordered = [constraints[i] for i in order]
+        users = [constraint.user for constraint in ordered if constraint.user is not None]
         arrays.used["constraint"] = arrays.used["row"] = 0
         count = len(ordered)
         grown = arrays.reserve(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
         arrays.used.update(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
         model = arrays.model.numpy
-        trees = [constraint.body.rows.tree for constraint in ordered]
+        trees = [constraint.moving_body.rows.tree for constraint in ordered]
         model["constraint_kind"][:count] = [constraint.kind for constraint in ordered]
         model["constraint_tree"][:count] = trees
         model["constraint_link"][:count] = [
-            constraint.body.first_link + 1 + constraint.joint for constraint in ordered
+            constraint.body.first_link + 1 + constraint.joint
+            if constraint.user is None
+            else user_rows[constraint.user.id]
+            for constraint in ordered
         ]
         for name in ("lower", "upper", "twist", "max_impulse"):
             model[f"constraint_{name}"][:count] = [getattr(constraint, name) for constraint in ordered]
 
         tree_count = arrays.used["tree"]
-        model["tree_constraint_count"][:tree_count] = np.bincount(trees, minlength=tree_count)
+        model["tree_constraint_count"][:tree_count] = np.bincount(
+            [*trees, *(user.child.rows.tree for user in users if user.child is not None)],
+            minlength=tree_count,
+        )
         model["tree_batch"][:tree_count] = np.arange(tree_count)
-        for i in range(count - 1, -1, -1):
-            model["tree_first_constraint"][trees[i]] = i
         for first, length in islands:
             model["tree_batch"][trees[first : first + length]] = min(trees[first : first + length])
-        constrained = list(dict.fromkeys(trees))
-        free = [tree for tree in range(tree_count) if tree not in set(constrained)]
-        model["order_tree"][:tree_count] = [*constrained, *free]
         return grown
 
 

@@ -13,11 +13,12 @@ import numpy as np
 from carom.algorithms.query import QuerySpace
 from carom.body import Body
 from carom.constraints import JointConstraints, moving_links
-from carom.description.pose import Pose
+from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
 from carom.errors import SimulationError
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
+from carom.model.codes import UserConstraintKind
 from carom.model.launch import Launch
 from carom.model.structs import Settings
 from carom.model.touch_arrays import TouchArrays
@@ -25,6 +26,7 @@ from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kerne
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.physics.quarantine import OVERFLOW
 from carom.physics.step import step_kernel
+from carom.user_constraints import UserConstraint, UserConstraints
 
 _DEVICE = "cpu"
 _SUBSTEPS_ARGUMENT = 8
@@ -86,6 +88,7 @@ class World:
         self.arrays = WorldArrays()
         self.touch = TouchArrays(self.arrays, _DEVICE)
         self.constraints = JointConstraints()
+        self.user_constraints = UserConstraints()
         self._free_ids: list[int] = []
         self._next_id = 0
         self._unspent_time = 0.0
@@ -174,6 +177,7 @@ class World:
         """
         body = self.bodies.pop(body_id)
         self.constraints.remove_body(body)
+        self.user_constraints.remove_body(body)
         self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
         for other in self.bodies.values():
             other.relocate()
@@ -187,6 +191,32 @@ class World:
         kept = self.parameters
         self.parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
         self._start_empty()
+
+    def tie(
+        self,
+        kind: UserConstraintKind,
+        parent: Body,
+        parent_link: int,
+        child: Body | None,
+        child_link: int,
+        *,
+        axis: Vector3 = (0.0, 0.0, 0.0),
+        parent_frame: Pose = IDENTITY,
+        child_frame: Pose = IDENTITY,
+    ) -> UserConstraint:
+        """Tie a link to another, or to the world; see `UserConstraint` for the arguments."""
+        constraint = self.user_constraints.add(
+            kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
+        )
+        self.constraints.add_user(constraint)
+        self.constraints_changed()
+        return constraint
+
+    def untie(self, constraint: UserConstraint) -> None:
+        """Remove a constraint made by `tie`."""
+        self.user_constraints.remove(constraint.id)
+        self.constraints.remove_user(constraint)
+        self.constraints_changed()
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Let the base of a body move, or hold it where it is."""
@@ -248,8 +278,10 @@ class World:
 
     def _prepare_step(self) -> Callable[[], None]:
         """The function that performs one step with the bodies and parameters there are."""
-        if self.constraints.write(self.arrays, self.parameters.minimum_island_size):
+        user_rows = self.user_constraints.rows
+        if self.constraints.write(self.arrays, user_rows, self.parameters.minimum_island_size):
             self._take_arrays()
+        self.user_constraints.write(self.touch)
         launch = Launch(step_kernel, 1, [self._settings(), *self._structs, *self.touch.structs(), 1], _DEVICE)
         if self.parameters.substeps > 1:
             self._step = partial(self._step_in_parts, launch)
@@ -286,6 +318,7 @@ class World:
         settings.feedback_in_joint = p.joint_feedback_mode >> 1 & 1
         settings.tree_count = self.arrays.used["tree"]
         settings.user_count = self.touch.user_count
+        settings.constraint_count = self.arrays.used["constraint"]
         settings.contact_erp = p.contact_erp
         settings.friction_erp = p.friction_erp
         settings.contact_softness = p.global_cfm

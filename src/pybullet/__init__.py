@@ -14,12 +14,14 @@ from pybullet._bodies import *
 from pybullet._camera_maths import *
 from pybullet._connection import *
 from pybullet._constants import *
+from pybullet._constraints import *
 from pybullet._debug_drawing import *
 from pybullet._dynamics import *
 from pybullet._engine import *
 from pybullet._errors import error as error
 from pybullet._forces import *
 from pybullet._gui import *
+from pybullet._inverse_kinematics import *
 from pybullet._joints import *
 from pybullet._links import *
 from pybullet._loading import *

@@ -16,14 +16,10 @@ from pybullet._errors import fail
 
 __all__ = [
     "addUserData",
-    "calculateInverseKinematics",
-    "calculateInverseKinematics2",
-    "changeConstraint",
     "changeTexture",
     "changeVisualShape",
     "createCollisionShape",
     "createCollisionShapeArray",
-    "createConstraint",
     "createMultiBody",
     "createSoftBodyAnchor",
     "createVisualShape",
@@ -33,12 +29,8 @@ __all__ = [
     "getCameraImage",
     "getClosestPoints",
     "getCollisionShapeData",
-    "getConstraintInfo",
-    "getConstraintState",
-    "getConstraintUniqueId",
     "getContactPoints",
     "getMeshData",
-    "getNumConstraints",
     "getNumUserData",
     "getOverlappingObjects",
     "getTetraMeshData",
@@ -56,7 +48,6 @@ __all__ = [
     "rayTest",
     "rayTestBatch",
     "removeCollisionShape",
-    "removeConstraint",
     "removeState",
     "removeUserData",
     "renderImage",
@@ -151,22 +142,6 @@ startStateLogging = _later(
 stopStateLogging = _later("stopStateLogging", "loggingId, physicsClientId=0")
 getAABB = _later("getAABB", "bodyUniqueId, linkIndex=-1, physicsClientId=0")
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
-createConstraint = _later(
-    "createConstraint",
-    "parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis, "
-    "parentFramePosition, childFramePosition, parentFrameOrientation=None, childFrameOrientation=None, "
-    "physicsClientId=0",
-)
-changeConstraint = _later(
-    "changeConstraint",
-    "userConstraintUniqueId, jointChildPivot=None, jointChildFrameOrientation=None, maxForce=-1, "
-    "gearRatio=0, gearAuxLink=-1, relativePositionTarget=1e32, erp=-1, physicsClientId=0",
-)
-removeConstraint = _later("removeConstraint", "userConstraintUniqueId, physicsClientId=0")
-getNumConstraints = _later("getNumConstraints", "physicsClientId=0")
-getConstraintUniqueId = _later("getConstraintUniqueId", "serialIndex, physicsClientId=0")
-getConstraintInfo = _later("getConstraintInfo", "constraintUniqueId, physicsClientId=0")
-getConstraintState = _later("getConstraintState", "constraintUniqueId, physicsClientId=0")
 createCollisionShape = _later(
     "createCollisionShape",
     "shapeType, radius=0.5, halfExtents=None, height=1, fileName=None, meshScale=None, "
@@ -264,18 +239,6 @@ resetVisualShapeData = _later(
 )
 getVisualShapeData = _later("getVisualShapeData", "objectUniqueId, flags=0, physicsClientId=0")
 getCollisionShapeData = _later("getCollisionShapeData", "objectUniqueId, linkIndex, physicsClientId=0")
-calculateInverseKinematics = _later(
-    "calculateInverseKinematics",
-    "bodyUniqueId, endEffectorLinkIndex, targetPosition, targetOrientation=None, lowerLimits=None, "
-    "upperLimits=None, jointRanges=None, restPoses=None, jointDamping=None, solver=0, "
-    "currentPositions=None, maxNumIterations=-1, residualThreshold=-1, physicsClientId=0",
-)
-calculateInverseKinematics2 = _later(
-    "calculateInverseKinematics2",
-    "bodyUniqueId, endEffectorLinkIndices, targetPositions, lowerLimits=None, upperLimits=None, "
-    "jointRanges=None, restPoses=None, jointDamping=None, solver=0, currentPositions=None, "
-    "maxNumIterations=-1, residualThreshold=-1, physicsClientId=0",
-)
 addUserData = _later(
     "addUserData",
     "bodyUniqueId, key, value, linkIndex=-1, visualShapeIndex=-1, physicsClientId=0",

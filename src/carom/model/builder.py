@@ -69,7 +69,7 @@ class WorldArrays:
         self.state = ArrayTable(State, world_count)
         self.scratch = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.used = dict.fromkeys(
-            ("tree", "order", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
+            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
         )
 
     @property
@@ -100,7 +100,6 @@ class WorldArrays:
         blocks = (dofs + 3) // 4
         count = {
             "tree": 1,
-            "order": 1,
             "link": 1 + len(spec.links),
             "position": BASE_POSITIONS + sum(POSITION_COUNT[code] for code in codes),
             "dof": dofs,
@@ -128,7 +127,6 @@ class WorldArrays:
         model["tree_first_block"][tree] = first["block"]
         model["tree_first_delta"][tree] = first["delta"]
         model["tree_sensor_count"][tree] = 0
-        model["tree_first_constraint"][tree] = 0
         model["tree_constraint_count"][tree] = 0
         model["tree_batch"][tree] = tree
         model["tree_linear_damping"][tree] = DEFAULT_LINK_DAMPING

@@ -20,12 +20,13 @@ class JointCode(IntEnum):
 
 
 class ConstraintKind(IntEnum):
-    """Constraints that act on the joints of one tree."""
+    """Constraints that act on the joints of one tree, and those that users create."""
 
     MOTOR = 0
     LIMIT = 1
     SPHERICAL_MOTOR = 2
     SPHERICAL_LIMIT = 3
+    USER = 4
 
 
 class UserConstraintKind(IntEnum):
@@ -102,6 +103,7 @@ MOTOR = wp.constant(int(ConstraintKind.MOTOR))
 LIMIT = wp.constant(int(ConstraintKind.LIMIT))
 SPHERICAL_MOTOR = wp.constant(int(ConstraintKind.SPHERICAL_MOTOR))
 SPHERICAL_LIMIT = wp.constant(int(ConstraintKind.SPHERICAL_LIMIT))
+USER = wp.constant(int(ConstraintKind.USER))
 SPHERE = wp.constant(int(ShapeKind.SPHERE))
 BOX = wp.constant(int(ShapeKind.BOX))
 CAPSULE = wp.constant(int(ShapeKind.CAPSULE))

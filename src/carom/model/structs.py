@@ -52,6 +52,7 @@ class Settings:
     feedback_in_joint: Int32
     tree_count: Int32
     user_count: Int32
+    constraint_count: Int32
     shape_count: Int32
     filter_count: Int32  # entries of `Shapes.filter_link_a`
     filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
@@ -76,10 +77,8 @@ class Model:
     tree_first_block: Ints  # of its matrices, in rows of four columns
     tree_first_delta: Ints  # of its vectors, in blocks of four
     tree_sensor_count: Ints
-    tree_first_constraint: Ints
     tree_constraint_count: Ints
     tree_batch: Ints  # first tree of those solved together with it for lack of constraints
-    order_tree: Ints  # trees in the order of their constraints
     tree_linear_damping: Reals
     tree_angular_damping: Reals
     tree_max_velocity: Reals
@@ -106,7 +105,7 @@ class Model:
 
     constraint_kind: Ints
     constraint_tree: Ints
-    constraint_link: Ints
+    constraint_link: Ints  # of a user constraint: its row
     constraint_lower: Reals
     constraint_upper: Reals
     constraint_twist: Reals

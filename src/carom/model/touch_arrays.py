@@ -50,6 +50,8 @@ class TouchArrays:
             {
                 "tree": trees,
                 "contact": self.contacts.capacity["contact"],
+                "constraint": self._arrays.model.capacity["constraint"],
+                "visit": self._arrays.scratch.capacity["row"] + ROWS_PER_PAIR * self.users.capacity["user"],
                 "user": self.users.capacity["user"],
             }
         )

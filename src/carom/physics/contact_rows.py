@@ -151,7 +151,8 @@ def add_contact_rows(
 
         found = write_pair_jacobian(
             model, state, scratch, couplings, world, place, block, ends,
-            contacts.contact_point_a[world, contact], contacts.contact_point_b[world, contact], linear, angular,
+            contacts.contact_point_a[world, contact], contacts.contact_point_b[world, contact],
+            linear, angular,
         )  # fmt: skip
         block = Int32(found[2])
         change = -found[1]

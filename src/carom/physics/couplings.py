@@ -41,9 +41,7 @@ def write_jacobian(
 ) -> Vector3:
     """Write how dofs move a point of a link along `linear` and turn it about `angular`.
 
-    Args:
-        start: Block of the row to write to; the response of the tree to the row goes beside it.
-        point: World position.
+    The point is in world axes. The row goes to block `start`, and the response of the tree to it beside.
 
     Returns:
         Inverse mass of the row on this tree, its present velocity, 0.
@@ -255,9 +253,7 @@ def write_pair_jacobian(
 ) -> Vector4:
     """Write a row that is the velocity of a point of a against one of b, along or about an axis.
 
-    Args:
-        ends: Tree and link of a, tree and link of b; tree -1 is the world.
-        block: First free block of the Jacobians.
+    `ends` are tree and link of a, then of b; tree -1 is the world. `block` is the first free one.
 
     Returns:
         Inverse mass, relative velocity, next free block, 0.

@@ -1,7 +1,7 @@
 """Islands: groups of trees that contacts or user constraints join, solved one after the other.
 
-Union-find over the trees; then each root gets linked lists of its trees, contacts and user
-constraints, in ascending order.
+Union-find over the trees; then each root gets linked lists of its constraints and contacts, in
+ascending order.
 """
 
 import warp as wp
@@ -25,21 +25,27 @@ def island_root(state: State, world: Int32, tree: Int32) -> Int32:
 
 
 @func
+def can_move(model: Model, tree: Int32) -> bool:
+    """Whether a tree has dofs; the world, -1, has none."""
+    if tree < 0:
+        return False
+    return model.tree_dof_count[tree] > 0
+
+
+@func
 def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
     """Put two trees into one island, unless one of them cannot move."""
-    if a >= 0 and b >= 0:
-        if model.tree_dof_count[a] > 0 and model.tree_dof_count[b] > 0:
-            root_a = island_root(state, world, a)
-            root_b = island_root(state, world, b)
-            state.tree_island[world, wp.max(root_a, root_b)] = wp.min(root_a, root_b)
+    if can_move(model, a) and can_move(model, b):
+        root_a = island_root(state, world, a)
+        root_b = island_root(state, world, b)
+        state.tree_island[world, wp.max(root_a, root_b)] = wp.min(root_a, root_b)
 
 
 @func
 def moving_tree(model: Model, a: Int32, b: Int32) -> Int32:
     """The first of two trees that can move."""
-    if a >= 0:
-        if model.tree_dof_count[a] > 0:
-            return a
+    if can_move(model, a):
+        return a
     return b
 
 
@@ -54,7 +60,7 @@ def build_islands(
     couplings: Couplings,
     world: Int32,
 ):
-    """Join trees that touch or are tied together, and list what belongs to each island."""
+    """Join trees that touch or are tied together, and list the constraints and contacts of each island."""
     contact_count = contacts.count_contacts[world, 0]
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = model.tree_batch[tree]
@@ -66,24 +72,19 @@ def build_islands(
 
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = island_root(state, world, tree)
-        couplings.tree_first_tree[world, tree] = _NONE
+        couplings.tree_first_constraint[world, tree] = _NONE
         couplings.tree_first_contact[world, tree] = _NONE
-        couplings.tree_first_user[world, tree] = _NONE
-    for i in range(settings.tree_count):
-        tree = model.order_tree[settings.tree_count - 1 - i]
-        root = state.tree_island[world, tree]
-        couplings.tree_next_tree[world, tree] = couplings.tree_first_tree[world, root]
-        couplings.tree_first_tree[world, root] = tree
-    for i in range(contact_count):
-        contact = contact_count - 1 - i
+    constraint = settings.constraint_count - 1
+    while constraint >= 0:
+        root = state.tree_island[world, model.constraint_tree[constraint]]
+        couplings.constraint_next[world, constraint] = couplings.tree_first_constraint[world, root]
+        couplings.tree_first_constraint[world, root] = constraint
+        constraint -= 1
+    contact = contact_count - 1
+    while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
         tree = moving_tree(model, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
         root = state.tree_island[world, tree]
         couplings.contact_next[world, contact] = couplings.tree_first_contact[world, root]
         couplings.tree_first_contact[world, root] = contact
-    for i in range(settings.user_count):
-        user = settings.user_count - 1 - i
-        tree = moving_tree(model, users.user_tree_a[user], users.user_tree_b[user])
-        root = state.tree_island[world, tree]
-        couplings.user_next[world, user] = couplings.tree_first_user[world, root]
-        couplings.tree_first_user[world, root] = user
+        contact -= 1

@@ -10,7 +10,9 @@ from carom.model.codes import (
     LIMIT,
     MOTOR,
     ROW_IMPULSE,
+    SPHERICAL_LIMIT,
     SPHERICAL_MOTOR,
+    USER,
 )
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Index4, Int32, Vector4, func, real
@@ -30,90 +32,92 @@ ROWS_PER_PAIR = 6
 
 
 @func
-def island_rows(
+def joint_rows(
     model: Model,
     settings: Settings,
     state: State,
     scratch: Scratch,
+    users: UserConstraints,
     couplings: Couplings,
     world: Int32,
     root: Int32,
-) -> Int32:
-    """Write the rows of the active motors and limits of an island; returns their number."""
+) -> Index4:
+    """Write the rows of an island's active motors, limits and user constraints.
+
+    Returns:
+        Next free row over one tree; next free row and block over two trees; how many rows to visit,
+        negative if some did not fit.
+    """
     row = Int32(0)
-    tree = couplings.tree_first_tree[world, root]
-    while tree >= 0:
-        first = model.tree_first_constraint[tree]
-        for constraint in range(first, first + model.tree_constraint_count[tree]):
-            kind = model.constraint_kind[constraint]
-            if kind == MOTOR:
-                row = motor_row(model, settings, state, scratch, world, constraint, row)
-            elif kind == LIMIT:
-                row = limit_rows(model, settings, state, scratch, world, constraint, row)
-            elif kind == SPHERICAL_MOTOR:
-                row = spherical_motor_rows(model, settings, state, scratch, world, constraint, row)
+    place = Index4(0, 0, 0, 0)
+    visits = Int32(0)
+    fits = Int32(1)
+    constraint = couplings.tree_first_constraint[world, root]
+    while constraint >= 0:
+        before = row + 0
+        kind = model.constraint_kind[constraint]
+        if kind == MOTOR:
+            row = motor_row(model, settings, state, scratch, world, constraint, row)
+        elif kind == LIMIT:
+            row = limit_rows(model, settings, state, scratch, world, constraint, row)
+        elif kind == SPHERICAL_MOTOR:
+            row = spherical_motor_rows(model, settings, state, scratch, world, constraint, row)
+        elif kind == SPHERICAL_LIMIT:
+            row = spherical_limit_rows(model, settings, state, scratch, world, constraint, row)
+        else:
+            user = model.constraint_link[constraint]
+            if has_room(model, couplings, place, users.user_tree_a[user], users.user_tree_b[user]):
+                first = place[0]
+                place = add_user_rows(settings, model, state, scratch, users, couplings, world, user, place)
+                while first < place[0]:
+                    couplings.visit_row[world, visits] = -1 - first
+                    visits += 1
+                    first += 1
             else:
-                row = spherical_limit_rows(model, settings, state, scratch, world, constraint, row)
-        tree = couplings.tree_next_tree[world, tree]
-    return row
+                fits = Int32(0)
+        while before < row:
+            couplings.visit_row[world, visits] = before
+            visits += 1
+            before += 1
+        constraint = couplings.constraint_next[world, constraint]
+    if fits == 0:
+        visits = Int32(-1)
+    return Index4(row, place[0], place[1], visits)
 
 
 @func
-def island_couplings(
+def has_room(model: Model, couplings: Couplings, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
+    """Whether all rows there may be between two trees still fit."""
+    blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
+    if place[0] + ROWS_PER_PAIR > couplings.coupling_start.shape[1]:
+        return False
+    return place[1] + ROWS_PER_PAIR * blocks <= couplings.jacobian_row.shape[1]
+
+
+@func
+def contact_rows(
     model: Model,
     settings: Settings,
     state: State,
     scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
-    users: UserConstraints,
     couplings: Couplings,
     world: Int32,
-    root: Int32,
-) -> Index4:
-    """Write the rows of an island's user constraints, then of its contacts.
-
-    Returns:
-        Number of rows of user constraints, of all rows, and whether some did not fit.
-    """
-    place = Index4(0, 0, 0, 0)
-    row_capacity = couplings.coupling_start.shape[1]
-    block_capacity = couplings.jacobian_row.shape[1]
-    overflow = Int32(0)
-    user = couplings.tree_first_user[world, root]
-    while user >= 0:
-        blocks = tree_blocks(model, users.user_tree_a[user]) + tree_blocks(model, users.user_tree_b[user])
-        if place[0] + ROWS_PER_PAIR > row_capacity or place[1] + ROWS_PER_PAIR * blocks > block_capacity:
-            overflow = Int32(1)
-        else:
-            place = add_user_rows(settings, model, state, scratch, users, couplings, world, user, place)
-        user = couplings.user_next[world, user]
-    user_rows = place[0]
-
-    contact = couplings.tree_first_contact[world, root]
+    first_contact: Int32,
+    place: Index4,
+) -> Int32:
+    """Write the rows of an island's contacts from the free place on; returns 0 if some did not fit."""
+    contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
-        blocks = tree_blocks(model, shapes.shape_tree[pair[0]]) + tree_blocks(
-            model, shapes.shape_tree[pair[1]]
+        if not has_room(model, couplings, place, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]]):
+            return Int32(0)
+        place = add_contact_rows(
+            settings, model, state, scratch, shapes, contacts, couplings, world, contact, place[0], place[1]
         )
-        if place[0] + ROWS_PER_PAIR > row_capacity or place[1] + ROWS_PER_PAIR * blocks > block_capacity:
-            overflow = Int32(1)
-        else:
-            place = add_contact_rows(
-                settings,
-                model,
-                state,
-                scratch,
-                shapes,
-                contacts,
-                couplings,
-                world,
-                contact,
-                place[0],
-                place[1],
-            )
         contact = couplings.contact_next[world, contact]
-    return Index4(user_rows, place[0], overflow, 0)
+    return Int32(1)
 
 
 @func
@@ -130,23 +134,26 @@ def solve_island(
     root: Int32,
 ):
     """Solve the rows of one island; leaves the change of velocity in `delta_velocity`."""
-    row_count = island_rows(model, settings, state, scratch, couplings, world, root)
+    made = joint_rows(model, settings, state, scratch, users, couplings, world, root)
+    visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
-    made = Index4(0, 0, 0, 0)
-    if first_contact >= 0 or couplings.tree_first_user[world, root] >= 0:
-        made = island_couplings(
-            model, settings, state, scratch, shapes, contacts, users, couplings, world, root
-        )
-        if made[2] != 0:
-            state.fault_tree[world, 0] = OVERFLOW
+    fits = Int32(1)
+    if first_contact >= 0:
+        fits = contact_rows(
+            model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
+            Index4(made[1], made[2], 0, 0),
+        )  # fmt: skip
+    if visits < 0 or fits == 0:
+        state.fault_tree[world, 0] = OVERFLOW
+        return
 
     residual = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
-    if row_count + made[1] > 0 and made[2] == 0:
+    if visits > 0 or first_contact >= 0:
         searching = Int32(1)
     while searching == 1:
-        residual = joint_sweep(settings, scratch, couplings, world, row_count, made[0], sweep)
+        residual = joint_sweep(settings, scratch, couplings, world, visits, sweep)
         if first_contact >= 0:
             residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, first_contact))
         sweep += 1
@@ -155,26 +162,26 @@ def solve_island(
     state.tree_iterations[world, root] = sweep
     state.tree_residual[world, root] = residual
 
-    for row in range(row_count):
+    for row in range(made[0]):
         keep_motor_impulse(model, state, scratch, world, row)
-    gather_constraint_forces(model, settings, scratch, world, 0, row_count)
-    if made[2] == 0:
-        keep_coupling_impulses(contacts, users, couplings, world, root)
+    gather_constraint_forces(model, settings, scratch, world, 0, made[0])
+    keep_coupling_impulses(model, contacts, users, couplings, world, root)
 
 
 @func
 def keep_coupling_impulses(
-    contacts: Contacts, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
+    model: Model, contacts: Contacts, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
 ):
     """Report the impulses of an island's contacts and user constraints."""
     contact = couplings.tree_first_contact[world, root]
     while contact >= 0:
         keep_contact_impulses(contacts, couplings, world, contact)
         contact = couplings.contact_next[world, contact]
-    user = couplings.tree_first_user[world, root]
-    while user >= 0:
-        keep_user_impulses(users, couplings, world, user)
-        user = couplings.user_next[world, user]
+    constraint = couplings.tree_first_constraint[world, root]
+    while constraint >= 0:
+        if model.constraint_kind[constraint] == USER:
+            keep_user_impulses(users, couplings, world, model.constraint_link[constraint])
+        constraint = couplings.constraint_next[world, constraint]
 
 
 @func

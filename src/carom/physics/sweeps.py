@@ -52,27 +52,22 @@ def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
 
 @func
 def joint_sweep(
-    settings: Settings,
-    scratch: Scratch,
-    couplings: Couplings,
-    world: Int32,
-    row_count: Int32,
-    user_rows: Int32,
-    sweep: Int32,
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, count: Int32, sweep: Int32
 ) -> real:
     """Relax motors, limits and user constraints once; returns the greatest change squared."""
     residual = real(0.0)
     for _inner in range(settings.inner_iterations):
         residual = real(0.0)
-        for i in range(row_count + user_rows):
-            row = i
+        for i in range(count):
+            place = i
             if sweep % 2 == 0:
-                row = row_count + user_rows - 1 - i
+                place = count - 1 - i
+            row = couplings.visit_row[world, place]
             change = real(0.0)
-            if row < row_count:
+            if row >= 0:
                 change = relax_row(scratch, world, row)
             else:
-                change = relax_coupling(scratch, couplings, world, row - row_count)
+                change = relax_coupling(scratch, couplings, world, -1 - row)
             if change * change > residual:
                 residual = change * change
     return residual

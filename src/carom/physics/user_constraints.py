@@ -193,11 +193,13 @@ def add_gear_row(
         model, couplings, world, row, users.user_tree_a[user], users.user_tree_b[user], place[1]
     )
     own = write_dof_jacobian(
-        model, state, scratch, couplings, world, users.user_tree_a[user], model.link_first_dof[link_a], 1.0, place[1]
+        model, state, scratch, couplings, world,
+        users.user_tree_a[user], model.link_first_dof[link_a], 1.0, place[1],
     )  # fmt: skip
     start_b = place[1] + couplings.coupling_place[world, row][1]
     other = write_dof_jacobian(
-        model, state, scratch, couplings, world, users.user_tree_b[user], model.link_first_dof[link_b], ratio, start_b
+        model, state, scratch, couplings, world,
+        users.user_tree_b[user], model.link_first_dof[link_b], ratio, start_b,
     )  # fmt: skip
     change = auxiliary_rate - (own[1] + other[1]) - error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]

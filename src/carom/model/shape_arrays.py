@@ -1,0 +1,370 @@
+"""From the collision shapes of bodies to the rows of `Shapes`, and back out again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import sqrt
+from typing import Any, Protocol
+
+import numpy as np
+
+from carom.description.transform import quaternion_from_matrix
+from carom.model.arrays import ArrayTable
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.bounds import Bounds
+from carom.model.builder import TreeRows
+from carom.model.codes import ShapeKind
+from carom.model.contact_structs import Shapes
+from carom.model.flags import LoadFlags
+from carom.model.inertia import is_in_place, link_bounds, placement
+from carom.model.pair_filters import PairFilters
+from carom.model.shape_pieces import ShapePiece, shape_pieces
+
+# Collision groups of bodies that move and of fixed bases, and the groups each collides with.
+MOVING_GROUP, MOVING_MASK = 1, -1
+FIXED_GROUP, FIXED_MASK = 2, -1 ^ 2
+
+BREAKING_FRACTION = 0.02
+"""Distance at which a contact is given up, relative to the reach of the smaller shape."""
+
+_SELF_COLLISION_FLAGS = (
+    LoadFlags.USE_SELF_COLLISION
+    | LoadFlags.USE_SELF_COLLISION_EXCLUDE_PARENT
+    | LoadFlags.USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
+    | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
+)
+
+# Which axis the values of a field count on; they move when rows of that axis are deleted.
+_INDEX_FIELDS = {
+    "shape_link": "link",
+    "shape_tree": "tree",
+    "shape_first_vertex": "vertex",
+    "shape_first_face": "face",
+    "shape_first_node": "node",
+    "face_first_corner": "corner",
+    "corner_vertex": "vertex",
+    "link_first_shape": "shape",
+}
+_OWN_AXES = ("shape", "vertex", "face", "corner", "node")
+
+
+class Surface(Protocol):
+    """How a link touches; `carom.link_dynamics.LinkDynamics` is one."""
+
+    lateral_friction: float
+    rolling_friction: float
+    spinning_friction: float
+    restitution: float
+    contact_stiffness: float
+    contact_damping: float
+    friction_anchor: bool
+    collision_margin: float
+    ccd_swept_sphere_radius: float
+
+
+@dataclass(slots=True, eq=False)
+class BodyShapes:
+    """Where the shapes of a body are.
+
+    Attributes:
+        rows: Rows of its tree; somebody else keeps them up to date.
+        first: First row on each axis of shapes.
+        count: Rows on each axis of shapes.
+        bounds: Bounds of each link, the base first, along the axes of its inertial frame.
+        thick: For each link, whether changing its margin changes where its surface is.
+    """
+
+    rows: TreeRows
+    first: dict[str, int] = field(default_factory=dict)
+    count: dict[str, int] = field(default_factory=dict)
+    bounds: list[Bounds] = field(default_factory=list)
+    thick: list[bool] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class _PlacedPiece:
+    """A piece, its pose in the inertial frame as (x, y, z, qx, qy, qz, qw), and its link's place."""
+
+    piece: ShapePiece
+    pose: tuple[float, ...]
+    link: int
+
+
+class ShapeArrays:
+    """The shapes of all bodies of a world, in step with the rows of their links."""
+
+    def __init__(self) -> None:
+        self.table = ArrayTable(Shapes, None)
+        self.filters = PairFilters(self.table)
+        self.used = dict.fromkeys(("link", *_OWN_AXES), 0)
+        self.breaking_fraction = BREAKING_FRACTION
+        self._bodies: dict[int, BodyShapes] = {}
+
+    @property
+    def capacity(self) -> dict[str, int]:
+        """Rows there is room for, by axis."""
+        return self.table.capacity
+
+    @property
+    def shape_count(self) -> int:
+        """How many shapes there are."""
+        return self.used["shape"]
+
+    @property
+    def filter_count(self) -> int:
+        """How many pairs of links have a rule of their own."""
+        return self.filters.count
+
+    def reserve(self, needed: dict[str, int]) -> bool:
+        """Make room for `needed` rows on each axis; true if arrays were replaced."""
+        return self.table.reserve(needed)
+
+    def struct(self, device: str) -> Any:
+        """A Warp struct whose fields are views of the arrays."""
+        return self.table.struct(device)
+
+    def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> bool:
+        """Add the shapes of a body whose links were appended to the model just before.
+
+        Args:
+            spec: The body.
+            rows: Where its tree is; kept, and read again whenever the body is changed.
+            surfaces: How its links touch, the base first.
+
+        Returns:
+            Whether arrays were replaced.
+
+        Raises:
+            DescriptionError: The file of a mesh cannot be used; nothing has changed.
+        """
+        links = [spec.base, *spec.links]
+        implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        pieces = [piece for j, link in enumerate(links) for piece in _placed_pieces(link, j, implicit)]
+        body = BodyShapes(rows, {axis: self.used[axis] for axis in _OWN_AXES}, _row_counts(pieces))
+        body.bounds = [
+            link_bounds(
+                link.collisions,
+                link.inertial_frame,
+                implicit_cylinder=implicit,
+                compound_margin=link.compound_margin,
+            )
+            for link in links
+        ]
+        body.thick = [_has_own_margin(link, implicit) for link in links]
+        needed = {axis: self.used[axis] + body.count[axis] for axis in _OWN_AXES}
+        needed["link"] = self.used["link"] + len(links)
+        grown = self.table.reserve(needed)
+        self._bodies[rows.first["link"]] = body
+        self._write_links(body, spec, links)
+        self._write_pieces(body, pieces)
+        self.used.update(needed)
+        for j, surface in enumerate(surfaces):
+            self.write_surface(rows.first["link"] + j, surface)
+        return grown
+
+    def _write_links(self, body: BodyShapes, spec: BodySpec, links: Sequence[LinkSpec]) -> None:
+        numpy = self.table.numpy
+        first = body.rows.first["link"]
+        for j, link in enumerate(links):
+            fixed = j == 0 and spec.fixed_base
+            numpy["link_group"][first + j] = FIXED_GROUP if fixed else MOVING_GROUP
+            numpy["link_mask"][first + j] = FIXED_MASK if fixed else MOVING_MASK
+            for collision in link.collisions:
+                if collision.group is not None:
+                    numpy["link_group"][first + j] = _as_int32(collision.group)
+                if collision.mask is not None:
+                    numpy["link_mask"][first + j] = _as_int32(collision.mask)
+        whole = slice(first, first + len(links))
+        numpy["link_self_collision"][whole] = spec.flags & _SELF_COLLISION_FLAGS
+        numpy["link_first_shape"][whole] = body.first["shape"]
+        numpy["link_shape_count"][whole] = 0
+
+    def _write_pieces(self, body: BodyShapes, pieces: Sequence[_PlacedPiece]) -> None:
+        numpy = self.table.numpy
+        at = dict(body.first)
+        first_link = body.rows.first["link"]
+        for placed in pieces:
+            piece, row, link = placed.piece, at["shape"], first_link + placed.link
+            numpy["shape_link"][row] = link
+            numpy["shape_tree"][row] = body.rows.tree
+            numpy["shape_kind"][row] = piece.kind
+            numpy["shape_size"][row] = piece.size
+            numpy["shape_pose"][row] = placed.pose
+            numpy["shape_margin"][row] = piece.margin
+            numpy["shape_center"][row] = piece.center
+            numpy["shape_columns"][row] = piece.columns
+            numpy["shape_breaking"][row] = self.breaking_fraction * _reach(body.bounds[placed.link])
+            for axis in ("vertex", "face", "node"):
+                numpy[f"shape_first_{axis}"][row] = at[axis]
+            if numpy["link_shape_count"][link] == 0:
+                numpy["link_first_shape"][link] = row
+            numpy["link_shape_count"][link] += 1
+            self._write_polyhedron(piece, row, at)
+            at["shape"] += 1
+
+    def _write_polyhedron(self, piece: ShapePiece, row: int, at: dict[str, int]) -> None:
+        """Write a piece's vertices, faces and nodes from the rows `at`, and move those on."""
+        numpy = self.table.numpy
+        polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
+        if polyhedron is None:
+            return
+        counts = _row_counts([_PlacedPiece(piece, (), 0)])
+        rows = {axis: slice(at[axis], at[axis] + counts[axis]) for axis in _OWN_AXES}
+        numpy["shape_vertex_count"][row] = counts["vertex"]
+        numpy["shape_face_count"][row] = counts["face"]
+        numpy["vertex_position"][rows["vertex"]] = polyhedron.vertices
+        numpy["face_plane"][rows["face"]] = polyhedron.planes
+        numpy["face_first_corner"][rows["face"]] = polyhedron.first_corner + at["corner"]
+        numpy["face_corner_count"][rows["face"]] = polyhedron.corner_count
+        numpy["corner_vertex"][rows["corner"]] = polyhedron.corners + at["vertex"]
+        if hierarchy is not None:
+            numpy["shape_leaf_count"][row] = hierarchy.leaf_count
+            numpy["node_lower"][rows["node"]] = hierarchy.lower
+            numpy["node_upper"][rows["node"]] = hierarchy.upper
+        for axis in ("vertex", "face", "corner", "node"):
+            at[axis] += counts[axis]
+
+    def remove(self, rows: TreeRows) -> None:
+        """Take a body's shapes out, while its tree's rows are still the ones it had."""
+        numpy = self.table.numpy
+        first_link, link_count = rows.first["link"], rows.count["link"]
+        body = self._bodies.pop(first_link)
+        self.filters.forget_links(first_link, link_count)
+        for axis, start, count in (
+            *((axis, body.first[axis], body.count[axis]) for axis in _OWN_AXES),
+            ("link", first_link, link_count),
+        ):
+            if count == 0:
+                continue
+            self.table.delete(axis, start, count)
+            self.used[axis] -= count
+            for name, target in _INDEX_FIELDS.items():
+                if target == axis:
+                    numpy[name][numpy[name] >= start + count] -= count
+            for other in self._bodies.values():
+                if axis in _OWN_AXES and other.first[axis] > start:
+                    other.first[axis] -= count
+        trees = numpy["shape_tree"]
+        trees[trees > rows.tree] -= 1
+        self._bodies = {
+            first - link_count if first > first_link else first: other
+            for first, other in self._bodies.items()
+        }
+
+    def write_surface(self, link_row: int, surface: Surface) -> None:
+        """Take over how a link touches."""
+        numpy = self.table.numpy
+        numpy["link_lateral_friction"][link_row] = surface.lateral_friction
+        numpy["link_rolling_friction"][link_row] = surface.rolling_friction
+        numpy["link_spinning_friction"][link_row] = surface.spinning_friction
+        numpy["link_restitution"][link_row] = surface.restitution
+        numpy["link_stiffness"][link_row] = surface.contact_stiffness
+        numpy["link_contact_damping"][link_row] = surface.contact_damping
+        numpy["link_friction_anchor"][link_row] = surface.friction_anchor
+        shapes = self._shapes_of(link_row)
+        numpy["shape_ccd_radius"][shapes] = surface.ccd_swept_sphere_radius
+        body, link = self._body_of(link_row)
+        if body.thick[link]:
+            numpy["shape_margin"][shapes] = surface.collision_margin
+
+    def set_group_and_mask(self, link_row: int, group: int, mask: int) -> None:
+        """Set the collision groups a link is in, and those it collides with, as bits."""
+        self.table.numpy["link_group"][link_row] = _as_int32(group)
+        self.table.numpy["link_mask"][link_row] = _as_int32(mask)
+
+    def set_breaking_fraction(self, fraction: float) -> None:
+        """Set the distance at which contacts are given up, relative to the reach of a link's shapes."""
+        self.breaking_fraction = fraction
+        breaking = self.table.numpy["shape_breaking"]
+        for body in self._bodies.values():
+            for link, bounds in enumerate(body.bounds):
+                breaking[self._shapes_of(body.rows.first["link"] + link)] = fraction * _reach(bounds)
+
+    def bounds(self, link_row: int) -> Bounds:
+        """Bounds of a link's shapes along the axes of its inertial frame, margins included."""
+        body, link = self._body_of(link_row)
+        return body.bounds[link]
+
+    def replace_pieces(self, link_row: int, spec: LinkSpec, *, implicit_cylinder: bool) -> None:
+        """Write a link's shapes anew after their data changed; there are as many rows as before.
+
+        Args:
+            link_row: The link.
+            spec: Its shapes now.
+            implicit_cylinder: Cylinders are exact.
+        """
+        body, link = self._body_of(link_row)
+        body.bounds[link] = link_bounds(
+            spec.collisions,
+            spec.inertial_frame,
+            implicit_cylinder=implicit_cylinder,
+            compound_margin=spec.compound_margin,
+        )
+        numpy = self.table.numpy
+        shapes = self._shapes_of(link_row)
+        for row, placed in zip(
+            range(shapes.start, shapes.stop), _placed_pieces(spec, link, implicit_cylinder), strict=True
+        ):
+            at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
+            face = at["face"]
+            at["corner"] = int(numpy["face_first_corner"][face]) if placed.piece.polyhedron else 0
+            at["shape"] = row
+            numpy["shape_size"][row] = placed.piece.size
+            numpy["shape_center"][row] = placed.piece.center
+            self._write_polyhedron(placed.piece, row, at)
+
+    def _shapes_of(self, link_row: int) -> slice:
+        first = int(self.table.numpy["link_first_shape"][link_row])
+        return slice(first, first + int(self.table.numpy["link_shape_count"][link_row]))
+
+    def _body_of(self, link_row: int) -> tuple[BodyShapes, int]:
+        """The body a link belongs to, and the link's place in it, the base being 0."""
+        body = self._bodies.get(link_row)
+        if body is not None:
+            return body, 0
+        first = max(first for first in self._bodies if first <= link_row)
+        return self._bodies[first], link_row - first
+
+
+def _placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[_PlacedPiece]:
+    placed = []
+    for collision in link.collisions:
+        rotation, position = placement(link.inertial_frame, collision.frame)
+        pose = (*position, *quaternion_from_matrix(rotation))
+        pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
+        placed.extend(_PlacedPiece(piece, pose, index) for piece in pieces)
+    return placed
+
+
+def _row_counts(pieces: Sequence[_PlacedPiece]) -> dict[str, int]:
+    """How many rows pieces need on each axis of shapes."""
+    solids = [placed.piece.polyhedron for placed in pieces if placed.piece.polyhedron is not None]
+    trees = [placed.piece.hierarchy for placed in pieces if placed.piece.hierarchy is not None]
+    return {
+        "shape": len(pieces),
+        "vertex": sum(len(solid.vertices) for solid in solids),
+        "face": sum(len(solid.planes) for solid in solids),
+        "corner": sum(len(solid.corners) for solid in solids),
+        "node": sum(len(tree.lower) for tree in trees),
+    }
+
+
+def _has_own_margin(link: LinkSpec, implicit_cylinder: bool) -> bool:
+    """Whether the margin of a link is that of its one hull or surface, and not that of a compound."""
+    if not is_in_place(link.collisions, link.inertial_frame):
+        return False
+    geometry = link.collisions[0].geometry
+    pieces = shape_pieces(geometry, implicit_cylinder=implicit_cylinder)
+    is_compound = getattr(geometry, "path", None) is not None and geometry.path.suffix.lower() == ".obj"
+    return not is_compound and any(piece.kind >= ShapeKind.HULL for piece in pieces)
+
+
+def _reach(bounds: Bounds) -> float:
+    """Radius of the ball around the bounds, plus the distance of their centre."""
+    return sqrt(sum(half * half for half in bounds.half)) + sqrt(sum(c * c for c in bounds.center))
+
+
+def _as_int32(bits: int) -> int:
+    """The bits of an integer as the kernels' signed integers have them."""
+    return int(np.uint32(bits & 0xFFFFFFFF).astype(np.int32))

@@ -1,0 +1,204 @@
+"""Collision shapes taken apart into what collision detection knows: `ShapePiece`."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import cos, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description import (
+    Box,
+    Capsule,
+    ConvexHull,
+    Cylinder,
+    Geometry,
+    Heightfield,
+    Mesh,
+    Plane,
+    SignedDistanceField,
+    Sphere,
+    TriangleMesh,
+)
+from carom.description.pose import Vector3
+from carom.errors import DescriptionError
+from carom.formats.mesh import MeshPart, read_mesh
+from carom.geometry.heightfield import heightfield_surface
+from carom.geometry.hull import convex_hull
+from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
+from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
+from carom.model.bounds import MARGIN
+from carom.model.codes import ShapeKind
+
+MOST_HULL_VERTICES = 128
+"""Hulls of finer meshes are simplified to so many vertices."""
+
+HULL_TOLERANCE = 1e-3
+"""Points that lie outside a hull by less than this fraction of its size are left out."""
+
+CYLINDER_SIDES = 32
+"""Sides of a cylinder that is a hull."""
+
+_CACHED = 256
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShapePiece:
+    """One convex shape, one triangle mesh or one height field.
+
+    Attributes:
+        kind: Which.
+        size: What `ShapeKind` says.
+        margin: How far the surface lies outside what size or vertices say [m].
+        center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
+        polyhedron: Vertices and faces, if it has any.
+        columns: Points in one row of a height field.
+        hierarchy: Boxes over the faces of a triangle mesh.
+    """
+
+    kind: ShapeKind
+    size: Vector3
+    margin: float = 0.0
+    center: Vector3 = (0.0, 0.0, 0.0)
+    polyhedron: Polyhedron | None = None
+    columns: int = 0
+    hierarchy: TriangleHierarchy | None = None
+
+
+def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
+    """What collision detection makes of a shape; all pieces share the frame of the shape.
+
+    Args:
+        geometry: The shape.
+        implicit_cylinder: Cylinders are exact; otherwise they are hulls of 32 sides.
+
+    Returns:
+        One piece, or one for each group of an OBJ file; none for a signed distance field, which nothing
+        collides with.
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    match geometry:
+        case Sphere(radius):
+            return (ShapePiece(ShapeKind.SPHERE, (radius, 0.0, 0.0)),)
+        case Box(half_extents):
+            return (ShapePiece(ShapeKind.BOX, half_extents),)
+        case Capsule(radius, length):
+            return (ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0)),)
+        case Cylinder(radius, length) if implicit_cylinder:
+            return (ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0)),)
+        case Cylinder(radius, length):
+            return (_cylinder_hull(radius, length),)
+        case Plane(normal):
+            return (ShapePiece(ShapeKind.PLANE, normal),)
+        case ConvexHull():
+            return (_hull_of(geometry),)
+        case TriangleMesh():
+            return (_triangles_of(geometry),)
+        case Heightfield():
+            return (_heightfield_piece(geometry),)
+        case Mesh():
+            return _mesh_pieces.of(geometry)
+        case SignedDistanceField():
+            return ()
+
+
+def _polyhedral(
+    kind: ShapeKind,
+    polyhedron: Polyhedron,
+    margin: float,
+    columns: int = 0,
+    hierarchy: TriangleHierarchy | None = None,
+) -> ShapePiece:
+    low, high = polyhedron.bounds()
+    half_x, half_y, half_z = (0.5 * (high - low)).tolist()
+    x, y, z = (0.5 * (high + low)).tolist()
+    return ShapePiece(kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy)
+
+
+def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
+    hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MOST_HULL_VERTICES)
+    return _polyhedral(ShapeKind.HULL, hull, MARGIN)
+
+
+@lru_cache(_CACHED)
+def _cylinder_hull(radius: float, length: float) -> ShapePiece:
+    angles = [2.0 * pi * side / CYLINDER_SIDES for side in range(CYLINDER_SIDES)]
+    rim = [(radius * sin(angle), radius * cos(angle)) for angle in angles]
+    points = np.array([(x, y, z) for z in (-0.5 * length, 0.5 * length) for x, y in rim])
+    if radius == 0.0 or length == 0.0:
+        return _hull_piece(points)
+    # Simplifying would take corners out of the rims.
+    sides = range(CYLINDER_SIDES)
+    bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
+    following = [*sides[1:], 0]
+    quads = [[a, CYLINDER_SIDES + a, CYLINDER_SIDES + b, b] for a, b in zip(sides, following, strict=True)]
+    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, [bottom, top, *quads]), MARGIN)
+
+
+@lru_cache(_CACHED)
+def _hull_of(geometry: ConvexHull) -> ShapePiece:
+    return _hull_piece(geometry.points)
+
+
+@lru_cache(_CACHED)
+def _triangles_of(geometry: TriangleMesh) -> ShapePiece:
+    surface = polyhedron_of_triangles(geometry.vertices, geometry.triangles)
+    if not len(surface.planes):
+        raise DescriptionError("no triangle of the mesh has an area")
+    hierarchy = triangle_hierarchy(surface)
+    return _polyhedral(ShapeKind.TRIANGLES, hierarchy.surface, geometry.margin, hierarchy=hierarchy)
+
+
+@lru_cache(_CACHED)
+def _heightfield_piece(geometry: Heightfield) -> ShapePiece:
+    return _polyhedral(ShapeKind.HEIGHTFIELD, heightfield_surface(geometry), 0.0, geometry.heights.shape[1])
+
+
+class _MeshPieces:
+    """Pieces of mesh files, kept while the files stay the same."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[Mesh, tuple[list[MeshPart], tuple[ShapePiece, ...]]] = OrderedDict()
+
+    def of(self, mesh: Mesh) -> tuple[ShapePiece, ...]:
+        """The pieces of a mesh."""
+        parts = read_mesh(mesh.path)
+        kept = self._kept.get(mesh)
+        # An unchanged file has the very same parts.
+        if kept is not None and all(a is b for a, b in zip(parts, kept[0], strict=False)):
+            self._kept.move_to_end(mesh)
+            return kept[1]
+        pieces = tuple(_pieces_of_parts(mesh, parts))
+        self._kept[mesh] = (parts, pieces)
+        while len(self._kept) > _CACHED:
+            self._kept.popitem(last=False)
+        return pieces
+
+
+_mesh_pieces = _MeshPieces()
+
+
+def _pieces_of_parts(mesh: Mesh, parts: list[MeshPart]) -> list[ShapePiece]:
+    if mesh.concave:
+        vertices, triangles = joined_parts(parts, mesh.scale)
+        return [_triangles_of(TriangleMesh(vertices, triangles))]
+    scale = np.array(mesh.scale)
+    if mesh.path.suffix.lower() == ".obj":
+        return [_hull_piece(part.vertices * scale) for part in parts]
+    return [_hull_piece(np.concatenate([part.vertices for part in parts]) * scale)]
+
+
+def joined_parts(parts: Sequence[MeshPart], scale: Vector3) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Scaled vertices (n, 3) and triangles (m, 3) of all parts; a mirrored mesh is turned outside again."""
+    vertices = np.concatenate([part.vertices for part in parts]) * np.array(scale)
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    triangles = np.concatenate(
+        [part.triangles + start for part, start in zip(parts, starts, strict=False)]
+    ).astype(np.int32)
+    return vertices, triangles[:, ::-1] if np.prod(scale) < 0.0 else triangles
