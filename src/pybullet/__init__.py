@@ -11,6 +11,7 @@ quaternions are (x, y, z, w). A link has the index of the joint that carries it;
 
 from pybullet._algebra import *
 from pybullet._bodies import *
+from pybullet._camera import *
 from pybullet._camera_maths import *
 from pybullet._connection import *
 from pybullet._constants import *
@@ -28,4 +29,5 @@ from pybullet._loading import *
 from pybullet._maths import *
 from pybullet._motors import *
 from pybullet._motors_multi_dof import *
+from pybullet._textures import *
 from pybullet._unavailable import *

@@ -16,8 +16,6 @@ from pybullet._errors import fail
 
 __all__ = [
     "addUserData",
-    "changeTexture",
-    "changeVisualShape",
     "createCollisionShape",
     "createCollisionShapeArray",
     "createMultiBody",
@@ -26,7 +24,6 @@ __all__ = [
     "createVisualShapeArray",
     "executePluginCommand",
     "getAABB",
-    "getCameraImage",
     "getClosestPoints",
     "getCollisionShapeData",
     "getContactPoints",
@@ -43,7 +40,6 @@ __all__ = [
     "loadPlugin",
     "loadSDF",
     "loadSoftBody",
-    "loadTexture",
     "performCollisionDetection",
     "rayTest",
     "rayTestBatch",
@@ -52,7 +48,6 @@ __all__ = [
     "removeUserData",
     "renderImage",
     "resetMeshData",
-    "resetVisualShapeData",
     "restoreState",
     "saveBullet",
     "saveState",
@@ -218,25 +213,7 @@ rayTestBatch = _later(
     "rayFromPositions, rayToPositions, numThreads=1, parentObjectUniqueId=-1, parentLinkIndex=-1, "
     "reportHitNumber=-1, collisionFilterMask=-1, fractionEpsilon=-1, physicsClientId=0",
 )
-getCameraImage = _later(
-    "getCameraImage",
-    "width, height, viewMatrix=None, projectionMatrix=None, lightDirection=None, lightColor=None, "
-    "lightDistance=-1, shadow=-1, lightAmbientCoeff=-1, lightDiffuseCoeff=-1, lightSpecularCoeff=-1, "
-    "renderer=-1, flags=-1, projectiveTextureView=None, projectiveTextureProj=None, physicsClientId=0",
-)
 renderImage = _later("renderImage", "*arguments")
-loadTexture = _later("loadTexture", "textureFilename, physicsClientId=0")
-changeTexture = _later("changeTexture", "textureUniqueId, pixels, width, height, physicsClientId=0")
-changeVisualShape = _later(
-    "changeVisualShape",
-    "objectUniqueId, linkIndex, shapeIndex=-1, textureUniqueId=-2, rgbaColor=None, specularColor=None, "
-    "flags=-1, physicsClientId=0",
-)
-resetVisualShapeData = _later(
-    "resetVisualShapeData",
-    "objectUniqueId, linkIndex, shapeIndex=-1, textureUniqueId=-2, rgbaColor=None, specularColor=None, "
-    "flags=-1, physicsClientId=0",
-)
 getVisualShapeData = _later("getVisualShapeData", "objectUniqueId, flags=0, physicsClientId=0")
 getCollisionShapeData = _later("getCollisionShapeData", "objectUniqueId, linkIndex, physicsClientId=0")
 addUserData = _later(

@@ -1,0 +1,1 @@
+"""Camera images without a GPU or a display: a software rasteriser in kernels."""

@@ -1,0 +1,200 @@
+"""How the shapes of a world look now: colours and textures, changed since loading or not.
+
+This is the one place that knows it. The camera draws from here, and whoever reports or changes the looks
+of a shape asks here.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary, ref
+
+from carom.description import Geometry, Material, Mesh, Plane, Pose
+from carom.description.link import Rgba
+from carom.errors import DescriptionError
+from carom.model.body_spec import BASE, LinkSpec
+from carom.model.flags import LoadFlags
+from carom.render.images import read_image
+from carom.render.lights import Light
+from carom.render.meshes import shape_mesh
+from carom.render.textures import NO_TEXTURE, Textures
+from carom.render.render_mesh import RenderMesh
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+_log = logging.getLogger("carom")
+
+WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
+GREY: Rgba = (0.8, 0.8, 0.8, 1.0)
+"""Colour of a material that states something, but no colour."""
+
+_GOOGLY: tuple[Rgba, ...] = (
+    (60 / 256, 186 / 256, 84 / 256, 1.0),
+    (244 / 256, 194 / 256, 13 / 256, 1.0),
+    (219 / 256, 50 / 256, 54 / 256, 1.0),
+    (72 / 256, 133 / 256, 237 / 256, 1.0),
+)
+
+
+@dataclass(slots=True)
+class ShapeLook:
+    """One shape of a link that is seen.
+
+    Attributes:
+        geometry: The shape.
+        frame: Its pose in the link frame.
+        rgba: Present colour. It multiplies the texture; only alpha 0 matters: such a shape is not drawn.
+        specular: Present colour of its highlights.
+        texture: Number of its present texture, -1 if it has none.
+        two_sided: Its triangles are drawn from behind, too.
+    """
+
+    geometry: Geometry
+    frame: Pose
+    rgba: Rgba
+    specular: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    texture: int = NO_TEXTURE
+    two_sided: bool = False
+
+
+@dataclass(slots=True)
+class Appearance:
+    """The looks of one world; get it from `appearance_of`.
+
+    Attributes:
+        textures: Its textures by number.
+        light: The light as it was last set; the drop-in keeps what one image sets for the next ones.
+        changes: Grows with every change of a shape's looks.
+    """
+
+    textures: Textures = field(default_factory=Textures)
+    light: Light = field(default_factory=Light)
+    changes: int = 0
+    _looks: WeakKeyDictionary[Body, list[list[ShapeLook]]] = field(default_factory=WeakKeyDictionary)
+
+    def shapes(self, body: Body, link: int) -> Sequence[ShapeLook]:
+        """What is seen of a link; -1 is the base."""
+        return self._of(body)[link - BASE]
+
+    def change(
+        self,
+        body: Body,
+        link: int,
+        shape: int | None = None,
+        *,
+        rgba: Rgba | None = None,
+        specular: tuple[float, float, float] | None = None,
+        texture: int | None = None,
+        two_sided: bool | None = None,
+    ) -> None:
+        """Changes the looks of a link.
+
+        Args:
+            body: The body.
+            link: The link; -1 is the base.
+            shape: Index of the shape among those of the link; None means all.
+            rgba: New colour.
+            specular: New colour of highlights.
+            texture: Number of the new texture, -1 for none.
+            two_sided: Draw triangles from behind, too.
+
+        Raises:
+            IndexError: There is no such link or shape.
+            KeyError: There is no such texture.
+        """
+        looks = self._of(body)[link - BASE]
+        if texture is not None and texture != NO_TEXTURE:
+            self.textures.image(texture)
+        for look in looks if shape is None else [looks[shape]]:
+            look.rgba = look.rgba if rgba is None else rgba
+            look.specular = look.specular if specular is None else specular
+            look.texture = look.texture if texture is None else texture
+            look.two_sided = look.two_sided if two_sided is None else two_sided
+        self.changes += 1
+
+    def number_textures(self, world: World) -> None:
+        """Gives the textures of all bodies their numbers, in the order the bodies were loaded."""
+        for body in world.bodies.values():
+            self._of(body)
+
+    def _of(self, body: Body) -> list[list[ShapeLook]]:
+        looks = self._looks.get(body)
+        if looks is None:
+            flags = LoadFlags(body.spec.flags)
+            looks = [
+                self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
+            ]
+            self._looks[body] = looks
+        return looks
+
+    def _first_looks(self, spec: LinkSpec, link: int, flags: LoadFlags) -> list[ShapeLook]:
+        # A link that states no looks shows what it collides with.
+        if not spec.visuals:
+            undefined = _undefined_colour(link, flags)
+            return [self._look(shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions]
+        looks = []
+        for visual in spec.visuals:
+            look = self._look(visual.geometry, visual.frame, _colour(visual.material, link, flags), flags)
+            if visual.material is not None and visual.material.specular is not None:
+                look.specular = visual.material.specular
+            looks.append(look)
+        return looks
+
+    def _look(self, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags) -> ShapeLook:
+        look = ShapeLook(geometry, frame, rgba)
+        if isinstance(geometry, Plane):
+            look.texture = self.textures.add_checker()
+        elif isinstance(geometry, Mesh):
+            mesh = shape_mesh(geometry)
+            if LoadFlags.USE_MATERIAL_COLORS_FROM_MTL in flags and mesh.material_rgba is not None:
+                opaque = LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL not in flags
+                look.rgba = (*mesh.material_rgba[:3], 1.0) if opaque else mesh.material_rgba
+            look.texture = self._mesh_texture(mesh)
+        return look
+
+    def _mesh_texture(self, mesh: RenderMesh) -> int:
+        if mesh.texture_file is None:
+            return NO_TEXTURE
+        try:
+            return self.textures.add(read_image(mesh.texture_file))
+        except DescriptionError as error:
+            # Looks stop no robot.
+            _log.warning("%s; the mesh goes without texture", error)
+            return NO_TEXTURE
+
+
+def _colour(material: Material | None, link: int, flags: LoadFlags) -> Rgba:
+    if material is None or (
+        material.rgba is None and material.texture is None and material.specular is None
+    ):
+        return _undefined_colour(link, flags)
+    return GREY if material.rgba is None else material.rgba
+
+
+def _undefined_colour(link: int, flags: LoadFlags) -> Rgba:
+    if LoadFlags.GOOGLY_UNDEFINED_COLORS in flags:
+        return _GOOGLY[max(link, 0) % len(_GOOGLY)]
+    return WHITE
+
+
+def appearance_of(world: World) -> Appearance:
+    """The looks of a world. A world that has been reset has no textures any more."""
+    entry = _appearances.get(world)
+    if entry is None:
+        appearance = Appearance()
+    else:
+        arrays, appearance = entry
+        if arrays() is world.arrays:
+            return appearance
+        # A reset gives a world new arrays.
+        appearance.textures.clear()
+    _appearances[world] = (ref(world.arrays), appearance)
+    return appearance
+
+
+_appearances: WeakKeyDictionary[World, tuple[ref, Appearance]] = WeakKeyDictionary()

@@ -1,0 +1,65 @@
+"""Image files as arrays of texels."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import DescriptionError
+from carom.formats.files import FileCache, read_bounded
+
+Texels = NDArray[np.uint8]
+
+MAX_FILE_BYTES = 256 << 20
+"""Largest image file that is read."""
+
+MAX_TEXELS = 8192 * 8192
+"""Largest image that is unpacked."""
+
+
+def read_image(path: Path) -> Texels:
+    """Reads a PNG, JPEG, TGA, BMP or any other image that Pillow knows.
+
+    Unchanged files are served from a cache.
+
+    Returns:
+        (height, width, 3) red, green and blue, the top row first; read-only. What is transparent has the
+        colour it would have without transparency.
+
+    Raises:
+        DescriptionError: The file is missing, too large, broken or no image.
+    """
+    file = path.absolute()
+    cached = _cache.get(file, file)
+    if cached is not None:
+        return cached
+    data, stamp = read_bounded(file, MAX_FILE_BYTES)
+    texels = _decoded(data, file)
+    texels.setflags(write=False)
+    _cache.put(file, stamp, texels)
+    return texels
+
+
+def _decoded(data: bytes, file: Path) -> Texels:
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(io.BytesIO(data)) as image:
+            if image.width * image.height > MAX_TEXELS:
+                reason = f"{image.width} x {image.height} texels are more than the {MAX_TEXELS} accepted"
+                raise DescriptionError(reason, file=file)
+            texels = np.array(image.convert("RGB"))
+    except UnidentifiedImageError:
+        raise DescriptionError("this is no image that can be read", file=file) from None
+    # Pillow's decoders raise almost anything for what they cannot decode.
+    except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
+        raise DescriptionError(f"the image is broken: {error}", file=file) from error
+    if texels.size == 0:
+        raise DescriptionError("the image has no texels", file=file)
+    return texels
+
+
+_cache: FileCache[Path, Texels] = FileCache(64)

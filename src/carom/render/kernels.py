@@ -1,0 +1,28 @@
+"""The kernels of the renderer. Each launch is one thread that handles a chunk of triangles or some rows."""
+
+from carom.model.real import Int32, kernel
+from carom.render.shading import shade_pixel
+from carom.render.structs import Picture, Scene, View
+from carom.render.visibility import fill_rows, project_chunk
+
+
+@kernel
+def project_kernel(scene: Scene, view: View, chunk: Int32):
+    """Finds the triangles of a chunk that may be seen."""
+    project_chunk(scene, view, chunk)
+
+
+@kernel
+def depth_kernel(scene: Scene, view: View, first_row: Int32, end_row: Int32):
+    """Finds what is nearest in each pixel of some rows."""
+    fill_rows(scene, view, first_row, end_row)
+
+
+@kernel
+def image_kernel(
+    scene: Scene, view: View, light: View, picture: Picture, first_row: Int32, end_row: Int32
+):
+    """Draws some rows of an image."""
+    fill_rows(scene, view, first_row, end_row)
+    for pixel in range(first_row * view.width, end_row * view.width):
+        shade_pixel(scene, view, light, picture, pixel)

@@ -1,0 +1,38 @@
+"""Mesh files as they look: with normals, texture coordinates and the texture of their material."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from carom.formats.files import FileCache, FileStamp
+from carom.formats.mesh import read_mesh
+from carom.render.obj_visuals import read_obj_visual
+from carom.render.render_mesh import RenderMesh, flat_mesh
+
+
+def read_mesh_visual(path: Path) -> RenderMesh:
+    """Reads an OBJ, STL or DAE file for drawing.
+
+    Unchanged files are served from a cache.
+
+    Raises:
+        DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles.
+    """
+    file = path.absolute()
+    cached = _cache.get(file, file)
+    if cached is not None:
+        return cached
+    # All the checks of the reader that physics uses hold here as well.
+    parts = read_mesh(file)
+    stamp = FileStamp.of(file)
+    if file.suffix.lower() == ".obj":
+        mesh = read_obj_visual(file)
+    else:
+        mesh = flat_mesh(np.concatenate([part.vertices[part.triangles] for part in parts]))
+    _cache.put(file, stamp, mesh)
+    return mesh
+
+
+_cache: FileCache[Path, RenderMesh] = FileCache(128)

@@ -1,0 +1,52 @@
+"""The triangles of any shape."""
+
+from __future__ import annotations
+
+import functools
+import logging
+from dataclasses import replace
+
+import numpy as np
+
+from carom.description import Geometry, Mesh, SignedDistanceField
+from carom.description.pose import Vector3
+from carom.errors import DescriptionError
+from carom.render.mesh_visuals import read_mesh_visual
+from carom.render.primitives import primitive_mesh
+from carom.render.render_mesh import RenderMesh, mesh_of, unit_vectors
+
+_log = logging.getLogger("carom")
+
+_NOTHING = mesh_of([], [], [], [])
+
+
+def shape_mesh(shape: Geometry) -> RenderMesh:
+    """The triangles of a shape in its frame.
+
+    There are none, with a warning, where a mesh cannot be used, and none of signed distance fields.
+    """
+    if isinstance(shape, SignedDistanceField):
+        return _NOTHING
+    if not isinstance(shape, Mesh):
+        return primitive_mesh(shape)
+    try:
+        return _scaled(read_mesh_visual(shape.path), shape.scale)
+    except DescriptionError as error:
+        _log.warning("%s; the mesh is not shown", error)
+        return _NOTHING
+
+
+@functools.lru_cache(maxsize=256)
+def _scaled(mesh: RenderMesh, scale: Vector3) -> RenderMesh:
+    if scale == (1.0, 1.0, 1.0):
+        return mesh
+    factors = np.array(scale)
+    # Normals scale with the cofactors, which also do without an inverse where a factor is 0.
+    cofactors = np.array([scale[1] * scale[2], scale[2] * scale[0], scale[0] * scale[1]])
+    mirrored = factors.prod() < 0.0
+    return replace(
+        mesh,
+        positions=(mesh.positions * factors).astype(np.float32),
+        normals=unit_vectors(mesh.normals * (-cofactors if mirrored else cofactors)).astype(np.float32),
+        triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]) if mirrored else mesh.triangles,
+    )

@@ -1,0 +1,67 @@
+"""Materials of OBJ files: colour and texture."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+
+from carom.description.link import Rgba
+from carom.errors import DescriptionError
+from carom.formats.files import read_bounded
+
+_log = logging.getLogger("carom")
+
+MAX_FILE_BYTES = 16 << 20
+"""Largest material file that is read."""
+
+
+@dataclass(slots=True)
+class ObjMaterial:
+    """What a material file says of one material.
+
+    Attributes:
+        rgba: Diffuse colour and opacity.
+        texture: Image of the diffuse colour; it may be missing or broken.
+    """
+
+    rgba: Rgba = (1.0, 1.0, 1.0, 1.0)
+    texture: Path | None = None
+
+
+def read_materials(path: Path) -> dict[str, ObjMaterial]:
+    """The materials of an MTL file by name; none, with a warning, if the file cannot be read."""
+    try:
+        data, _ = read_bounded(path, MAX_FILE_BYTES)
+    except DescriptionError as error:
+        _log.warning("%s; the mesh goes without its materials", error)
+        return {}
+    materials: dict[str, ObjMaterial] = {}
+    material = ObjMaterial()
+    for number, line in enumerate(data.decode("utf-8", errors="surrogateescape").splitlines(), start=1):
+        keyword, _, rest = line.strip().replace("\t", " ").partition(" ")
+        rest = rest.strip()
+        try:
+            if keyword == "newmtl":
+                material = materials.setdefault(rest, ObjMaterial())
+            elif keyword == "Kd":
+                red, green, blue = map(float, rest.split())
+                material.rgba = (red, green, blue, material.rgba[3])
+            elif keyword == "d":
+                material.rgba = (*material.rgba[:3], float(rest))
+            elif keyword == "Tr":
+                material.rgba = (*material.rgba[:3], 1.0 - float(rest))
+            elif keyword == "map_Kd" and rest:
+                material.texture = _texture(path, rest)
+        except ValueError:
+            _log.warning("%s:%d: %s needs other numbers than %r; ignored", path, number, keyword, rest)
+    return materials
+
+
+def _texture(path: Path, words: str) -> Path:
+    """The image named on a `map_Kd` line, relative to the material file."""
+    name = words.replace("\\", "/")
+    # Options such as "-s 1 1 1" come before the name, which may itself hold spaces.
+    if name.startswith("-"):
+        name = name.split()[-1]
+    return path.parent / name

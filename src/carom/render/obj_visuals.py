@@ -1,0 +1,181 @@
+"""Wavefront OBJ with everything that is seen: normals, texture coordinates and the material's texture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import DescriptionError
+from carom.formats.files import read_bounded
+from carom.formats.mesh.part import cut_into_fans
+from carom.formats.mesh.reader import MAX_FILE_BYTES
+from carom.render.mtl import ObjMaterial, read_materials
+from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
+
+_VERTEX, _UV, _NORMAL = 0, 1, 2
+_KINDS = {b"v": (_VERTEX, 3), b"vt": (_UV, 2), b"vn": (_NORMAL, 3)}
+
+
+@dataclass(slots=True)
+class _Lines:
+    """An OBJ file taken apart.
+
+    Attributes:
+        values: Positions, texture coordinates and normals: line numbers and what follows the keyword.
+        faces: What follows the `f` of each face.
+        face_lines: Line number of each face.
+        known: How many positions, texture coordinates and normals were known at each face.
+        libraries: Names of the material files.
+        materials: Names of the materials that have faces, in the order of use.
+    """
+
+    values: tuple[list[tuple[int, bytes]], ...] = field(default_factory=lambda: ([], [], []))
+    faces: list[bytes] = field(default_factory=list)
+    face_lines: list[int] = field(default_factory=list)
+    known: list[tuple[int, int, int]] = field(default_factory=list)
+    libraries: list[str] = field(default_factory=list)
+    materials: list[str] = field(default_factory=list)
+
+
+def read_obj_visual(file: Path) -> RenderMesh:
+    """Reads an OBJ file for drawing.
+
+    As in PyBullet one material serves the whole mesh: the first one in use that has a texture, else the
+    last one in use. Faces without normals are flat.
+
+    Raises:
+        DescriptionError: A number is missing or broken, or a face names something that does not exist.
+    """
+    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    lines = _take_apart(data)
+    positions, uvs, normals = (
+        _numbers(lines.values[kind], width, file) for kind, width in _KINDS.values()
+    )
+    corners = _corners(lines, (len(positions), len(uvs), len(normals)), file)
+    material = _material(lines, file)
+    return _mesh(positions, uvs, normals, corners, material)
+
+
+def _take_apart(data: bytes) -> _Lines:
+    lines = _Lines()
+    vertices, uvs, normals = lines.values
+    material = ""
+    for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
+        keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
+        if keyword in _KINDS:
+            lines.values[_KINDS[keyword][0]].append((number, rest))
+        elif keyword == b"f":
+            lines.faces.append(rest)
+            lines.face_lines.append(number)
+            lines.known.append((len(vertices), len(uvs), len(normals)))
+            if material not in lines.materials:
+                lines.materials.append(material)
+        elif keyword == b"usemtl":
+            material = rest.strip().decode("utf-8", errors="surrogateescape")
+        elif keyword == b"mtllib":
+            lines.libraries.append(rest.strip().decode("utf-8", errors="surrogateescape"))
+    return lines
+
+
+def _numbers(lines: list[tuple[int, bytes]], width: int, file: Path) -> NDArray[np.float64]:
+    """The first `width` numbers of each line; a weight or a colour may follow."""
+    rows = np.empty((len(lines), width))
+    for index, (number, line) in enumerate(lines):
+        try:
+            rows[index] = [float(word) for word in line.split()[:width]]
+        except ValueError:
+            raise DescriptionError(f"{width} numbers are due", file=file, line=number) from None
+        if not np.isfinite(rows[index]).all():
+            raise DescriptionError("a number is not finite", file=file, line=number)
+    return rows
+
+
+def _corners(lines: _Lines, counts: tuple[int, int, int], file: Path) -> NDArray[np.int64]:
+    """Triangles (m, 3 corners, 3): position, texture coordinate and normal of each corner; -1 for none."""
+    sizes = np.array([len(face.split()) for face in lines.faces], dtype=np.int64)
+    words = b" ".join(lines.faces).split()
+    try:
+        indices = _indices(words)
+    except (ValueError, OverflowError):
+        raise DescriptionError("a face needs whole numbers", file=file, line=_bad_face(lines)) from None
+    known = np.repeat(np.array(lines.known, dtype=np.int64).reshape(-1, 3), sizes, axis=0)
+    # From 1; negative ones count back from those known at the face; 0 is none.
+    indices = np.where(indices < 0, indices + known, indices - 1)
+    for kind, (count, name) in enumerate(zip(counts, ("vertex", "texture coordinate", "normal"), strict=True)):
+        least = 0 if kind == _VERTEX else -1
+        outside = (indices[:, kind] < least) | (indices[:, kind] >= count)
+        if outside.any():
+            line = int(np.repeat(lines.face_lines, sizes)[outside.argmax()])
+            raise DescriptionError(f"a face names a {name} outside 1..{count}", file=file, line=line)
+    order = cut_into_fans(np.arange(len(indices)), sizes)
+    return indices[order]
+
+
+def _indices(words: list[bytes]) -> NDArray[np.int64]:
+    """(k, 3) numbers as the file has them: position, texture coordinate, normal; 0 where there is none."""
+    result = np.zeros((len(words), 3), dtype=np.int64)
+    text = b" ".join(words)
+    slashes, double = text.count(b"/"), text.count(b"//")
+    # All words of a file usually have the same form: then NumPy does the work.
+    if slashes == 0:
+        result[:, _VERTEX] = _integers(text.split())
+    elif slashes == 2 * len(words) and double == 0 and all(word.count(b"/") == 2 for word in words):
+        result[:] = np.array(_integers(text.replace(b"/", b" ").split())).reshape(-1, 3)
+    elif slashes == 2 * len(words) and double == len(words):
+        result[:, [_VERTEX, _NORMAL]] = np.array(_integers(text.replace(b"//", b" ").split())).reshape(-1, 2)
+    else:
+        for row, word in zip(result, words, strict=True):
+            entries = word.split(b"/")
+            row[: len(entries)] = [int(entry) if entry else 0 for entry in entries[:3]]
+    return result
+
+
+def _integers(words: list[bytes]) -> list[int]:
+    return list(map(int, words))
+
+
+def _bad_face(lines: _Lines) -> int | None:
+    for face, line in zip(lines.faces, lines.face_lines, strict=True):
+        try:
+            _indices(face.split())
+        except (ValueError, OverflowError):
+            return line
+    return None
+
+
+def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
+    known: dict[str, ObjMaterial] = {}
+    for name in lines.libraries:
+        known.update(read_materials(file.parent / name))
+    used = [known[name] for name in lines.materials if name in known]
+    with_texture = [material for material in used if material.texture is not None]
+    return with_texture[0] if with_texture else used[-1] if used else None
+
+
+def _mesh(
+    positions: NDArray[np.float64],
+    uvs: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    corners: NDArray[np.int64],
+    material: ObjMaterial | None,
+) -> RenderMesh:
+    # Corners without a normal get that of their face, as a further normal.
+    flat = (corners[:, :, _NORMAL] < 0).any(axis=1)
+    if flat.any():
+        corners = corners.copy()
+        corners[flat, :, _NORMAL] = len(normals) + np.arange(flat.sum())[:, None]
+        normals = np.concatenate([normals, face_normals(positions[corners[flat, :, _VERTEX]])])
+    distinct, inverse = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    vertex, uv, normal = distinct.T
+    no_uv = np.zeros(2) if len(uvs) else np.full(2, NO_TEXTURE_UV)
+    return RenderMesh(
+        positions[vertex].astype(np.float32),
+        unit_vectors(normals[normal]).astype(np.float32),
+        np.concatenate([uvs, [no_uv]])[uv].astype(np.float32),
+        inverse.reshape(-1, 3).astype(np.int32),
+        None if material is None else material.texture,
+        None if material is None else material.rgba,
+    )

@@ -1,0 +1,51 @@
+"""Running kernels of one image side by side: while they run they leave Python to other threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+MAX_WORKERS = 8
+"""More threads than this gain nothing for images of usual size."""
+
+
+def worker_count() -> int:
+    """How many threads share the work: one for each processor this process may use."""
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(processors, MAX_WORKERS)
+
+
+def run_all(tasks: Sequence[Callable[[], None]]) -> None:
+    """Runs all tasks, in any order and at the same time, and returns when the last one is done."""
+    if len(tasks) == 1 or worker_count() == 1:
+        for task in tasks:
+            task()
+        return
+    pool = _pool()
+    # This thread takes its share, too: most often it is done before a sleeping one has woken up.
+    pending = iter(tasks)
+    others = [pool.submit(_work, pending) for _ in range(min(worker_count(), len(tasks)) - 1)]
+    _work(pending)
+    for other in others:
+        other.result()
+
+
+def _work(pending: object) -> None:
+    # Taking the next item of a list iterator is one indivisible operation.
+    for task in pending:  # type: ignore[attr-defined]
+        task()
+
+
+_pools: list[ThreadPoolExecutor] = []
+
+
+def _pool() -> ThreadPoolExecutor:
+    if not _pools:
+        _pools.append(ThreadPoolExecutor(MAX_WORKERS, thread_name_prefix="carom-render"))
+    return _pools[0]
+
+
+# The threads of a process do not live on in its forks.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pools.clear)

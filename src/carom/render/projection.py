@@ -1,0 +1,81 @@
+"""Matrices from the world to pixels. All are 4 x 4 and act on columns (x, y, z, 1)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description.pose import Vector3
+
+Matrix = NDArray[np.float64]
+
+_LEAST_DETERMINANT = 1e-300
+
+
+def to_pixels(width: int, height: int) -> Matrix:
+    """From clip coordinates, as OpenGL has them, to homogeneous pixel coordinates.
+
+    As in PyBullet the middle of the view lies at column width / 2 and the same height above the lowest
+    row: half a pixel from the middle of the image.
+    """
+    return np.array(
+        [
+            [0.5 * width, 0.0, 0.0, 0.5 * width],
+            [0.0, -0.5 * height, 0.0, 0.5 * height - 1.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def facing_sign(world_to_pixel: Matrix) -> float:
+    """Sign of the volume that the corners of a triangle seen from outside span in (column w, row w, w).
+
+    Returns:
+        1 or -1; 0 if the matrix shows nothing.
+    """
+    columns_rows_w = world_to_pixel[[0, 1, 3]]
+    perspective = np.linalg.det(columns_rows_w[:, :3])
+    if abs(perspective) > 1e-12 * np.prod(np.linalg.norm(columns_rows_w[:, :3], axis=1)):
+        return -float(np.sign(perspective))
+    # Parallel rays: they run along the direction in which neither column nor row changes.
+    along = np.cross(world_to_pixel[0, :3], world_to_pixel[1, :3])
+    return -float(np.sign(along @ world_to_pixel[2, :3]))
+
+
+def is_singular(matrix: Matrix) -> bool:
+    """The matrix squeezes space flat."""
+    return not abs(np.linalg.det(matrix)) > _LEAST_DETERMINANT
+
+
+def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:
+    """World to eye: x to the right, y up, z backwards; another up direction where `up` is no help."""
+    forward = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, up)
+    if np.linalg.norm(right) < 1e-9:
+        right = np.cross(forward, (0.0, 1.0, 0.0))
+    right /= np.linalg.norm(right)
+    rotation = np.stack([right, np.cross(right, forward), -forward])
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    matrix[:3, 3] = -rotation @ np.asarray(eye, dtype=np.float64)
+    return matrix
+
+
+def poses_to_matrices(poses: Matrix) -> Matrix:
+    """(n, 4, 4) matrices of poses (n, 7): position, unit quaternion (x, y, z, w)."""
+    matrices = np.zeros((len(poses), 4, 4))
+    x, y, z, w = poses[:, 3:].T
+    matrices[:, 0, 0] = 1.0 - 2.0 * (y * y + z * z)
+    matrices[:, 0, 1] = 2.0 * (x * y - w * z)
+    matrices[:, 0, 2] = 2.0 * (x * z + w * y)
+    matrices[:, 1, 0] = 2.0 * (x * y + w * z)
+    matrices[:, 1, 1] = 1.0 - 2.0 * (x * x + z * z)
+    matrices[:, 1, 2] = 2.0 * (y * z - w * x)
+    matrices[:, 2, 0] = 2.0 * (x * z - w * y)
+    matrices[:, 2, 1] = 2.0 * (y * z + w * x)
+    matrices[:, 2, 2] = 1.0 - 2.0 * (x * x + y * y)
+    matrices[:, :3, 3] = poses[:, :3]
+    matrices[:, 3, 3] = 1.0
+    return matrices

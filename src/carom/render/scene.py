@@ -1,0 +1,220 @@
+"""The shapes of a world as flat arrays, kept between images."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+from weakref import ref
+
+import numpy as np
+import warp as wp
+from numpy.typing import NDArray
+
+from carom.description.transform import compose, inverse, rotation_matrix
+from carom.model.body_spec import BASE
+from carom.model.real import NUMPY_REAL, Int32, Vector3, Vector4, real
+from carom.render.appearance import Appearance, ShapeLook
+from carom.render.meshes import shape_mesh
+from carom.render.parallel import worker_count
+from carom.render.render_mesh import RenderMesh
+from carom.render.structs import Scene, Vector2
+from carom.render.textures import NO_TEXTURE, Textures
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+MAX_PART_TRIANGLES = 2048
+"""Larger meshes are cut: parts out of sight cost nothing, and the others are shared out to threads."""
+
+CHUNKS_PER_WORKER = 3
+LINK_SHIFT = 24
+"""Labels hold the body in the bits below and the link, from 1, above."""
+
+
+@dataclass(slots=True, eq=False)
+class Piece:
+    """Part of a mesh with its own vertices, and a ball around it."""
+
+    positions: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    uvs: NDArray[np.float32]
+    triangles: NDArray[np.int32]
+    centre: NDArray[np.float64]
+    radius: float
+
+
+@functools.lru_cache(maxsize=1024)
+def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
+    """A mesh cut into pieces of at most `MAX_PART_TRIANGLES`."""
+    pieces = []
+    for first in range(0, len(mesh.triangles), MAX_PART_TRIANGLES):
+        used, inverse_index = np.unique(
+            mesh.triangles[first : first + MAX_PART_TRIANGLES], return_inverse=True
+        )
+        positions = mesh.positions[used].astype(np.float64)
+        centre = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
+        pieces.append(
+            Piece(
+                positions,
+                mesh.normals[used].astype(np.float64),
+                mesh.uvs[used],
+                inverse_index.reshape(-1, 3).astype(np.int32),
+                centre,
+                float(np.linalg.norm(positions - centre, axis=1).max()),
+            )
+        )
+    return tuple(pieces)
+
+
+@dataclass(slots=True)
+class _Columns:
+    """The arrays of a scene while they are collected."""
+
+    positions: list[NDArray[Any]] = field(default_factory=list)
+    normals: list[NDArray[Any]] = field(default_factory=list)
+    uvs: list[NDArray[Any]] = field(default_factory=list)
+    triangles: list[NDArray[Any]] = field(default_factory=list)
+    vertex_counts: list[int] = field(default_factory=list)
+    triangle_counts: list[int] = field(default_factory=list)
+    centres: list[NDArray[Any]] = field(default_factory=list)
+    radii: list[float] = field(default_factory=list)
+    links: list[int] = field(default_factory=list)
+    labels: list[int] = field(default_factory=list)
+    rgba: list[tuple[float, ...]] = field(default_factory=list)
+    two_sided: list[bool] = field(default_factory=list)
+    textures: list[int] = field(default_factory=list)
+
+
+class SceneArrays:
+    """Everything a world shows, at rest.
+
+    Attributes:
+        struct: The arrays, for kernels.
+        link_rows: Rows of `World.link_pose` of the links that show something.
+        vertex_count: Number of vertices.
+        triangle_count: Number of triangles.
+        chunk_count: Number of chunks the triangles are handled in.
+    """
+
+    def __init__(self, world: World, appearance: Appearance) -> None:
+        self._bodies = [ref(body) for body in world.bodies.values()]
+        self._texture_slots: dict[int, int] = {}
+        columns = _Columns()
+        rows: list[int] = []
+        for body in world.bodies.values():
+            for link in range(BASE, body.joint_count):
+                shapes = appearance.shapes(body, link)
+                if shapes:
+                    for shape in shapes:
+                        self._add_shape(columns, body, link, shape, len(rows))
+                    rows.append(body.first_link + link - BASE)
+        self.link_rows = np.array(rows, dtype=np.int64)
+        self.vertex_count = sum(columns.vertex_counts)
+        self.triangle_count = sum(columns.triangle_counts)
+        self.struct, self.chunk_count = _struct(columns)
+        self._changes = appearance.changes
+        self._take_textures(appearance.textures)
+
+    def shows(self, world: World, appearance: Appearance) -> bool:
+        """The arrays hold what the world shows now; textures may be out of date."""
+        return self._changes == appearance.changes and [body() for body in self._bodies] == list(
+            world.bodies.values()
+        )
+
+    def _add_shape(self, columns: _Columns, body: Body, link: int, shape: ShapeLook, slot: int) -> None:
+        frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
+        rotation = np.array(rotation_matrix(frame.orientation))
+        for piece in pieces_of(shape_mesh(shape.geometry)):
+            columns.positions.append(piece.positions @ rotation.T + frame.position)
+            columns.normals.append(piece.normals @ rotation.T)
+            columns.uvs.append(piece.uvs)
+            columns.triangles.append(piece.triangles)
+            columns.vertex_counts.append(len(piece.positions))
+            columns.triangle_counts.append(len(piece.triangles))
+            columns.centres.append(rotation @ piece.centre + frame.position)
+            columns.radii.append(piece.radius)
+            columns.links.append(slot)
+            columns.labels.append(body.id + ((link - BASE) << LINK_SHIFT))
+            columns.rgba.append(shape.rgba)
+            columns.two_sided.append(shape.two_sided)
+            columns.textures.append(self._texture_slot(shape.texture))
+
+    def _texture_slot(self, number: int) -> int:
+        if number == NO_TEXTURE:
+            return NO_TEXTURE
+        return self._texture_slots.setdefault(number, len(self._texture_slots))
+
+    def update_textures(self, textures: Textures) -> bool:
+        """Takes over changed textures; true if there were any, and `struct` has other arrays."""
+        if self._texture_changes == textures.changes:
+            return False
+        self._take_textures(textures)
+        return True
+
+    def _take_textures(self, textures: Textures) -> None:
+        self._texture_changes = textures.changes
+        # The lower row comes first, as texture coordinates have it.
+        images = [textures.image(number)[::-1] for number in self._texture_slots]
+        texels = [image.reshape(-1, 3) for image in images]
+        self.struct.texture_first = _array(_starts(list(map(len, texels))), Int32)
+        self.struct.texture_size = _array(
+            np.array([image.shape[1::-1] for image in images], dtype=np.int32).reshape(-1, 2), wp.vec2i
+        )
+        self.struct.texel = _array(np.concatenate([np.zeros((0, 3), np.uint8), *texels]), wp.vec3ub)
+
+
+def _struct(columns: _Columns) -> tuple[Any, int]:
+    struct = Scene()
+    none = np.zeros((0, 3))
+    struct.vertex_position = _reals(np.concatenate([none, *columns.positions]), Vector3)
+    struct.vertex_normal = _reals(np.concatenate([none, *columns.normals]), Vector3)
+    struct.vertex_uv = _reals(np.concatenate([none[:, :2], *columns.uvs]), Vector2)
+    vertex_starts = _starts(columns.vertex_counts)
+    triangle_starts = _starts(columns.triangle_counts)
+    corners = [
+        triangles + start for triangles, start in zip(columns.triangles, vertex_starts, strict=False)
+    ]
+    struct.triangle_corners = _array(np.concatenate([none.astype(np.int32), *corners]), wp.vec3i)
+    struct.triangle_part = _array(
+        np.repeat(np.arange(len(columns.links)), columns.triangle_counts), Int32
+    )
+    struct.part_first_vertex = _array(vertex_starts, Int32)
+    struct.part_first_triangle = _array(triangle_starts, Int32)
+    struct.part_centre = _reals(np.array(columns.centres).reshape(-1, 3), Vector3)
+    struct.part_radius = _reals(np.array(columns.radii), real)
+    struct.part_link = _array(np.array(columns.links), Int32)
+    struct.part_label = _array(np.array(columns.labels), Int32)
+    struct.part_rgba = _reals(np.array(columns.rgba).reshape(-1, 4), Vector4)
+    struct.part_two_sided = _array(np.array(columns.two_sided), Int32)
+    struct.part_texture = _array(np.array(columns.textures), Int32)
+    chunks = _chunk_starts(columns.triangle_counts)
+    struct.chunk_first_part = _array(chunks, Int32)
+    return struct, len(chunks) - 1
+
+
+def _chunk_starts(triangle_counts: list[int]) -> NDArray[np.int32]:
+    """First part of each chunk, and the number of parts; chunks have about as many triangles each."""
+    size = max(sum(triangle_counts) / (CHUNKS_PER_WORKER * worker_count()), 1.0)
+    starts, filled = [0], 0
+    for part, count in enumerate(triangle_counts):
+        if filled >= size:
+            starts.append(part)
+            filled = 0
+        filled += count
+    return np.array([*starts, len(triangle_counts)], dtype=np.int32)
+
+
+def _starts(counts: list[int]) -> NDArray[np.int32]:
+    return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+
+
+def _reals(values: NDArray[Any], dtype: Any) -> Any:
+    return _array(values.astype(NUMPY_REAL), dtype)
+
+
+def _array(values: NDArray[Any], dtype: Any) -> Any:
+    scalar = wp.dtype_to_numpy(getattr(dtype, "_wp_scalar_type_", dtype))
+    contiguous = np.ascontiguousarray(values, dtype=scalar)
+    return wp.array(contiguous, dtype=dtype, device="cpu", copy=False)

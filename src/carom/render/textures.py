@@ -1,0 +1,55 @@
+"""The textures of a world, by the numbers scripts know them by."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.render.images import Texels
+
+NO_TEXTURE = -1
+
+# Blue and white in a square that repeats: how a plane without a mesh looks.
+_CHECKER = np.array(
+    [[(173, 199, 255), (255, 255, 255)], [(255, 255, 255), (173, 199, 255)]], dtype=np.uint8
+)
+
+
+class Textures:
+    """Images by number. Numbers are given once and never again.
+
+    Attributes:
+        changes: Grows with every change.
+    """
+
+    def __init__(self) -> None:
+        self.changes = 0
+        self._images: dict[int, Texels] = {}
+        self._next = 0
+
+    def __contains__(self, number: object) -> bool:
+        return number in self._images
+
+    def add(self, image: Texels) -> int:
+        """Enters an image (height, width, 3), the top row first, and returns its number."""
+        number = self._next
+        self._next += 1
+        self._images[number] = image
+        return number
+
+    def add_checker(self) -> int:
+        """Enters the pattern of planes and returns its number."""
+        return self.add(_CHECKER)
+
+    def replace(self, number: int, image: Texels) -> None:
+        """Puts another image, of any size, in the place of one."""
+        self._images[number] = image
+        self.changes += 1
+
+    def image(self, number: int) -> Texels:
+        """The image of a number; KeyError if there is none."""
+        return self._images[number]
+
+    def clear(self) -> None:
+        """Forgets all images; their numbers are not used again."""
+        self._images.clear()
+        self.changes += 1
