@@ -8,6 +8,7 @@ Each engine has an interpreter and a process of its own.
 from __future__ import annotations
 
 import argparse
+import os
 import subprocess
 import sys
 import tempfile
@@ -18,12 +19,12 @@ from .catalogue import select
 from .compare import compare
 
 
-def measure(interpreter: Path, names: list[str], into: Path) -> None:
-    """Record the scenarios with another interpreter's engine."""
+def measure(interpreter: Path, environment: dict[str, str], names: list[str], into: Path) -> None:
+    """Record the scenarios with the engine an interpreter finds in an environment."""
     command = [str(interpreter), "-m", f"{__package__}.record", "--into", str(into)]
     if names:
         command += ["--only", *names]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(command, check=True, env=environment, stdout=subprocess.DEVNULL)
 
 
 def main() -> None:
@@ -36,8 +37,11 @@ def main() -> None:
     differing = 0
     with tempfile.TemporaryDirectory() as directory:
         theirs, ours = Path(directory, "pybullet"), Path(directory, "carom")
-        measure(arguments.oracle, arguments.only, theirs)
-        measure(Path(sys.executable), arguments.only, ours)
+        environment = dict(os.environ)
+        measure(Path(sys.executable), environment, arguments.only, ours)
+        # A path to Carom's sources would hide the real module.
+        environment.pop("PYTHONPATH", None)
+        measure(arguments.oracle, environment, arguments.only, theirs)
         for scenario in chosen:
             expected = golden.read(theirs / f"{scenario.name}.npz").series
             measured = golden.read(ours / f"{scenario.name}.npz").series
