@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from math import sqrt
 from typing import Any, Protocol
 
 import numpy as np
 
-from carom.description.transform import quaternion_from_matrix
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.builder import TreeRows
-from carom.model.codes import ShapeKind
 from carom.model.contact_structs import Shapes
 from carom.model.flags import LoadFlags
-from carom.model.inertia import is_in_place, link_bounds, placement
+from carom.model.inertia import link_bounds
 from carom.model.pair_filters import PairFilters
-from carom.model.shape_pieces import ShapePiece, shape_pieces
+from carom.model.placed_pieces import AXES, PlacedPiece, has_own_margin, placed_pieces, reach, row_counts
+from carom.model.shape_pieces import ShapePiece
 
 # Collision groups of bodies that move and of fixed bases, and the groups each collides with.
 MOVING_GROUP, MOVING_MASK = 1, -1
@@ -46,7 +44,6 @@ _INDEX_FIELDS = {
     "corner_vertex": "vertex",
     "link_first_shape": "shape",
 }
-_OWN_AXES = ("shape", "vertex", "face", "corner", "node")
 
 
 class Surface(Protocol):
@@ -82,22 +79,13 @@ class BodyShapes:
     thick: list[bool] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
-class _PlacedPiece:
-    """A piece, its pose in the inertial frame as (x, y, z, qx, qy, qz, qw), and its link's place."""
-
-    piece: ShapePiece
-    pose: tuple[float, ...]
-    link: int
-
-
 class ShapeArrays:
     """The shapes of all bodies of a world, in step with the rows of their links."""
 
     def __init__(self) -> None:
         self.table = ArrayTable(Shapes, None)
         self.filters = PairFilters(self.table)
-        self.used = dict.fromkeys(("link", *_OWN_AXES), 0)
+        self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
         self.breaking_fraction = BREAKING_FRACTION
         self._bodies: dict[int, BodyShapes] = {}
 
@@ -140,8 +128,10 @@ class ShapeArrays:
         """
         links = [spec.base, *spec.links]
         implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-        pieces = [piece for j, link in enumerate(links) for piece in _placed_pieces(link, j, implicit)]
-        body = BodyShapes(rows, {axis: self.used[axis] for axis in _OWN_AXES}, _row_counts(pieces))
+        pieces = [piece for j, link in enumerate(links) for piece in placed_pieces(link, j, implicit)]
+        body = BodyShapes(
+            rows, {axis: self.used[axis] for axis in AXES}, row_counts([placed.piece for placed in pieces])
+        )
         body.bounds = [
             link_bounds(
                 link.collisions,
@@ -151,8 +141,8 @@ class ShapeArrays:
             )
             for link in links
         ]
-        body.thick = [_has_own_margin(link, implicit) for link in links]
-        needed = {axis: self.used[axis] + body.count[axis] for axis in _OWN_AXES}
+        body.thick = [has_own_margin(link, implicit) for link in links]
+        needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
         grown = self.table.reserve(needed)
         self._bodies[rows.first["link"]] = body
@@ -160,7 +150,7 @@ class ShapeArrays:
         self._write_pieces(body, pieces)
         self.used.update(needed)
         for j, surface in enumerate(surfaces):
-            self.write_surface(rows.first["link"] + j, surface)
+            self._write_surface(body, j, surface)
         return grown
 
     def _write_links(self, body: BodyShapes, spec: BodySpec, links: Sequence[LinkSpec]) -> None:
@@ -180,7 +170,7 @@ class ShapeArrays:
         numpy["link_first_shape"][whole] = body.first["shape"]
         numpy["link_shape_count"][whole] = 0
 
-    def _write_pieces(self, body: BodyShapes, pieces: Sequence[_PlacedPiece]) -> None:
+    def _write_pieces(self, body: BodyShapes, pieces: Sequence[PlacedPiece]) -> None:
         numpy = self.table.numpy
         at = dict(body.first)
         first_link = body.rows.first["link"]
@@ -194,7 +184,7 @@ class ShapeArrays:
             numpy["shape_margin"][row] = piece.margin
             numpy["shape_center"][row] = piece.center
             numpy["shape_columns"][row] = piece.columns
-            numpy["shape_breaking"][row] = self.breaking_fraction * _reach(body.bounds[placed.link])
+            numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])
             for axis in ("vertex", "face", "node"):
                 numpy[f"shape_first_{axis}"][row] = at[axis]
             if numpy["link_shape_count"][link] == 0:
@@ -209,8 +199,8 @@ class ShapeArrays:
         polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
         if polyhedron is None:
             return
-        counts = _row_counts([_PlacedPiece(piece, (), 0)])
-        rows = {axis: slice(at[axis], at[axis] + counts[axis]) for axis in _OWN_AXES}
+        counts = row_counts([piece])
+        rows = {axis: slice(at[axis], at[axis] + counts[axis]) for axis in AXES}
         numpy["shape_vertex_count"][row] = counts["vertex"]
         numpy["shape_face_count"][row] = counts["face"]
         numpy["vertex_position"][rows["vertex"]] = polyhedron.vertices
@@ -232,7 +222,7 @@ class ShapeArrays:
         body = self._bodies.pop(first_link)
         self.filters.forget_links(first_link, link_count)
         for axis, start, count in (
-            *((axis, body.first[axis], body.count[axis]) for axis in _OWN_AXES),
+            *((axis, body.first[axis], body.count[axis]) for axis in AXES),
             ("link", first_link, link_count),
         ):
             if count == 0:
@@ -243,7 +233,7 @@ class ShapeArrays:
                 if target == axis:
                     numpy[name][numpy[name] >= start + count] -= count
             for other in self._bodies.values():
-                if axis in _OWN_AXES and other.first[axis] > start:
+                if axis in AXES and other.first[axis] > start:
                     other.first[axis] -= count
         trees = numpy["shape_tree"]
         trees[trees > rows.tree] -= 1
@@ -254,7 +244,11 @@ class ShapeArrays:
 
     def write_surface(self, link_row: int, surface: Surface) -> None:
         """Take over how a link touches."""
+        self._write_surface(*self._body_of(link_row), surface)
+
+    def _write_surface(self, body: BodyShapes, link: int, surface: Surface) -> None:
         numpy = self.table.numpy
+        link_row = body.rows.first["link"] + link
         numpy["link_lateral_friction"][link_row] = surface.lateral_friction
         numpy["link_rolling_friction"][link_row] = surface.rolling_friction
         numpy["link_spinning_friction"][link_row] = surface.spinning_friction
@@ -264,7 +258,6 @@ class ShapeArrays:
         numpy["link_friction_anchor"][link_row] = surface.friction_anchor
         shapes = self._shapes_of(link_row)
         numpy["shape_ccd_radius"][shapes] = surface.ccd_swept_sphere_radius
-        body, link = self._body_of(link_row)
         if body.thick[link]:
             numpy["shape_margin"][shapes] = surface.collision_margin
 
@@ -279,7 +272,7 @@ class ShapeArrays:
         breaking = self.table.numpy["shape_breaking"]
         for body in self._bodies.values():
             for link, bounds in enumerate(body.bounds):
-                breaking[self._shapes_of(body.rows.first["link"] + link)] = fraction * _reach(bounds)
+                breaking[self._shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
 
     def bounds(self, link_row: int) -> Bounds:
         """Bounds of a link's shapes along the axes of its inertial frame, margins included."""
@@ -304,7 +297,7 @@ class ShapeArrays:
         numpy = self.table.numpy
         shapes = self._shapes_of(link_row)
         for row, placed in zip(
-            range(shapes.start, shapes.stop), _placed_pieces(spec, link, implicit_cylinder), strict=True
+            range(shapes.start, shapes.stop), placed_pieces(spec, link, implicit_cylinder), strict=True
         ):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
             face = at["face"]
@@ -325,44 +318,6 @@ class ShapeArrays:
             return body, 0
         first = max(first for first in self._bodies if first <= link_row)
         return self._bodies[first], link_row - first
-
-
-def _placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[_PlacedPiece]:
-    placed = []
-    for collision in link.collisions:
-        rotation, position = placement(link.inertial_frame, collision.frame)
-        pose = (*position, *quaternion_from_matrix(rotation))
-        pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
-        placed.extend(_PlacedPiece(piece, pose, index) for piece in pieces)
-    return placed
-
-
-def _row_counts(pieces: Sequence[_PlacedPiece]) -> dict[str, int]:
-    """How many rows pieces need on each axis of shapes."""
-    solids = [placed.piece.polyhedron for placed in pieces if placed.piece.polyhedron is not None]
-    trees = [placed.piece.hierarchy for placed in pieces if placed.piece.hierarchy is not None]
-    return {
-        "shape": len(pieces),
-        "vertex": sum(len(solid.vertices) for solid in solids),
-        "face": sum(len(solid.planes) for solid in solids),
-        "corner": sum(len(solid.corners) for solid in solids),
-        "node": sum(len(tree.lower) for tree in trees),
-    }
-
-
-def _has_own_margin(link: LinkSpec, implicit_cylinder: bool) -> bool:
-    """Whether the margin of a link is that of its one hull or surface, and not that of a compound."""
-    if not is_in_place(link.collisions, link.inertial_frame):
-        return False
-    geometry = link.collisions[0].geometry
-    pieces = shape_pieces(geometry, implicit_cylinder=implicit_cylinder)
-    is_compound = getattr(geometry, "path", None) is not None and geometry.path.suffix.lower() == ".obj"
-    return not is_compound and any(piece.kind >= ShapeKind.HULL for piece in pieces)
-
-
-def _reach(bounds: Bounds) -> float:
-    """Radius of the ball around the bounds, plus the distance of their centre."""
-    return sqrt(sum(half * half for half in bounds.half)) + sqrt(sum(c * c for c in bounds.center))
 
 
 def _as_int32(bits: int) -> int:

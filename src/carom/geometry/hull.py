@@ -1,0 +1,265 @@
+"""Convex hulls of points, by quickhull.
+
+The point farthest outside all faces is added first, so that stopping early leaves a good hull of few
+vertices. Points that do not span a volume are given a little thickness.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.geometry.merge_faces import merged_loops
+from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
+
+Points = NDArray[np.float64]
+Triangle = tuple[int, int, int]
+
+ROUNDING = 1e-9
+"""Heights above a face below which a point counts as on it, relative to the size of the whole."""
+
+EXACT = 1e-7
+"""Relative error that single precision leaves in the points of mesh files."""
+
+FLAT = 1e-6
+"""Relative thickness below which points are thought to lie in a plane, on a line or in one point."""
+
+THICKEST_SLAB = 1e-4
+"""Greatest half thickness given to what has none [m]."""
+
+_SLAB = 1e-3
+"""Half thickness given to what has none, relative to its size."""
+
+
+def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int | None = None) -> Polyhedron:
+    """The convex hull of points; its vertices are some of them.
+
+    Args:
+        points: (n, 3) positions, n at least 1. They may coincide, lie on a line or in a plane: then the
+            hull is a slab around them, at most 0.2 mm thick.
+        tolerance: Points outside the hull by less than this fraction of its size are left out.
+        most_vertices: Stop after so many vertices, at least 4; None for no bound.
+
+    Returns:
+        The hull; coplanar triangles are joined to polygons.
+
+    Raises:
+        ValueError: There are no points, or one is not finite.
+    """
+    points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    if not len(points):
+        raise ValueError("a convex hull needs points")
+    if not np.isfinite(points).all():
+        raise ValueError("a point is not finite")
+    # Coordinates far from the origin would lose digits.
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    centred = points - middle
+    size = float(np.abs(centred).max())
+    corners = _first_corners(centred, FLAT * size)
+    if len(corners) < 4:
+        centred = _thickened(centred, corners, size)
+        size = float(np.abs(centred).max())
+        corners = _first_corners(centred, 0.0)
+    hull = _Quickhull(centred, corners, size)
+    hull.grow(tolerance * size, most_vertices)
+    triangles = [face.corners for face in hull.faces.values()]
+    return polyhedron_of_loops(centred, merged_loops(centred, triangles, size)).moved(middle)
+
+
+def _first_corners(points: Points, thin: float) -> list[int]:
+    """Four points that span a volume, or fewer if all lie in a plane, on a line or in one point."""
+    axis = int(np.ptp(points, axis=0).argmax())
+    first = int(points[:, axis].argmin())
+    away = points - points[first]
+    distances = np.linalg.norm(away, axis=1)
+    second = int(distances.argmax())
+    if distances[second] <= thin or distances[second] == 0.0:
+        return [first]
+    along = away[second] / distances[second]
+    aside = away - np.outer(away @ along, along)
+    distances = np.linalg.norm(aside, axis=1)
+    third = int(distances.argmax())
+    if distances[third] <= thin:
+        return [first, second]
+    normal = np.cross(along, aside[third])
+    normal /= np.linalg.norm(normal)
+    heights = away @ normal
+    fourth = int(np.abs(heights).argmax())
+    if abs(heights[fourth]) <= thin:
+        return [first, second, third]
+    return [first, second, third, fourth]
+
+
+def _thickened(points: Points, corners: list[int], size: float) -> Points:
+    """The points moved both ways along every direction in which they have no extent."""
+    half = min(THICKEST_SLAB, _SLAB * size) if size > 0.0 else THICKEST_SLAB
+    spanned = points[corners[1:]] - points[corners[0]]
+    # The rows beyond the rank of the spanned directions are at right angles to all of them.
+    directions = np.linalg.svd(np.vstack([spanned, np.zeros((3, 3))]))[2]
+    for direction in directions[len(spanned) :]:
+        points = np.concatenate([points - half * direction, points + half * direction])
+    return points
+
+
+@dataclass(slots=True, eq=False)
+class _Face:
+    """A triangle of the growing hull.
+
+    Attributes:
+        corners: Counter-clockwise from outside.
+        plane: Outward unit normal and offset.
+        neighbours: Face across the edge from each corner to the next.
+        outside: Points above this face, each kept by one face only.
+        farthest: The highest of them.
+        height: Its height.
+    """
+
+    corners: Triangle
+    plane: tuple[float, float, float, float]
+    neighbours: list[int]
+    outside: NDArray[np.int64]
+    farthest: int = -1
+    height: float = 0.0
+
+
+class _Quickhull:
+    """A hull that grows point by point from a tetrahedron."""
+
+    def __init__(self, points: Points, corners: list[int], size: float) -> None:
+        self.points = points
+        self.rounding = ROUNDING * size
+        self.faces: dict[int, _Face] = {}
+        self._count = 0
+        self._pending: list[tuple[float, int]] = []
+        a, b, c, d = corners
+        p = points[corners]
+        if np.dot(np.cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0:
+            b, c = c, b
+        triangles = [(a, b, c), (a, c, d), (c, b, d), (b, a, d)]
+        numbers = self._add(triangles, np.arange(len(points)))
+        edges = {edge: n for n in numbers for edge in _edges(self.faces[n].corners)}
+        for number in numbers:
+            face = self.faces[number]
+            face.neighbours = [edges[end, start] for start, end in _edges(face.corners)]
+
+    def grow(self, tolerance: float, most_vertices: int | None) -> None:
+        """Take in the farthest point again and again."""
+        left = len(self.points) if most_vertices is None else most_vertices - 4
+        while left > 0 and self._pending:
+            height, number = heapq.heappop(self._pending)
+            if -height <= max(tolerance, self.rounding):
+                return
+            face = self.faces.get(number)
+            if face is None:
+                continue
+            if self._take_in(number, face):
+                left -= 1
+            else:
+                self._leave_out(number, face)
+
+    def _take_in(self, number: int, face: _Face) -> bool:
+        """Put a tent from the rim of all faces that a face's farthest point sees to that point."""
+        eye = face.farthest
+        x, y, z = self.points[eye].tolist()
+        for grazing in (self.rounding, -self.rounding):
+            seen, rim = self._seen(number, (x, y, z), grazing)
+            loop = _loop(rim)
+            if loop is not None:
+                break
+        else:
+            return False
+        orphans = np.concatenate([self.faces[n].outside for n in seen])
+        for n in seen:
+            del self.faces[n]
+        triangles = [(start, end, eye) for start, end, _ in loop]
+        new = self._add(triangles, orphans[orphans != eye])
+        for i, (number, (start, end, beyond)) in enumerate(zip(new, loop, strict=True)):
+            self.faces[number].neighbours = [beyond, new[(i + 1) % len(new)], new[i - 1]]
+            outer = self.faces[beyond]
+            outer.neighbours[_edges(outer.corners).index((end, start))] = number
+        return True
+
+    def _seen(
+        self, first: int, eye: tuple[float, float, float], grazing: float
+    ) -> tuple[list[int], dict[int, tuple[int, int]]]:
+        """Faces that lie below a point, and the edges around them with the face beyond each."""
+        x, y, z = eye
+        seen, rim = [first], {}
+        known = {first: True}
+        for number in seen:
+            face = self.faces[number]
+            for (start, end), beyond in zip(_edges(face.corners), face.neighbours, strict=True):
+                below = known.get(beyond)
+                if below is None:
+                    a, b, c, d = self.faces[beyond].plane
+                    below = known[beyond] = a * x + b * y + c * z - d > grazing
+                    if below:
+                        seen.append(beyond)
+                if not below:
+                    if start in rim:
+                        return seen, {}
+                    rim[start] = (end, beyond)
+        return seen, rim
+
+    def _leave_out(self, number: int, face: _Face) -> None:
+        """Forget a face's farthest point, which rounding keeps from being added."""
+        face.outside = face.outside[face.outside != face.farthest]
+        self._rank(number, face)
+
+    def _add(self, triangles: list[Triangle], candidates: NDArray[np.int64]) -> list[int]:
+        """New faces; the candidates above them become their outside points."""
+        corners = self.points[np.array(triangles)]
+        a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+        offsets = np.einsum("ij,ij->i", normals, corners.mean(axis=1))
+        heights = self.points[candidates] @ normals.T - offsets
+        owners = heights.argmax(axis=1)
+        highest = heights[np.arange(len(candidates)), owners]
+        is_outside = highest > self.rounding
+        candidates, owners = candidates[is_outside], owners[is_outside]
+        numbers = []
+        planes = np.column_stack([normals, offsets]).tolist()
+        for i, (triangle, (nx, ny, nz, offset)) in enumerate(zip(triangles, planes, strict=True)):
+            face = _Face(triangle, (nx, ny, nz, offset), [], candidates[owners == i])
+            self.faces[self._count] = face
+            self._rank(self._count, face)
+            numbers.append(self._count)
+            self._count += 1
+        return numbers
+
+    def _rank(self, number: int, face: _Face) -> None:
+        """Find the farthest point of a face and put the face in the queue."""
+        if not len(face.outside):
+            return
+        *normal, offset = face.plane
+        heights = self.points[face.outside] @ np.array(normal) - offset
+        best = int(heights.argmax())
+        face.farthest, face.height = int(face.outside[best]), float(heights[best])
+        heapq.heappush(self._pending, (-face.height, number))
+
+
+def _edges(corners: Triangle) -> list[tuple[int, int]]:
+    a, b, c = corners
+    return [(a, b), (b, c), (c, a)]
+
+
+def _loop(rim: dict[int, tuple[int, int]]) -> list[tuple[int, int, int]] | None:
+    """The edges of a rim one after the other as (start, end, face beyond); None if they make no one loop."""
+    if len(rim) < 3:
+        return None
+    loop = []
+    start = first = next(iter(rim))
+    for _ in rim:
+        if start not in rim:
+            return None
+        end, beyond = rim[start]
+        loop.append((start, end, beyond))
+        start = end
+        if end == first:
+            break
+    return loop if len(loop) == len(rim) and start == first else None

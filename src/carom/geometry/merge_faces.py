@@ -1,0 +1,106 @@
+"""Coplanar triangles of a convex hull become polygons."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+COPLANAR = 1e-5
+"""Distance from a plane, relative to the size of the whole, up to which a vertex counts as in it."""
+
+_PARALLEL = 0.999
+"""Least cosine between the normals of triangles that are joined."""
+
+
+def merged_loops(
+    vertices: NDArray[np.float64], triangles: list[tuple[int, int, int]], size: float
+) -> list[list[int]]:
+    """Joins the triangles of a closed convex surface that lie in one plane.
+
+    Args:
+        vertices: (n, 3) positions.
+        triangles: Vertex indices, counter-clockwise from outside.
+        size: Size of the whole.
+
+    Returns:
+        Vertex indices around each polygon, counter-clockwise from outside. Vertices in the middle of an
+        edge are gone.
+    """
+    corners = np.array(triangles)
+    a, b, c = (vertices[corners[:, side]] for side in range(3))
+    normals = np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1)
+    normals /= np.maximum(areas, np.finfo(float).tiny)[:, None]
+    owner = {
+        (triangle[i], triangle[(i + 1) % 3]): number
+        for number, triangle in enumerate(triangles)
+        for i in range(3)
+    }
+    loops: list[list[int]] = []
+    free = [True] * len(triangles)
+    # The largest triangle has the best normal; slivers join it.
+    for seed in np.argsort(-areas, kind="stable").tolist():
+        if not free[seed]:
+            continue
+        group = _patch(seed, vertices, triangles, normals, areas, owner, free, COPLANAR * size)
+        loop = _outline([triangles[number] for number in group])
+        if loop is None:
+            loops.extend(list(triangles[number]) for number in group)
+        else:
+            loops.append(loop)
+    return _without_middles(loops)
+
+
+def _patch(
+    seed: int,
+    vertices: NDArray[np.float64],
+    triangles: list[tuple[int, int, int]],
+    normals: NDArray[np.float64],
+    areas: NDArray[np.float64],
+    owner: dict[tuple[int, int], int],
+    free: list[bool],
+    thin: float,
+) -> list[int]:
+    """Takes the free triangles around a seed that lie in its plane."""
+    normal = normals[seed]
+    origin = vertices[triangles[seed][0]]
+    group = [seed]
+    free[seed] = False
+    for number in group:
+        x, y, z = triangles[number]
+        for edge in ((y, x), (z, y), (x, z)):
+            other = owner[edge]
+            if not free[other]:
+                continue
+            # The two corners on the edge are in the plane already.
+            (apex,) = set(triangles[other]).difference(edge)
+            is_parallel = areas[other] <= thin * thin or normals[other] @ normal > _PARALLEL
+            if is_parallel and abs((vertices[apex] - origin) @ normal) <= thin:
+                free[other] = False
+                group.append(other)
+    return group
+
+
+def _outline(group: list[tuple[int, int, int]]) -> list[int] | None:
+    """The one loop around triangles that share edges; None if they have holes or touch in a point."""
+    edges = {(t[i], t[(i + 1) % 3]) for t in group for i in range(3)}
+    rim = [(start, end) for start, end in edges if (end, start) not in edges]
+    following = dict(rim)
+    if len(following) != len(rim):
+        return None
+    # Begin with the least, so that the same triangles always make the same loop.
+    loop = [min(following)]
+    while following[loop[-1]] != loop[0]:
+        loop.append(following[loop[-1]])
+        if len(loop) > len(following):
+            return None
+    return loop if len(loop) == len(following) else None
+
+
+def _without_middles(loops: list[list[int]]) -> list[list[int]]:
+    """Leaves out vertices that only two faces have: they lie on the edge between those."""
+    uses = Counter(vertex for loop in loops for vertex in loop)
+    kept = [[vertex for vertex in loop if uses[vertex] > 2] for loop in loops]
+    return [loop for loop in kept if len(loop) >= 3]

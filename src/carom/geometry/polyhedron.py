@@ -1,0 +1,116 @@
+"""Vertices and faces of a solid or of a surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polyhedron:
+    """Flat faces around a solid, or the triangles of a surface. The arrays are read-only.
+
+    Attributes:
+        vertices: (n, 3) positions [m].
+        planes: (m, 4) planes of the faces: a unit normal that points out, and n · x on the plane.
+        first_corner: (m,) where the corners of each face begin in `corners`.
+        corner_count: (m,) how many corners each face has.
+        corners: Indices into `vertices`, counter-clockwise around each face as seen from outside.
+    """
+
+    vertices: NDArray[np.float64]
+    planes: NDArray[np.float64]
+    first_corner: NDArray[np.int32]
+    corner_count: NDArray[np.int32]
+    corners: NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        for array in (self.vertices, self.planes, self.first_corner, self.corner_count, self.corners):
+            array.setflags(write=False)
+
+    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lowest and highest corner of the box around the vertices, shape (3,) each."""
+        return self.vertices.min(axis=0), self.vertices.max(axis=0)
+
+    def moved(self, offset: NDArray[np.float64]) -> Polyhedron:
+        """The same shape, every vertex moved by `offset`."""
+        planes = self.planes.copy()
+        planes[:, 3] += planes[:, :3] @ offset
+        return Polyhedron(self.vertices + offset, planes, self.first_corner, self.corner_count, self.corners)
+
+
+def polyhedron(
+    vertices: NDArray[np.float64],
+    first_corner: NDArray[np.int32],
+    corner_count: NDArray[np.int32],
+    corners: NDArray[np.int32],
+) -> Polyhedron:
+    """A polyhedron whose planes are found from its corners; see `Polyhedron`."""
+    planes = _planes(vertices, corners, first_corner, corner_count)
+    return Polyhedron(vertices, planes, first_corner, corner_count, corners)
+
+
+def polyhedron_of_loops(vertices: NDArray[np.float64], loops: list[list[int]]) -> Polyhedron:
+    """A polyhedron from the corners of its faces; vertices no face uses are left out.
+
+    Args:
+        vertices: (n, 3) positions.
+        loops: Vertex indices around each face, counter-clockwise from outside, nearly in one plane.
+    """
+    counts = np.array([len(loop) for loop in loops], dtype=np.int32)
+    corners = np.fromiter((corner for loop in loops for corner in loop), np.int64, counts.sum())
+    used, renamed = np.unique(corners, return_inverse=True)
+    kept = np.ascontiguousarray(vertices[used], dtype=np.float64)
+    renamed = renamed.reshape(-1).astype(np.int32)
+    firsts = (np.cumsum(counts) - counts).astype(np.int32)
+    return polyhedron(kept, firsts, counts, renamed)
+
+
+def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np.integer]) -> Polyhedron:
+    """The triangles of a surface; equal vertices become one, triangles without area vanish.
+
+    Args:
+        vertices: (n, 3) positions.
+        triangles: (m, 3) indices, counter-clockwise from outside.
+    """
+    positions, merged = np.unique(vertices, axis=0, return_inverse=True)
+    corners = merged.reshape(-1)[triangles]
+    a, b, c = (positions[corners[:, side]] for side in range(3))
+    spread = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    longest = np.maximum.reduce([np.linalg.norm(b - a, axis=1), np.linalg.norm(c - a, axis=1)])
+    solid = spread > _THIN * longest * longest
+    corners = corners[solid]
+    used, renamed = np.unique(corners, return_inverse=True)
+    count = len(corners)
+    positions = positions[used]
+    flat = renamed.reshape(-1).astype(np.int32)
+    firsts = np.arange(0, 3 * count, 3, dtype=np.int32)
+    counts = np.full(count, 3, dtype=np.int32)
+    return polyhedron(positions, firsts, counts, flat)
+
+
+_THIN = 1e-12
+"""Twice the area of a triangle over the square of a side, below which it counts as a line."""
+
+
+def _planes(
+    vertices: NDArray[np.float64],
+    corners: NDArray[np.int32],
+    firsts: NDArray[np.int32],
+    counts: NDArray[np.int32],
+) -> NDArray[np.float64]:
+    """Best planes of polygons: normals by Newell's sum, offsets so that no corner lies outside."""
+    if not len(firsts):
+        return np.empty((0, 4))
+    following = np.arange(1, len(corners) + 1)
+    following[firsts + counts - 1] = firsts
+    # Sums of products of large coordinates would lose the digits of small faces.
+    anchor = np.repeat(vertices[corners[firsts]], counts, axis=0)
+    here = vertices[corners] - anchor
+    there = vertices[corners[following]] - anchor
+    normals = np.add.reduceat(np.cross(here, there), firsts, axis=0)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    heights = np.einsum("ij,ij->i", vertices[corners], np.repeat(normals, counts, axis=0))
+    return np.column_stack([normals, np.maximum.reduceat(heights, firsts)])

@@ -1,0 +1,77 @@
+"""Boxes around triangles, and boxes around boxes: what finds the triangles in a region quickly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.geometry.polyhedron import Polyhedron
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TriangleHierarchy:
+    """A complete binary tree of boxes over the faces of a surface.
+
+    Node 1 is the root; nodes 2n and 2n + 1 lie below node n; leaf i is node `leaf_count` + i and holds
+    face i. Nodes without faces have a lower corner above their upper one. Node 0 is unused.
+
+    Attributes:
+        surface: The surface, its faces in the order of the leaves.
+        leaf_count: A power of two, not less than the number of faces.
+        lower: (2 * leaf_count, 3) lowest corners.
+        upper: (2 * leaf_count, 3) highest corners.
+    """
+
+    surface: Polyhedron
+    leaf_count: int
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+
+
+def triangle_hierarchy(surface: Polyhedron) -> TriangleHierarchy:
+    """Sorts the triangles of a surface and bounds them.
+
+    Args:
+        surface: Its faces are triangles.
+    """
+    corners = surface.corners.reshape(-1, 3)
+    count = len(corners)
+    leaf_count = 1
+    while leaf_count < count:
+        leaf_count *= 2
+    points = surface.vertices[corners]
+    lower, upper = points.min(axis=1), points.max(axis=1)
+    order = _sorted_in_halves(0.5 * (lower + upper), leaf_count)
+    low = np.full((2 * leaf_count, 3), np.inf)
+    high = np.full((2 * leaf_count, 3), -np.inf)
+    low[leaf_count : leaf_count + count] = lower[order]
+    high[leaf_count : leaf_count + count] = upper[order]
+    first = leaf_count
+    while first > 1:
+        first //= 2
+        low[first : 2 * first] = low[2 * first : 4 * first].reshape(first, 2, 3).min(axis=1)
+        high[first : 2 * first] = high[2 * first : 4 * first].reshape(first, 2, 3).max(axis=1)
+    sorted_surface = Polyhedron(
+        surface.vertices,
+        surface.planes[order],
+        surface.first_corner,
+        surface.corner_count,
+        corners[order].reshape(-1),
+    )
+    return TriangleHierarchy(sorted_surface, leaf_count, low, high)
+
+
+def _sorted_in_halves(centers: NDArray[np.float64], leaf_count: int) -> NDArray[np.int64]:
+    """An order in which every node's faces are sorted along the axis on which they spread most."""
+    order = np.arange(len(centers))
+    run = leaf_count
+    while run > 1:
+        firsts = np.arange(0, len(centers), run)
+        spread = np.maximum.reduceat(centers[order], firsts) - np.minimum.reduceat(centers[order], firsts)
+        group = np.arange(len(centers)) // run
+        along = centers[order, spread.argmax(axis=1)[group]]
+        order = order[np.lexsort((along, group))]
+        run //= 2
+    return order

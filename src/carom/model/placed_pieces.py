@@ -1,0 +1,79 @@
+"""The collision shapes of a link in pieces, placed in its inertial frame."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import sqrt
+
+from carom.description import Mesh, SignedDistanceField
+from carom.description.transform import quaternion_from_matrix
+from carom.model.body_spec import LinkSpec
+from carom.model.bounds import Bounds
+from carom.model.codes import ShapeKind
+from carom.model.inertia import is_in_place, placement
+from carom.model.shape_pieces import ShapePiece, shape_pieces
+
+_log = logging.getLogger(__name__)
+
+AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
+"""The axes of `Shapes` on which a piece has rows of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedPiece:
+    """A piece and where it is.
+
+    Attributes:
+        piece: The piece.
+        pose: Its frame in the inertial frame of its link: (x, y, z, qx, qy, qz, qw).
+        link: Place of the link in its body, the base being 0.
+    """
+
+    piece: ShapePiece
+    pose: tuple[float, ...]
+    link: int
+
+
+def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
+    """The pieces of all shapes of a link, which is the `index`-th of its body."""
+    placed = []
+    for collision in link.collisions:
+        rotation, position = placement(link.inertial_frame, collision.frame)
+        pose = (*position, *quaternion_from_matrix(rotation))
+        if isinstance(collision.geometry, SignedDistanceField):
+            _log.warning("link %r: nothing collides with a signed distance field", link.name)
+        pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
+        placed.extend(PlacedPiece(piece, pose, index) for piece in pieces)
+    return placed
+
+
+def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
+    """How many rows pieces need on each axis of shapes."""
+    solids = [piece.polyhedron for piece in pieces if piece.polyhedron is not None]
+    trees = [piece.hierarchy for piece in pieces if piece.hierarchy is not None]
+    return {
+        "shape": len(pieces),
+        "vertex": sum(len(solid.vertices) for solid in solids),
+        "face": sum(len(solid.planes) for solid in solids),
+        "corner": sum(len(solid.corners) for solid in solids),
+        "node": sum(len(tree.lower) for tree in trees),
+    }
+
+
+def has_own_margin(link: LinkSpec, implicit_cylinder: bool) -> bool:
+    """Whether the margin of a link is that of its one hull or surface, and not that of a compound."""
+    if not is_in_place(link.collisions, link.inertial_frame):
+        return False
+    geometry = link.collisions[0].geometry
+    pieces = shape_pieces(geometry, implicit_cylinder=implicit_cylinder)
+    is_compound = (
+        isinstance(geometry, Mesh) and not geometry.concave and geometry.path.suffix.lower() == ".obj"
+    )
+    return not is_compound and any(piece.kind >= ShapeKind.HULL for piece in pieces)
+
+
+def reach(bounds: Bounds) -> float:
+    """Radius of the ball around the bounds, plus the distance of their centre."""
+    return sqrt(sum(half * half for half in bounds.half)) + sqrt(sum(c * c for c in bounds.center))
