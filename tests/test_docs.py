@@ -8,18 +8,10 @@ from carom.cli import main
 ROOT = Path(__file__).parents[1]
 
 
-def test_the_status_page_is_up_to_date():
-    status = runpy.run_path(str(ROOT / "tools" / "docs" / "status.py"))
-    written = (ROOT / "docs" / "status.md").read_text(encoding="utf-8")
-    assert written == status["page"](), "run: python tools/docs/status.py"
-
-
-def test_the_reference_shows_every_module_of_the_drop_in_that_has_functions():
-    status = runpy.run_path(str(ROOT / "tools" / "docs" / "status.py"))
-    reference = (ROOT / "docs" / "api" / "pybullet.md").read_text(encoding="utf-8")
-    shown = {line.removeprefix("::: pybullet.") for line in reference.splitlines() if line.startswith(":::")}
-    homes = {status["home"](function) for function in status["functions"]().values()}
-    assert shown == homes - {status["UNAVAILABLE"]}
+def test_the_pages_about_the_drop_in_are_up_to_date():
+    generator = runpy.run_path(str(ROOT / "tools" / "docs" / "drop_in.py"))
+    for path, page in generator["PAGES"].items():
+        assert path.read_text(encoding="utf-8") == page(), "run: python tools/docs/drop_in.py"
 
 
 def test_every_tutorial_shows_an_example_that_exists_and_every_example_is_shown():

@@ -1,0 +1,139 @@
+"""Writes docs/status.md and docs/api/pybullet.md from the drop-in itself: `python tools/docs/drop_in.py`."""
+
+import inspect
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import pybullet
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+# The order of the sections; files not named here follow, under their names.
+TITLES = {
+    "_connection": "Connections",
+    "_loading": "Loading",
+    "_engine": "Stepping and engine parameters",
+    "_bodies": "Bodies",
+    "_joints": "Joints",
+    "_motors": "Motors",
+    "_motors_multi_dof": "Motors of joints with several freedoms",
+    "_links": "Links",
+    "_dynamics": "Masses, friction, damping, limits",
+    "_forces": "External forces",
+    "_constraints": "Constraints",
+    "_algebra": "Inverse dynamics, Jacobians, mass matrices",
+    "_inverse_kinematics": "Inverse kinematics",
+    "_gui": "Sliders, keys and the window's camera",
+    "_debug_drawing": "Drawings",
+    "_camera_maths": "Camera matrices",
+    "_maths": "Maths",
+}
+UNAVAILABLE = "_unavailable"
+
+NOTES = {
+    "_gui": "There is no window yet: sliders keep their start values, drawings are kept but not shown, and "
+    "no key is ever pressed.",
+}
+
+LIMITED = {
+    "connect": "`GUI` simulates without showing a window; there are no physics servers",
+    "loadURDF": "shapes give inertia, but do not collide yet",
+    "changeDynamics": "contact parameters are recorded for the day there is contact",
+    "setPhysicsEngineParameter": "parameters of contact are recorded for the day there is contact",
+    "setDefaultContactERP": "recorded for the day there is contact",
+}
+
+MEMBERS = """
+    options:
+      show_root_heading: false
+      show_root_toc_entry: false
+      heading_level: 3"""
+
+
+def functions() -> dict[str, Any]:
+    """All functions of the module by name."""
+    return {name: value for name, value in vars(pybullet).items() if inspect.isbuiltin(value)}
+
+
+def home(function: Any) -> str:
+    """The file a function is written in, without its ending."""
+    # The builtins that `pybullet` consists of call a Python function, their `__self__`.
+    return Path(inspect.getsourcefile(function.__self__) or "").stem
+
+
+def first_line(function: Any) -> str:
+    """The first line of a function's documentation."""
+    return (inspect.getdoc(function.__self__) or "").partition("\n")[0]
+
+
+def sections() -> dict[str, tuple[str, list[str]]]:
+    """Title and functions of each file, in order; the functions that are not available come last."""
+    by_home: dict[str, list[str]] = defaultdict(list)
+    for name, function in functions().items():
+        by_home[home(function)].append(name)
+    missing = by_home.pop(UNAVAILABLE, [])
+    others = {
+        file: file.strip("_").replace("_", " ").capitalize() for file in sorted(by_home.keys() - TITLES)
+    }
+    ordered = {file: (title, by_home[file]) for file, title in (TITLES | others).items() if file in by_home}
+    return {**ordered, UNAVAILABLE: ("Not available yet", sorted(missing))}
+
+
+def status() -> str:
+    """The page that lists all functions and how far they are."""
+    available = functions()
+    parts = sections()
+    _, missing = parts.pop(UNAVAILABLE)
+    lines = [
+        "# Status",
+        "",
+        "<!-- Written by tools/docs/drop_in.py. -->",
+        "",
+        f"Of the {len(available)} functions of PyBullet 3.2.7, {len(available) - len(missing)} work in this "
+        "version of Carom, with",
+        "every keyword, default, return layout and error. All constants are there with their values.",
+    ]
+    for file, (title, names) in parts.items():
+        lines += ["", f"## {title}", ""]
+        if file in NOTES:
+            lines += [NOTES[file], ""]
+        lines += ["| function | what it does |", "|---|---|"]
+        for name in names:
+            limit = f" *Limited: {LIMITED[name]}.*" if name in LIMITED else ""
+            lines.append(f"| `{name}` | {first_line(available[name])}{limit} |")
+    if missing:
+        lines += [
+            "",
+            "## Not available yet",
+            "",
+            'These exist and raise `pybullet.error("... is not available in this version of Carom")`:',
+            "",
+            ", ".join(f"`{name}`" for name in missing) + ".",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def reference() -> str:
+    """The page from which the reference of the drop-in is built."""
+    lines = [
+        "# pybullet",
+        "",
+        "<!-- Written by tools/docs/drop_in.py. -->",
+        "",
+        "The drop-in, function by function. Keywords, defaults and return values are PyBullet's; the texts",
+        "are ours. Everything is a name of the module `pybullet`. Functions that are not built yet are",
+        "listed under [status](../status.md).",
+    ]
+    for file, (title, _) in sections().items():
+        if file != UNAVAILABLE:
+            lines += ["", f"## {title}", "", f"::: pybullet.{file}{MEMBERS}"]
+    return "\n".join(lines) + "\n"
+
+
+PAGES = {DOCS / "status.md": status, DOCS / "api" / "pybullet.md": reference}
+
+
+if __name__ == "__main__":
+    for path, page in PAGES.items():
+        path.write_text(page(), encoding="utf-8")
