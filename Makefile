@@ -4,6 +4,7 @@
 #   make test         the test suite
 #   make check        lint, types and tests
 #   make docs         the documentation, in site/
+#   make figures      the plots of the tutorials, by running the examples
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
 #   make record       record what real PyBullet does in every conformance scenario
 #   make conformance  compare Carom with real PyBullet, live
@@ -27,7 +28,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs oracle record conformance report soak bench clean
+.PHONY: help demo test check lint types docs figures oracle record conformance report soak bench clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -101,7 +102,11 @@ bench: oracle $(VENV)/dev
 	$(RUN) benchmarks/run.py --oracle .oracle/bin/python
 
 docs: $(VENV)/docs
+	$(RUN) tools/docs/drop_in.py
 	$(RUN) -m mkdocs build --strict
+
+figures: $(VENV)/dev
+	$(RUN) tools/docs/plots.py
 
 clean:
 	rm -rf $(VENV) .oracle .bench build dist site demo-output .pytest_cache .ruff_cache .hypothesis
