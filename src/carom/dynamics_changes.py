@@ -47,6 +47,8 @@ def change_link(body: Body, link: int, changes: Mapping[str, Any]) -> None:
         _set_limit_force(body, link, changes.pop("joint_limit_force"))
     for name, value in changes.items():
         setattr(dynamics, name, value)
+    if changes:
+        body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
 def _set_mass(body: Body, link: int, mass: float) -> None:

@@ -120,6 +120,9 @@ class World:
 
         Returns:
             Its handle. The number it gets is that of the body removed last, if any.
+
+        Raises:
+            carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
         """
         px, py, pz = position
         qx, qy, qz, qw = orientation
@@ -128,6 +131,15 @@ class World:
         body_id = self._free_ids.pop() if self._free_ids else self._next_id
         self._next_id = max(self._next_id, body_id + 1)
         body = Body(self, body_id, spec, rows)
+        try:
+            surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
+            self.touch.shapes.append(spec, rows, surfaces)
+        except Exception:
+            self.arrays.remove(rows, [])
+            self._free_ids.append(body_id)
+            if grown:
+                self._take_arrays()
+            raise
         self.bodies[body_id] = body
         self.constraints.add_body(body)
         if grown:
@@ -178,6 +190,7 @@ class World:
         body = self.bodies.pop(body_id)
         self.constraints.remove_body(body)
         self.user_constraints.remove_body(body)
+        self.touch.shapes.remove(body.rows)
         self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
         for other in self.bodies.values():
             other.relocate()

@@ -48,6 +48,7 @@ _INDEX_FIELDS = {
     "link_first_dof": "dof",
     "link_nearest_dof": "dof",
     "dof_parent": "dof",
+    "tree_batch": "tree",
 }
 
 

@@ -10,9 +10,9 @@ from carom.model.contact_structs import (
     COUPLING_ENTRY_VIEWS,
     Contacts,
     Couplings,
-    Shapes,
     UserConstraints,
 )
+from carom.model.shape_arrays import ShapeArrays
 
 ROWS_PER_PAIR = 6
 
@@ -24,7 +24,7 @@ class TouchArrays:
         self._arrays = arrays
         self._device = device
         worlds = arrays.world_count
-        self.shapes = ArrayTable(Shapes, None)
+        self.shapes = ShapeArrays()
         self.contacts = ArrayTable(Contacts, worlds)
         self.users = ArrayTable(UserConstraints, None)
         self.couplings = ArrayTable(Couplings, worlds, COUPLING_ENTRY_VIEWS)
