@@ -11,7 +11,6 @@ from carom.description import Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds
-from carom.model.codes import ShapeKind
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 
@@ -62,16 +61,14 @@ def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
     }
 
 
-def has_own_margin(link: LinkSpec, implicit_cylinder: bool) -> bool:
-    """Whether the margin of a link is that of its one hull or surface, and not that of a compound."""
+def has_own_margin(link: LinkSpec) -> bool:
+    """Whether the margin of a link is that of its one shape, and not that of a compound."""
     if not is_in_place(link.collisions, link.inertial_frame):
         return False
-    geometry = link.collisions[0].geometry
-    pieces = shape_pieces(geometry, implicit_cylinder=implicit_cylinder)
-    is_compound = (
-        isinstance(geometry, Mesh) and not geometry.concave and geometry.path.suffix.lower() == ".obj"
-    )
-    return not is_compound and any(piece.kind >= ShapeKind.HULL for piece in pieces)
+    match link.collisions[0].geometry:
+        case Mesh(path, _, concave):
+            return concave or path.suffix.lower() != ".obj"
+    return True
 
 
 def reach(bounds: Bounds) -> float:

@@ -69,14 +69,14 @@ class BodyShapes:
         first: First row on each axis of shapes.
         count: Rows on each axis of shapes.
         bounds: Bounds of each link, the base first, along the axes of its inertial frame.
-        thick: For each link, whether changing its margin changes where its surface is.
+        own_margin: For each link, whether its margin is that of its one shape.
     """
 
     rows: TreeRows
     first: dict[str, int] = field(default_factory=dict)
     count: dict[str, int] = field(default_factory=dict)
     bounds: list[Bounds] = field(default_factory=list)
-    thick: list[bool] = field(default_factory=list)
+    own_margin: list[bool] = field(default_factory=list)
 
 
 class ShapeArrays:
@@ -141,7 +141,7 @@ class ShapeArrays:
             )
             for link in links
         ]
-        body.thick = [has_own_margin(link, implicit) for link in links]
+        body.own_margin = [has_own_margin(link) for link in links]
         needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
         grown = self.table.reserve(needed)
@@ -258,7 +258,7 @@ class ShapeArrays:
         numpy["link_friction_anchor"][link_row] = surface.friction_anchor
         shapes = self._shapes_of(link_row)
         numpy["shape_ccd_radius"][shapes] = surface.ccd_swept_sphere_radius
-        if body.thick[link]:
+        if body.own_margin[link]:
             numpy["shape_margin"][shapes] = surface.collision_margin
 
     def set_group_and_mask(self, link_row: int, group: int, mask: int) -> None:

@@ -53,7 +53,9 @@ class ShapePiece:
     Attributes:
         kind: Which.
         size: What `ShapeKind` says.
-        margin: How far the surface lies outside what size or vertices say [m].
+        margin: Bullet's collision margin [m]: the radius of a sphere or capsule; by this the edges of
+            boxes and cylinders are rounded off; so far outside its vertices lies the surface of a hull or
+            a mesh.
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
         columns: Points in one row of a height field.
@@ -85,17 +87,17 @@ def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[Sha
     """
     match geometry:
         case Sphere(radius):
-            return (ShapePiece(ShapeKind.SPHERE, (radius, 0.0, 0.0)),)
+            return (ShapePiece(ShapeKind.SPHERE, (radius, 0.0, 0.0), radius),)
         case Box(half_extents):
-            return (ShapePiece(ShapeKind.BOX, half_extents),)
+            return (ShapePiece(ShapeKind.BOX, half_extents, MARGIN),)
         case Capsule(radius, length):
-            return (ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0)),)
+            return (ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0), radius),)
         case Cylinder(radius, length) if implicit_cylinder:
-            return (ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0)),)
+            return (ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0), MARGIN),)
         case Cylinder(radius, length):
             return (_cylinder_hull(radius, length),)
         case Plane(normal):
-            return (ShapePiece(ShapeKind.PLANE, normal),)
+            return (ShapePiece(ShapeKind.PLANE, normal, MARGIN),)
         case ConvexHull():
             return (_hull_of(geometry),)
         case TriangleMesh():
