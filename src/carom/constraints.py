@@ -70,7 +70,7 @@ class JointConstraints:
                             link.lower,
                             link.upper,
                             link.twist,
-                            link.effort,
+                            max_impulse=link.effort,
                         )
                     )
             elif link.limited:
