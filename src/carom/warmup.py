@@ -6,7 +6,12 @@ from importlib import import_module
 
 from carom.model.launch import CompilationNotice
 
-KERNEL_MODULES = ("carom.physics.kinematics", "carom.physics.step", "carom.algorithms.kernels")
+KERNEL_MODULES = (
+    "carom.physics.kinematics",
+    "carom.physics.step",
+    "carom.algorithms.kernels",
+    "carom.algorithms.reach.search",
+)
 
 
 def warmup(device: str = "cpu") -> None:

@@ -58,7 +58,7 @@ class Launch:
         else:
             self._entry_point(self._bounds, self._pointer)
 
-    def replace(self, index: int, value: int) -> None:
+    def replace(self, index: int, value: float) -> None:
         """Change a scalar argument for all later runs."""
         if self._entry_point is None:
             self._command.set_param_at_index(index, value)

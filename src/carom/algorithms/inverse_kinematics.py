@@ -1,0 +1,216 @@
+"""Inverse kinematics: joint positions that bring links to given places."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import IntEnum
+from math import inf
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from carom.algorithms.chain import BodyChain
+from carom.algorithms.query import IDENTITY_BASE
+from carom.algorithms.reach.search import inverse_kinematics_kernel
+from carom.algorithms.reach.structs import Search
+from carom.model.arrays import ArrayTable
+from carom.model.codes import BASE_POSITIONS
+from carom.model.launch import Launch
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+DEFAULT_ITERATIONS = 20
+DEFAULT_THRESHOLD = 1e-4
+DEFAULT_DAMPING = 0.5
+_LEAST_DAMPING = 1e-9
+_DEVICE = "cpu"
+# More would not help, but take forever.
+_MOST_ITERATIONS = 100_000
+Numbers = Sequence[float] | np.ndarray
+
+
+class Step(IntEnum):
+    """How the joints share the way of the ends."""
+
+    DAMPED = 0
+    NULL_SPACE = 1
+    SELECTIVE = 2
+
+
+def inverse_kinematics(
+    body: Body,
+    links: Sequence[int],
+    positions: Sequence[Numbers],
+    orientations: Sequence[Numbers] | None = None,
+    *,
+    lower: Numbers | None = None,
+    upper: Numbers | None = None,
+    ranges: Numbers | None = None,
+    rest: Numbers | None = None,
+    damping: Numbers | None = None,
+    selective: bool = False,
+    start: Numbers | None = None,
+    in_base_frame: bool = False,
+    iterations: int = DEFAULT_ITERATIONS,
+    threshold: float = DEFAULT_THRESHOLD,
+) -> list[float]:
+    """Joint positions at which links are where they ought to be.
+
+    The search starts at the present pose and follows PyBullet's damped least squares, with the same
+    result where that arrives. Where it does not, or a limit is violated, as many steps more may be taken
+    by a method that converges quadratically, keeps within the limits, and starts again from nearby
+    poses when it is stuck. The body itself does not move.
+
+    Args:
+        body: The body.
+        links: Indices of the links; -1 is the base.
+        positions: Where the origin of each link frame ought to be [m], world axes.
+        orientations: What the axes of each link's inertial frame ought to be, quaternions (x, y, z, w),
+            of any length but 0.
+        lower: Limits that the result keeps [rad or m], one for each freedom of the joints. A joint whose
+            lower limit is above the upper one has none.
+        upper: The same, from above.
+        ranges: With `lower`, `upper` and `rest`, how far apart the limits are: the push back into them
+            goes down with it.
+        rest: Positions to which joints are drawn as far as the links do not mind.
+        damping: How unwilling each joint is to move, > 0; 0.5 where not given.
+        selective: Selectively damped least squares, without a pull to rest positions.
+        start: Joint positions to start from, a quaternion for each spherical joint.
+        in_base_frame: Targets are in the inertial frame of the base instead of the world's.
+        iterations: Most steps of either method.
+        threshold: Distance [m] and angle [rad] that are close enough.
+
+    Returns:
+        Joint positions in order, a quaternion for each spherical joint; the best that were found, if
+        none are close enough.
+
+    Raises:
+        ValueError: A sequence has the wrong length.
+    """
+    solver = _solver(body, tuple(links))
+    solver.set_targets(positions, orientations)
+    solver.set_base(None if in_base_frame else body)
+    solver.set_start(body, start)
+    solver.set_damping(damping)
+    step = Step.SELECTIVE if selective else Step.DAMPED
+    bounded = lower is not None and upper is not None
+    solver.set_limits(lower, upper)
+    if bounded and ranges is not None and rest is not None:
+        step = Step.NULL_SPACE
+        solver.set_rest(ranges, rest)
+    return solver.solve(orientations is not None, step, bounded, iterations, threshold)
+
+
+class _Solver:
+    """The search for one body and some of its links: arrays, and the kernel that works on them."""
+
+    def __init__(self, body: Body, links: tuple[int, ...]) -> None:
+        chain = BodyChain(body, links)
+        sizes = chain.sizes
+        self._dofs = int(sizes.dofs)
+        self._coordinates = int(sizes.coordinates)
+        rows = 6 * len(links)
+        search = ArrayTable(Search, None)
+        search.reserve(
+            {
+                "base": BASE_POSITIONS,
+                "end": len(links),
+                "dof": self._dofs,
+                "coordinate": self._coordinates,
+                "joint": int(sizes.joints),
+                "column": int(sizes.columns),
+                "row": rows,
+                "entry": rows * int(sizes.columns),
+                "square": rows * rows,
+            }
+        )
+        arrays = search.numpy
+        self._positions = arrays["end_given_position"][: len(links)]
+        self._rotations = arrays["end_given_rotation"][: len(links)]
+        self._base = arrays["base_pose"][:BASE_POSITIONS]
+        self._start = arrays["coordinate_start"][: self._coordinates]
+        self._best = arrays["coordinate_best"][: self._coordinates]
+        self._damping, self._lower, self._upper, self._ranges, self._rest = (
+            arrays[f"dof_{name}"][: self._dofs] for name in ("damping", "lower", "upper", "range", "rest")
+        )
+        self._damping.fill(DEFAULT_DAMPING)
+        self._lower.fill(-inf)
+        self._upper.fill(inf)
+        self._has_limits = self._has_damping = False
+        self._launch = Launch(
+            inverse_kinematics_kernel,
+            1,
+            [sizes, chain.arrays.struct(_DEVICE), search.struct(_DEVICE), 0, 0, 0, 0, 0.0],
+            _DEVICE,
+        )
+
+    def set_targets(self, positions: Sequence[Numbers], orientations: Sequence[Numbers] | None) -> None:
+        self._positions[:] = positions
+        if orientations is not None:
+            self._rotations[:] = orientations
+
+    def set_base(self, body: Body | None) -> None:
+        """Say where the base is; without a body, that the targets are given in its frame."""
+        if body is None:
+            self._base[:] = IDENTITY_BASE
+        else:
+            first = body.first_position
+            self._base[:] = body.world.position[first : first + BASE_POSITIONS]
+
+    def set_start(self, body: Body, start: Numbers | None) -> None:
+        if start is None:
+            first = body.first_position + BASE_POSITIONS
+            self._start[:] = body.world.position[first : first + self._coordinates]
+        else:
+            self._start[:] = start
+
+    def set_damping(self, damping: Numbers | None) -> None:
+        if damping is not None:
+            np.maximum(damping, _LEAST_DAMPING, out=self._damping)
+        elif self._has_damping:
+            self._damping.fill(DEFAULT_DAMPING)
+        self._has_damping = damping is not None
+
+    def set_limits(self, lower: Numbers | None, upper: Numbers | None) -> None:
+        bounded = lower is not None and upper is not None
+        if bounded:
+            self._lower[:] = lower
+            self._upper[:] = upper
+            unlimited = self._lower > self._upper
+            self._lower[unlimited] = -inf
+            self._upper[unlimited] = inf
+        elif self._has_limits:
+            self._lower.fill(-inf)
+            self._upper.fill(inf)
+        self._has_limits = bounded
+
+    def set_rest(self, ranges: Numbers, rest: Numbers) -> None:
+        self._ranges[:] = ranges
+        self._rest[:] = rest
+
+    def solve(
+        self, oriented: bool, step: Step, bounded: bool, iterations: int, threshold: float
+    ) -> list[float]:
+        launch = self._launch
+        launch.replace(3, oriented)
+        launch.replace(4, step)
+        launch.replace(5, bounded)
+        launch.replace(6, min(iterations, _MOST_ITERATIONS))
+        launch.replace(7, threshold)
+        launch()
+        return self._best.tolist()
+
+
+_solvers: WeakKeyDictionary[Body, dict[tuple[int, ...], _Solver]] = WeakKeyDictionary()
+
+
+def _solver(body: Body, links: tuple[int, ...]) -> _Solver:
+    of_body = _solvers.get(body)
+    if of_body is None:
+        of_body = _solvers[body] = {}
+    solver = of_body.get(links)
+    if solver is None:
+        solver = of_body[links] = _Solver(body, links)
+    return solver

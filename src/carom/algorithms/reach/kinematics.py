@@ -1,0 +1,186 @@
+"""Where a chain's ends are, how far from their targets, and how its joints move them."""
+
+import warp as wp
+
+from carom.algorithms.reach.structs import Chain, ChainSizes, Search
+from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.model.real import Int32, Quaternion, Reals, Vector3, Vector4, func, real
+from carom.physics.rotation import axis_rotation
+
+
+@func
+def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
+    """Find the frames of all joints of a chain."""
+    for joint in range(sizes.joints):
+        parent = chain.joint_parent[joint]
+        origin = chain.joint_origin[joint]
+        rotation = chain.joint_turn[joint]
+        if parent >= 0:
+            carrier = search.joint_rotation[parent]
+            origin = search.joint_position[parent] + wp.quat_rotate(carrier, origin)
+            rotation = carrier * rotation
+        kind = chain.joint_kind[joint]
+        axis = chain.joint_axis[joint]
+        q = chain.joint_first_coordinate[joint]
+        if kind == REVOLUTE:
+            rotation = rotation * axis_rotation(axis, coordinates[q])
+        elif kind == PRISMATIC:
+            origin += wp.quat_rotate(rotation, axis * coordinates[q])
+        elif kind == SPHERICAL:
+            rotation = rotation * Quaternion(
+                coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3]
+            )
+        elif kind == PLANAR:
+            origin += wp.quat_rotate(
+                rotation,
+                chain.joint_planar_axis1[joint] * coordinates[q + 1]
+                + chain.joint_planar_axis2[joint] * coordinates[q + 2],
+            )
+            rotation = rotation * axis_rotation(axis, coordinates[q])
+        search.joint_position[joint] = origin
+        search.joint_rotation[joint] = rotation
+
+
+@func
+def end_position(chain: Chain, search: Search, end: Int32) -> Vector3:
+    """Where an end is."""
+    joint = chain.end_joint[end]
+    position = chain.end_offset[end]
+    if joint >= 0:
+        position = search.joint_position[joint] + wp.quat_rotate(search.joint_rotation[joint], position)
+    return position
+
+
+@func
+def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
+    """The turn that takes one rotation to another: axis times angle, at most π."""
+    turn = target * wp.quat_inverse(start)
+    axis = Vector3(turn[0], turn[1], turn[2])
+    cosine = turn[3]
+    if cosine < 0.0:
+        axis = -axis
+        cosine = -cosine
+    sine = wp.length(axis)
+    if sine < 1.0e-12:
+        return 2.0 * axis
+    return axis * (2.0 * wp.atan2(sine, cosine) / sine)
+
+
+@func
+def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Vector3:
+    """Fill `row_error` with the ways from the ends to their targets.
+
+    Returns:
+        Greatest distance [m], greatest angle [rad], sum of squares of all rows.
+    """
+    distance = real(0.0)
+    angle = real(0.0)
+    squares = real(0.0)
+    stride = 3 + 3 * oriented
+    for end in range(sizes.ends):
+        way = search.end_target_position[end] - end_position(chain, search, end)
+        for axis in range(3):
+            search.row_error[end * stride + axis] = way[axis]
+        distance = wp.max(distance, wp.length(way))
+        squares += wp.dot(way, way)
+        if oriented == 1:
+            rotation = chain.end_turn[end]
+            joint = chain.end_joint[end]
+            if joint >= 0:
+                rotation = search.joint_rotation[joint] * rotation
+            turn = rotation_vector(rotation, search.end_target_rotation[end])
+            for axis in range(3):
+                search.row_error[end * stride + 3 + axis] = turn[axis]
+            angle = wp.max(angle, wp.length(turn))
+            squares += wp.dot(turn, turn)
+    return Vector3(distance, angle, squares)
+
+
+@func
+def write_column(
+    search: Search, rows: Int32, row: Int32, column: Int32, oriented: Int32, linear: Vector3, angular: Vector3
+):
+    """Set what a unit of one freedom does to an end whose first row is `row`."""
+    entry = column * rows + row
+    for axis in range(3):
+        search.entry_jacobian[entry + axis] = linear[axis]
+    if oriented == 1:
+        for axis in range(3):
+            search.entry_jacobian[entry + 3 + axis] = angular[axis]
+
+
+@func
+def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, oriented: Int32):
+    """Find how the joints, in their present frames, move the ends."""
+    stride = 3 + 3 * oriented
+    rows = stride * sizes.ends
+    zero = Vector3(0.0, 0.0, 0.0)
+    if sizes.ends > 1:
+        for entry in range(rows * sizes.columns):
+            search.entry_jacobian[entry] = real(0.0)
+    for end in range(sizes.ends):
+        position = end_position(chain, search, end)
+        row = end * stride
+        joint = chain.end_joint[end]
+        while joint >= 0:
+            kind = chain.joint_kind[joint]
+            column = chain.joint_first_column[joint]
+            rotation = search.joint_rotation[joint]
+            axis = wp.quat_rotate(rotation, chain.joint_axis[joint])
+            arm = position - search.joint_position[joint]
+            if kind == REVOLUTE:
+                write_column(search, rows, row, column, oriented, wp.cross(axis, arm), axis)
+            elif kind == PRISMATIC:
+                write_column(search, rows, row, column, oriented, axis, zero)
+            elif kind == SPHERICAL:
+                for k in range(3):
+                    unit = Vector3(0.0, 0.0, 0.0)
+                    unit[k] = 1.0
+                    axis = wp.quat_rotate(rotation, unit)
+                    write_column(search, rows, row, column + k, oriented, wp.cross(axis, arm), axis)
+            elif kind == PLANAR:
+                write_column(search, rows, row, column, oriented, wp.cross(axis, arm), axis)
+                angle = coordinates[chain.joint_first_coordinate[joint]]
+                unturned = rotation * axis_rotation(chain.joint_axis[joint], -angle)
+                first = wp.quat_rotate(unturned, chain.joint_planar_axis1[joint])
+                second = wp.quat_rotate(unturned, chain.joint_planar_axis2[joint])
+                write_column(search, rows, row, column + 1, oriented, first, zero)
+                write_column(search, rows, row, column + 2, oriented, second, zero)
+            joint = chain.joint_parent[joint]
+
+
+@func
+def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Vector4:
+    """The quaternion at `q` after turning by the rotation vector `rate`, in its own axes."""
+    angle = wp.length(rate)
+    scale = real(0.5)
+    if angle > 1.0e-9:
+        scale = wp.sin(0.5 * angle) / angle
+    change = Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * angle))
+    now = Quaternion(coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3])
+    result = wp.normalize(now * change)
+    return Vector4(result[0], result[1], result[2], result[3])
+
+
+@func
+def advance(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, result: Reals):
+    """Move every joint by `dof_step`."""
+    for dof in range(sizes.dofs):
+        coordinate = chain.dof_coordinate[dof]
+        if coordinate >= 0:
+            result[coordinate] = start[coordinate] + search.dof_step[dof]
+    for joint in range(sizes.joints):
+        if chain.joint_kind[joint] == SPHERICAL:
+            dof = chain.joint_first_dof[joint]
+            q = chain.joint_first_coordinate[joint]
+            rate = Vector3(search.dof_step[dof], search.dof_step[dof + 1], search.dof_step[dof + 2])
+            quaternion = turned(start, q, rate)
+            for k in range(4):
+                result[q + k] = quaternion[k]
+
+
+@func
+def copy(count: Int32, source: Reals, target: Reals):
+    """Copy `count` numbers."""
+    for index in range(count):
+        target[index] = source[index]

@@ -1,0 +1,233 @@
+"""The search for joint positions that bring the ends of a chain to their targets.
+
+It follows PyBullet's iteration first, so that where that arrives the result is the same. Where it does
+not arrive, where the angles are still off or a limit is violated, it goes on from there by the method of
+Levenberg and Marquardt within the limits, which converges quadratically; stuck in a local minimum it
+starts again from poses around the present one, ever farther away.
+"""
+
+import warp as wp
+
+from carom.algorithms.reach.kinematics import advance, copy, fill_jacobian, measure_errors, place, turned
+from carom.algorithms.reach.selective_step import selective_step
+from carom.algorithms.reach.steps import bounded_step, damped_step, null_space_step
+from carom.algorithms.reach.structs import Chain, ChainSizes, Search
+from carom.model.codes import SPHERICAL
+from carom.model.real import Int32, Quaternion, Reals, Vector3, func, kernel, real
+
+# What follows PyBullet's iteration: `step_kind` of the kernel.
+DAMPED, NULL_SPACE, SELECTIVE = wp.constant(0), wp.constant(1), wp.constant(2)
+
+# A step of this size changes nothing any more.
+_NO_STEP = real(1e-14)
+_LEAST_THRESHOLD = real(1e-9)
+# Damping by the sum of squared errors, and what remains of it at the target.
+_DAMPING_BY_ERROR = real(0.5)
+_LEAST_DAMPING = real(1e-8)
+_TRIES = wp.constant(6)
+# So many steps of so little progress mean a local minimum.
+_LITTLE_PROGRESS = real(0.999)
+_SLOW_STEPS = wp.constant(3)
+# Share of the joints' ranges within which the first new start is drawn.
+_FIRST_SPREAD = real(0.05)
+
+
+@func
+def follow(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    step_kind: Int32,
+    iterations: Int32,
+    threshold: real,
+):
+    """PyBullet's iteration: the last step is that after the one that came close enough."""
+    rows = (3 + 3 * oriented) * sizes.ends
+    iteration = Int32(0)
+    while iteration < iterations:
+        place(sizes, chain, search, search.coordinate_now)
+        error = measure_errors(sizes, chain, search, oriented)
+        fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
+        greatest = real(0.0)
+        if step_kind == NULL_SPACE:
+            greatest = null_space_step(sizes, chain, search, search.coordinate_now, rows)
+        elif step_kind == SELECTIVE:
+            greatest = selective_step(sizes, chain, search, rows)
+        else:
+            greatest = damped_step(sizes, chain, search, rows)
+        advance(sizes, chain, search, search.coordinate_now, search.coordinate_now)
+        iteration += 1
+        if error[0] <= threshold or greatest < _NO_STEP:
+            iteration = iterations
+
+
+@func
+def keep_limits(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals) -> Int32:
+    """Move joints into their limits; tells whether any was outside."""
+    changed = Int32(0)
+    for dof in range(sizes.dofs):
+        coordinate = chain.dof_coordinate[dof]
+        if coordinate >= 0:
+            position = coordinates[coordinate]
+            within = wp.clamp(position, search.dof_lower[dof], search.dof_upper[dof])
+            if within != position:
+                coordinates[coordinate] = within
+                changed = Int32(1)
+    return changed
+
+
+@func
+def descend(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    budget: Int32,
+    threshold: real,
+) -> Int32:
+    """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
+
+    Returns:
+        How many poses it tried.
+    """
+    rows = (3 + 3 * oriented) * sizes.ends
+    place(sizes, chain, search, search.coordinate_now)
+    error = measure_errors(sizes, chain, search, oriented)
+    tried = Int32(0)
+    slow = Int32(0)
+    growth = real(1.0)
+    while tried < budget and (error[0] > threshold or error[1] > threshold):
+        fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
+        squares = error[2]
+        attempt = Int32(0)
+        while attempt < _TRIES and tried < budget:
+            damping = growth * _DAMPING_BY_ERROR * squares + _LEAST_DAMPING
+            bounded_step(sizes, chain, search, search.coordinate_now, rows, damping)
+            advance(sizes, chain, search, search.coordinate_now, search.coordinate_trial)
+            place(sizes, chain, search, search.coordinate_trial)
+            error = measure_errors(sizes, chain, search, oriented)
+            tried += 1
+            attempt += 1
+            if error[2] < squares:
+                attempt = Int32(2 * _TRIES)
+                growth = wp.max(0.25 * growth, real(1.0e-3))
+            else:
+                growth *= 8.0
+                # The rows of the next try are those of the pose it starts from.
+                place(sizes, chain, search, search.coordinate_now)
+                measure_errors(sizes, chain, search, oriented)
+        if attempt <= _TRIES:
+            return tried
+        copy(sizes.coordinates, search.coordinate_trial, search.coordinate_now)
+        if error[2] > _LITTLE_PROGRESS * squares:
+            slow += 1
+            if slow >= _SLOW_STEPS:
+                return tried
+        else:
+            slow = Int32(0)
+    return tried
+
+
+@func
+def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed: Int32):
+    """A new start in `coordinate_now`, within a share of the joints' ranges around the first one."""
+    copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
+    random = wp.rand_init(seed)
+    for column in range(sizes.columns):
+        dof = chain.column_dof[column]
+        low = chain.column_low[column]
+        high = chain.column_high[column]
+        if search.dof_lower[dof] > -1.0e6 and search.dof_upper[dof] < 1.0e6:
+            low = search.dof_lower[dof]
+            high = search.dof_upper[dof]
+        offset = spread * (high - low) * (real(wp.randf(random)) - 0.5) * 2.0
+        coordinate = chain.dof_coordinate[dof]
+        search.dof_step[dof] = offset
+        if coordinate >= 0:
+            search.coordinate_now[coordinate] = wp.clamp(
+                search.coordinate_start[coordinate] + offset, low, high
+            )
+    for joint in range(sizes.joints):
+        if chain.joint_kind[joint] == SPHERICAL:
+            dof = chain.joint_first_dof[joint]
+            q = chain.joint_first_coordinate[joint]
+            rate = Vector3(search.dof_step[dof], search.dof_step[dof + 1], search.dof_step[dof + 2])
+            quaternion = turned(search.coordinate_start, q, rate)
+            for k in range(4):
+                search.coordinate_now[q + k] = quaternion[k]
+
+
+@func
+def take_targets(sizes: ChainSizes, search: Search):
+    """See the given targets from the base."""
+    origin = Vector3(search.base_pose[0], search.base_pose[1], search.base_pose[2])
+    base = Quaternion(search.base_pose[3], search.base_pose[4], search.base_pose[5], search.base_pose[6])
+    for end in range(sizes.ends):
+        search.end_target_position[end] = wp.quat_rotate_inv(base, search.end_given_position[end] - origin)
+        search.end_target_rotation[end] = wp.quat_inverse(base) * wp.normalize(search.end_given_rotation[end])
+
+
+@kernel
+def inverse_kinematics_kernel(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    step_kind: Int32,
+    bounded: Int32,
+    iterations: Int32,
+    threshold: real,
+):
+    """Leave in `coordinate_best` the joint positions found."""
+    take_targets(sizes, search)
+    for column in range(sizes.columns):
+        search.column_held[column] = 0
+        search.column_weight[column] = real(1.0)
+        if step_kind == DAMPED:
+            search.column_weight[column] = 1.0 / search.dof_damping[chain.column_dof[column]]
+    for dof in range(sizes.dofs):
+        search.dof_step[dof] = real(0.0)
+    copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
+    follow(sizes, chain, search, oriented, step_kind, iterations, threshold)
+    outside = Int32(0)
+    if bounded == 1:
+        outside = keep_limits(sizes, chain, search, search.coordinate_now)
+    place(sizes, chain, search, search.coordinate_now)
+    error = measure_errors(sizes, chain, search, oriented)
+    copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
+    goal = wp.max(threshold, _LEAST_THRESHOLD)
+    if error[0] <= goal and error[1] <= goal:
+        return
+
+    # PyBullet looks at distances only. Where it is content, nothing but better angles will do.
+    content = error[0] <= goal and outside == 0
+    best = error[2]
+    if step_kind == DAMPED:
+        mean = real(0.0)
+        for column in range(sizes.columns):
+            mean += search.column_weight[column] / real(sizes.columns)
+        for column in range(sizes.columns):
+            search.column_weight[column] = search.column_weight[column] / mean
+    for dof in range(sizes.dofs):
+        search.dof_step[dof] = real(0.0)
+    left = iterations
+    spread = _FIRST_SPREAD
+    seed = Int32(1)
+    while left > 0:
+        left -= descend(sizes, chain, search, oriented, left, goal) + 1
+        place(sizes, chain, search, search.coordinate_now)
+        error = measure_errors(sizes, chain, search, oriented)
+        arrived = error[0] <= goal and error[1] <= goal
+        if arrived or (error[2] < best and not content):
+            best = error[2]
+            copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
+        if arrived:
+            return
+        scatter(sizes, chain, search, spread, seed)
+        for dof in range(sizes.dofs):
+            search.dof_step[dof] = real(0.0)
+        if bounded == 1:
+            keep_limits(sizes, chain, search, search.coordinate_now)
+        spread = wp.min(1.6 * spread, real(1.0))
+        seed += 1

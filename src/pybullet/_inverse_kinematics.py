@@ -1,0 +1,330 @@
+"""Joint positions that bring links to given places."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import isnan
+from typing import TYPE_CHECKING, Any, overload
+
+from pybullet._algebra import joint_coordinates
+from pybullet._arguments import Indices, Vector, indices, integer, numbers, real, rotation, sequence, vector3
+from pybullet._builtin import exported, exported_as
+from pybullet._clients import client_of
+from pybullet._constants import IK_DLS, IK_SDLS, JOINT_SPHERICAL
+from pybullet._errors import fail, logger
+from pybullet._lookup import no_body
+from pybullet._maths import getEulerFromQuaternion
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+__all__ = [
+    "calculateInverseKinematics",
+    "calculateInverseKinematics2",
+]
+
+_PROBLEM = "Error in calculateInverseKinematics"
+_NO_POSITION = "calculateInverseKinematics couldn't extract position vector3"
+_CURRENT_POSITIONS = (
+    "calculateInverseKinematics the size of input current positions needs to be equal to the number of "
+    "degrees of freedom."
+)
+_MISSING = object()
+_DEFAULT_ITERATIONS = 20
+_DEFAULT_THRESHOLD = 1e-4
+
+
+@overload
+def calculateInverseKinematics(
+    bodyUniqueId: int,
+    endEffectorLinkIndex: int,
+    targetPosition: Vector,
+    targetOrientation: Vector | None = None,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
+    solver: int = 0,
+    currentPositions: Vector | None = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@overload
+def calculateInverseKinematics(
+    *,
+    bodyIndex: int,
+    endEffectorLinkIndex: int,
+    targetPosition: Vector,
+    targetOrientation: Vector | None = None,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@exported_as(
+    "(bodyUniqueId, endEffectorLinkIndex, targetPosition, targetOrientation=None, lowerLimits=None, "
+    "upperLimits=None, jointRanges=None, restPoses=None, jointDamping=None, solver=0, currentPositions=None, "
+    "maxNumIterations=-1, residualThreshold=-1, physicsClientId=0)"
+)
+def calculateInverseKinematics(
+    bodyUniqueId: Any = None,
+    endEffectorLinkIndex: Any = _MISSING,
+    targetPosition: Any = _MISSING,
+    targetOrientation: Any = None,
+    lowerLimits: Any = None,
+    upperLimits: Any = None,
+    jointRanges: Any = None,
+    restPoses: Any = None,
+    jointDamping: Any = None,
+    solver: int = 0,
+    currentPositions: Any = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
+    physicsClientId: int = 0,
+    *,
+    bodyIndex: Any = None,
+) -> tuple[float, ...]:
+    """Joint positions at which a link is where it ought to be; nothing moves.
+
+    The search starts at the present pose, or at `currentPositions`. Where PyBullet's own iteration comes
+    close enough, this is its result. Where it does not, the search goes on from there, and the result is
+    the nearest that was found.
+
+    With limits the result keeps them, in any case. With `lowerLimits`, `upperLimits`, `jointRanges` and
+    `restPoses` joints are also drawn to their rest poses, a little with each call, as far as the link
+    does not mind. Lists that do not have a value for each freedom of the joints are ignored, as in
+    PyBullet.
+
+    Args:
+        bodyUniqueId: The body.
+        endEffectorLinkIndex: The link, from 0.
+        targetPosition: Where the origin of its link frame ought to be [m], in world axes; with
+            `currentPositions` in the inertial frame of the base, as in PyBullet.
+        targetOrientation: What the axes of its inertial frame ought to be, a quaternion (x, y, z, w).
+        lowerLimits: Of every freedom of the joints [rad or m]. None where above the upper one.
+        upperLimits: The same, from above.
+        jointRanges: How far apart the limits are.
+        restPoses: Positions to which the joints are drawn.
+        jointDamping: How unwilling every joint is to move; 0.5 where not given.
+        solver: `IK_DLS`, damped least squares, or `IK_SDLS`, selectively damped ones. With rest poses
+            always the former.
+        currentPositions: Joint positions to start from.
+        maxNumIterations: Most steps of PyBullet's iteration, and as many for going on; 20 at first.
+        residualThreshold: Distance [m], and angle [rad], that are close enough; 1e-4 at first.
+        physicsClientId: The connection.
+        bodyIndex: Another name of `bodyUniqueId`.
+
+    Returns:
+        A position for each freedom of the joints, in the order of `getJointInfo`; fixed joints have
+        none, spherical ones roll, pitch and yaw.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
+    """
+    if (bodyUniqueId is None) == (bodyIndex is None):
+        raise TypeError("calculateInverseKinematics() needs one of 'bodyUniqueId' and 'bodyIndex'")
+    for name, value in (
+        ("endEffectorLinkIndex", endEffectorLinkIndex),
+        ("targetPosition", targetPosition),
+    ):
+        if value is _MISSING:
+            raise TypeError(f"calculateInverseKinematics() missing required argument {name!r}")
+    link = integer(endEffectorLinkIndex, "endEffectorLinkIndex")
+    client = client_of(physicsClientId)
+    position = vector3(targetPosition, _NO_POSITION, "targetPosition")
+    orientation = _orientation(targetOrientation)
+    number = integer(bodyIndex if bodyUniqueId is None else bodyUniqueId, "bodyUniqueId")
+    body = client.body(number)
+    if body is None:
+        fail(_PROBLEM, no_body(number))
+    options = _options(
+        body,
+        (lowerLimits, upperLimits, jointRanges, restPoses),
+        jointDamping,
+        solver,
+        currentPositions,
+        maxNumIterations,
+        residualThreshold,
+    )
+    _check_link(body, link)
+
+    from carom.algorithms import inverse_kinematics
+
+    with client.lock:
+        found = inverse_kinematics(
+            body, (link,), (position,), None if orientation is None else (orientation,), **options
+        )
+    return _result(body, found)
+
+
+@exported
+def calculateInverseKinematics2(
+    bodyUniqueId: int,
+    endEffectorLinkIndices: Indices,
+    targetPositions: Any,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
+    solver: int = 0,
+    currentPositions: Vector | None = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]:
+    """Joint positions at which several links are where they ought to be; nothing moves.
+
+    Args:
+        bodyUniqueId: The body.
+        endEffectorLinkIndices: The links, from 0. More than there are positions do not count.
+        targetPositions: Where the origin of each link frame ought to be, as in
+            `calculateInverseKinematics`.
+        lowerLimits: This and what follows as in `calculateInverseKinematics`. (PyBullet forgets the
+            targets when it is given all four lists of limits and rest poses; here they count.)
+        upperLimits: Of every freedom of the joints [rad or m].
+        jointRanges: How far apart the limits are.
+        restPoses: Positions to which the joints are drawn.
+        jointDamping: How unwilling every joint is to move.
+        solver: `IK_DLS` or `IK_SDLS`.
+        currentPositions: Joint positions to start from.
+        maxNumIterations: Most steps.
+        residualThreshold: Distance that is close enough [m].
+        physicsClientId: The connection.
+
+    Returns:
+        A position for each freedom of the joints, in the order of `getJointInfo`.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
+    """
+    client = client_of(physicsClientId)
+    links = indices(endEffectorLinkIndices, _NO_POSITION, "endEffectorLinkIndices")
+    positions = [
+        vector3(position, _NO_POSITION, "targetPositions")
+        for position in sequence(targetPositions, _NO_POSITION, "targetPositions")
+    ]
+    if not positions:
+        fail(_NO_POSITION, "targetPositions is empty.")
+    if len(links) < len(positions):
+        fail(_PROBLEM, f"There are {len(links)} links and {len(positions)} positions for them.")
+    links = links[: len(positions)]
+    body = client.body(bodyUniqueId)
+    if body is None:
+        fail(_PROBLEM, no_body(bodyUniqueId))
+    options = _options(
+        body,
+        (lowerLimits, upperLimits, jointRanges, restPoses),
+        jointDamping,
+        solver,
+        currentPositions,
+        maxNumIterations,
+        residualThreshold,
+    )
+    for link in links:
+        _check_link(body, link)
+
+    from carom.algorithms import inverse_kinematics
+
+    with client.lock:
+        return _result(body, inverse_kinematics(body, links, positions, **options))
+
+
+def _orientation(values: Any) -> tuple[float, float, float, float] | None:
+    """The orientation asked for. As in PyBullet, anything that has not four numbers is none."""
+    if values is None:
+        return None
+    name = "targetOrientation"
+    if len(numbers(values, _PROBLEM, name)) != 4:
+        _warn_once("calculateInverseKinematics: targetOrientation has not 4 values and is ignored")
+        return None
+    return rotation(values, _PROBLEM, name)
+
+
+def _options(
+    body: Body,
+    limits: tuple[Any, Any, Any, Any],
+    damping: Any,
+    solver: int,
+    current_positions: Any,
+    iterations: int,
+    threshold: float,
+) -> dict[str, Any]:
+    """The options of `carom.algorithms.inverse_kinematics`."""
+    freedoms = sum(body.velocity_count)
+    if freedoms == 0:
+        fail(_PROBLEM, f"Body {body.id} ({body.name}) has no joint that moves.")
+    if solver not in (IK_DLS, IK_SDLS):
+        fail(_PROBLEM, f"solver is {solver!r}, neither IK_DLS ({IK_DLS}) nor IK_SDLS ({IK_SDLS}).")
+    most = integer(iterations, "maxNumIterations")
+    close = real(threshold, "residualThreshold")
+    options: dict[str, Any] = {
+        "selective": solver == IK_SDLS,
+        "iterations": most if most > 0 else _DEFAULT_ITERATIONS,
+        "threshold": close if close >= 0.0 else _DEFAULT_THRESHOLD,
+    }
+    names = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
+    lower, upper, ranges, rest = (
+        _for_each_freedom(values, name, freedoms) for values, name in zip(limits, names, strict=True)
+    )
+    if lower is not None and upper is not None:
+        options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
+    if damping is not None:
+        values = numbers(damping, _PROBLEM, "jointDamping")
+        if len(values) >= freedoms:
+            options["damping"] = values[:freedoms]
+        elif values:
+            _warn_once(
+                "calculateInverseKinematics: the size of input joint damping values should be equal to the "
+                "number of degrees of freedom, not using joint damping."
+            )
+    if current_positions is not None:
+        start = numbers(current_positions, _CURRENT_POSITIONS, "currentPositions")
+        if start:
+            if len(start) != freedoms:
+                fail(_CURRENT_POSITIONS, f"They are {len(start)} and {freedoms}.")
+            options["start"] = joint_coordinates(body, start)
+            options["in_base_frame"] = True
+    return options
+
+
+def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...] | None:
+    """A list that has one number, perhaps infinite, for each freedom; None where its length is another."""
+    if values is None:
+        return None
+    try:
+        result = tuple([float(value) for value in values])
+    except (TypeError, ValueError):
+        fail(_PROBLEM, f"{name} is {values!r}, not a list of numbers.")
+    if len(result) != freedoms:
+        return None
+    if any(isnan(value) for value in result):
+        fail(_PROBLEM, f"{name} is {values!r}, with a value that is not a number.")
+    return result
+
+
+def _check_link(body: Body, link: int) -> None:
+    if not -1 <= link < body.joint_count:
+        fail(_PROBLEM, f"Body {body.id} ({body.name}) has no link {link}.")
+
+
+def _result(body: Body, coordinates: list[float]) -> tuple[float, ...]:
+    """Positions as scripts have them: roll, pitch and yaw of spherical joints instead of a quaternion."""
+    if JOINT_SPHERICAL not in body.joint_types:
+        return tuple(coordinates)
+    result: list[float] = []
+    first = 0
+    for kind, count in zip(body.joint_types, body.position_count, strict=True):
+        own = coordinates[first : first + count]
+        result += getEulerFromQuaternion(own) if kind == JOINT_SPHERICAL else own
+        first += count
+    return tuple(result)
+
+
+@cache
+def _warn_once(message: str) -> None:
+    logger.warning(message)
