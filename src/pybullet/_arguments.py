@@ -7,7 +7,7 @@ not work do they come here, to find out what is wrong or to convert what is mere
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from math import inf, isfinite, nan
 from operator import index
 from typing import Any, SupportsFloat
@@ -16,7 +16,8 @@ from pybullet._errors import fail
 
 _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
 
-Vector = Sequence[float]
+# Lists, tuples, ranges and NumPy arrays are all iterables to a type checker, but not all sequences.
+Vector = Iterable[float]
 Indices = Iterable[int]
 
 

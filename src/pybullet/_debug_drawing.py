@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 from pybullet._arguments import Vector, integer, real, rotation, sequence, text, vector3
 from pybullet._builtin import exported
@@ -121,8 +121,8 @@ def addUserDebugText(
 
 @exported
 def addUserDebugPoints(
-    pointPositions: Sequence[Vector],
-    pointColorsRGB: Sequence[Vector],
+    pointPositions: Iterable[Vector],
+    pointColorsRGB: Iterable[Vector],
     pointSize: float = 1,
     lifeTime: float = 0,
     parentObjectUniqueId: int = -1,
@@ -230,6 +230,6 @@ def _colour(values: Vector | None, problem: str, name: str) -> Vector3:
     return _WHITE if values is None else vector3(values, problem, name)
 
 
-def _vectors(values: Sequence[Vector], name: str) -> tuple[Vector3, ...]:
+def _vectors(values: Iterable[Vector], name: str) -> tuple[Vector3, ...]:
     items = sequence(values, "expected a sequence of vertex positions", name)
     return tuple(vector3(item, f"{name} needs 3 numbers for each point.", name) for item in items)

@@ -206,12 +206,12 @@ class AxisJoint(JointAccess):
         if mode == POSITION_CONTROL:
             if not self.lower <= position <= self.upper:
                 position = self._within_limits(position)
-            impulse = force * self.client.time_step
+            impulse = float(force) * self.client.time_step
             _write_target(self.motors, self.row_at, position, velocity, kp, kd, impulse)
             if clamp > 0.0:
                 self.motors[self.u * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
         elif mode == VELOCITY_CONTROL:
-            impulse = force * self.client.time_step
+            impulse = float(force) * self.client.time_step
             _write_target_and_clamp(self.motors, self.row_at, 0.0, velocity, 0.0, kd, impulse, inf)
         elif mode == TORQUE_CONTROL:
             self.torques[self.u] += force

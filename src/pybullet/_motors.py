@@ -213,7 +213,7 @@ def setJointMotorControlArray(
             ):
                 joint.command(controlMode, position, velocity, force, kp, kd, _NO_CLAMP)
             return
-    except (KeyError, TypeError, ValueError, StructError):
+    except (KeyError, TypeError, ValueError, AttributeError, StructError):
         pass
     _set_array_carefully(
         _one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
@@ -226,7 +226,7 @@ def setJointMotorControlArray(
 
 def _finite(values: Any, count: int) -> Sequence[float]:
     """As many finite numbers in a list or tuple; raises `ValueError` or `TypeError` for anything else."""
-    plain = values if isinstance(values, (list, tuple)) else list(values)
+    plain = values if isinstance(values, (list, tuple)) else values.tolist()
     check = sum(plain)
     if len(plain) != count or not -inf < check < inf:
         raise ValueError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import Indices, Vector, bound, indices, integer, numbers, real, sequence
@@ -90,9 +90,9 @@ def setJointMotorControlMultiDofArray(
     bodyUniqueId: int,
     jointIndices: Indices,
     controlMode: int,
-    targetPositions: Sequence[Vector] | None = None,
-    targetVelocities: Sequence[Vector] | None = None,
-    forces: Sequence[Vector] | None = None,
+    targetPositions: Iterable[Vector] | None = None,
+    targetVelocities: Iterable[Vector] | None = None,
+    forces: Iterable[Vector] | None = None,
     positionGains: Vector | None = None,
     velocityGains: Vector | None = None,
     maxVelocities: Vector | None = None,

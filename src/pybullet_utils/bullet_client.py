@@ -37,10 +37,11 @@ class BulletClient:
         if connection_mode is None:
             self._client = pybullet.connect(pybullet.SHARED_MEMORY, options=options)
             connection_mode = pybullet.DIRECT
-        if self._client < 0 and hostName is None:
-            self._client = pybullet.connect(connection_mode, options=options)
-        elif self._client < 0:
-            self._client = pybullet.connect(connection_mode, hostName=hostName, options=options)
+        if self._client < 0:
+            if hostName is None:
+                self._client = pybullet.connect(connection_mode, options=options)
+            else:
+                self._client = pybullet.connect(connection_mode, hostName=hostName, options=options)
 
     def __enter__(self) -> BulletClient:
         return self

@@ -104,10 +104,10 @@ def test_connect_with_arguments_it_does_not_have(
 
 
 def test_methods_that_do_not_exist_or_not_yet() -> None:
-    with pytest.raises(p.error, match="^connectPhysicsServer unexpected argument"):
+    with pytest.raises(p.error, match=r"^connectPhysicsServer unexpected argument"):
         p.connect(99)
     for server in (p.SHARED_MEMORY_SERVER, p.GRAPHICS_SERVER, p.GRAPHICS_SERVER_TCP, p.SHARED_MEMORY_GUI):
-        with pytest.raises(p.error, match="not available in this version of Carom"):
+        with pytest.raises(p.error, match=r"not available in this version of Carom"):
             p.connect(server)
 
 
@@ -129,7 +129,7 @@ def test_a_client_object_talks_to_its_own_world() -> None:
         first.setJointMotorControl2(bodyIndex=0, jointIndex=0, controlMode=p.POSITION_CONTROL)
         first.disconnect()
         first.disconnect()
-        with pytest.raises(p.error, match="Not connected"):
+        with pytest.raises(p.error, match=r"Not connected"):
             first.getNumBodies()
     assert [p.isConnected(client) for client in range(3)] == [1, 0, 0]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import pybullet as p
+from pybullet import _unavailable
 
 HERE = Path(__file__).parent
 SURFACE = json.loads((HERE / "surface.json").read_text())
@@ -79,13 +80,19 @@ def test_builtins_work_with_partial_and_by_keyword(client: int) -> None:
     assert p.getPhysicsEngineParameters(client)["gravityAccelerationZ"] == 0.0
 
 
-def test_unavailable_functions_check_their_arguments_and_say_so() -> None:
-    with pytest.raises(p.error, match="^saveState is not available in this version of Carom$"):
-        p.saveState()
-    with pytest.raises(TypeError, match="radii"):
-        p.createCollisionShape(p.GEOM_SPHERE, radii=1)
-    with pytest.raises(TypeError, match="rayToPosition"):
-        p.rayTest([0, 0, 0])
+@pytest.mark.parametrize("name", _unavailable.__all__)
+def test_unavailable_functions_check_their_arguments_and_say_so(name: str) -> None:
+    function = getattr(p, name)
+    needed = [
+        parameter.name
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.default is parameter.empty and parameter.kind is parameter.POSITIONAL_OR_KEYWORD
+    ]
+    with pytest.raises(p.error, match=f"^{name} is not available in this version of Carom$"):
+        function(*[0] * len(needed))
+    if needed:
+        with pytest.raises(TypeError, match=needed[-1]):
+            function(*[0] * (len(needed) - 1))
 
 
 def _described(parameter: inspect.Parameter) -> tuple[object, ...]:

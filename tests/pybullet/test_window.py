@@ -124,7 +124,7 @@ def test_the_window_has_the_size_asked_for() -> None:
 
 @pytest.mark.parametrize("method", [p.GUI, p.GUI_SERVER, p.GUI_MAIN_THREAD])
 def test_there_is_one_window_at_most(window: RecordingWindow, method: int) -> None:
-    with pytest.raises(p.error, match="^Only one local in-process GUI/GUI_SERVER connection allowed"):
+    with pytest.raises(p.error, match=r"^Only one local in-process GUI/GUI_SERVER connection allowed"):
         p.connect(method)
     assert p.connect(p.DIRECT) == 1
 
