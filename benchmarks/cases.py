@@ -39,6 +39,8 @@ IN_PROCESS = (
     Case("jacobian", "calculateJacobian, Panda"),
     Case("mass_matrix", "calculateMassMatrix, Panda"),
     Case("stable_pd", "STABLE_PD_CONTROL, floating tree of 20 links"),
+    Case("inverse_kinematics", "calculateInverseKinematics, KUKA, to a point", speedup=3.0),
+    Case("inverse_kinematics_oriented", "calculateInverseKinematics, Panda, to a pose", speedup=3.0),
     Case("load_panda", "loadURDF, our Panda", speedup=1.0),
     Case("load_original_panda", "loadURDF, the original Panda with its meshes", speedup=1.0),
 )

@@ -8,12 +8,38 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from worker import ANSWER
+
 ROOT = Path(__file__).resolve().parents[1]
 HERE = Path(__file__).resolve().parent
+
+
+class Worker:
+    """A process that times cases of one engine when asked to."""
+
+    def __init__(self, engine: str, process: subprocess.Popen[str]) -> None:
+        self._engine = engine
+        self._process = process
+
+    def time(self, case: str) -> float | None:
+        """Median seconds of a call; None if the engine lacks the case or failed at it, which is said."""
+        requests, answers = self._process.stdin, self._process.stdout
+        assert requests is not None
+        assert answers is not None
+        requests.write(case + "\n")
+        requests.flush()
+        for line in answers:
+            if line.startswith(ANSWER):
+                answer = json.loads(line.removeprefix(ANSWER))
+                if "failure" in answer:
+                    print(f"{self._engine}: {case}: {answer['failure']}", file=sys.stderr, flush=True)
+                return answer.get("seconds")
+        raise RuntimeError(f"{self._engine} ended while it timed {case}")
 
 
 @dataclass(frozen=True)
@@ -34,18 +60,22 @@ class Engine:
     environment: dict[str, str] = field(default_factory=dict)
     runs_scripts: bool = True
 
-    def time_cases(self, keys: Sequence[str], seconds: float, original_data: str) -> dict[str, float]:
-        """Time the cases in one new process; cases the engine lacks are left out."""
-        command = [str(self.interpreter), str(HERE / "worker.py"), self.module, *keys]
+    @contextmanager
+    def worker(self, seconds: float, original_data: str) -> Iterator[Worker]:
+        """A new process that times cases, `seconds` on each, until the context ends."""
+        command = [str(self.interpreter), str(HERE / "worker.py"), self.module]
         command += ["--seconds", str(seconds), "--original-data", original_data]
-        output = subprocess.run(
-            command, check=True, env=self._environment(), cwd=ROOT, stdout=subprocess.PIPE, text=True
-        )
-        results = [json.loads(line) for line in output.stdout.splitlines() if line.startswith('{"case"')]
-        for result in results:
-            if "failure" in result:
-                print(f"{self.name}: {result['case']}: {result['failure']}", file=sys.stderr, flush=True)
-        return {result["case"]: result["seconds"] for result in results if "seconds" in result}
+        with subprocess.Popen(
+            command,
+            env=self._environment(),
+            cwd=ROOT,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        ) as process:
+            yield Worker(self.name, process)
+            process.communicate()
 
     def time_first_step(self) -> tuple[float, float]:
         """Seconds of `import pybullet`, and from the start of a process to its first finished step."""

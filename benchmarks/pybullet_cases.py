@@ -175,6 +175,16 @@ def mass_matrix(original_data: str) -> Prepared:
     return lambda: p.calculateMassMatrix(panda, HOME)
 
 
+def inverse_kinematics(original_data: str) -> Prepared:
+    kuka = _kuka()
+    return lambda: p.calculateInverseKinematics(kuka, 6, [0.3, 0.2, 0.7])
+
+
+def inverse_kinematics_oriented(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.calculateInverseKinematics(panda, 11, [0.45, 0.1, 0.4], [1.0, 0.0, 0.0, 0.0])
+
+
 def load_panda(original_data: str) -> Prepared:
     _world()
     return lambda: p.loadURDF(PANDA, useFixedBase=True), p.removeBody

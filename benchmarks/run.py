@@ -2,9 +2,9 @@
 
     python benchmarks/run.py [--oracle .oracle/bin/python] [--repetitions 5] [--json FILE]
 
-Every engine has an interpreter and processes of its own. The engines take turns, so that a busy
-moment of the machine hits them alike; a figure is the median over the turns. The exit code does
-not depend on the figures.
+Every engine has an interpreter and processes of its own. The engines take turns at every case, so
+that a busy moment of the machine hits them alike; a figure is the median over the turns. The exit
+code does not depend on the figures.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import platform
 import statistics
 import sys
 from collections import defaultdict
+from contextlib import ExitStack
 from pathlib import Path
 
 from cases import COLD_BUILD, FIRST_STEP, IMPORT, IN_PROCESS, Case
@@ -26,15 +27,21 @@ Medians = dict[str, dict[str, float]]
 
 
 def measure(engines: list[Engine], cases: list[str], repetitions: int, seconds: float, data: str) -> Medians:
-    """Median seconds by case and engine, the engines taking turns."""
+    """Median seconds by case and engine, the engines taking turns at every case."""
     samples: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     keys = [case.key for case in IN_PROCESS if case.key in cases]
     for repetition in range(repetitions):
+        print(f"turn {repetition + 1} of {repetitions}", file=sys.stderr, flush=True)
+        with ExitStack() as stack:
+            workers = {
+                engine.name: stack.enter_context(engine.worker(seconds, data)) for engine in engines if keys
+            }
+            for key in keys:
+                for name, worker in workers.items():
+                    value = worker.time(key)
+                    if value is not None:
+                        samples[key][name].append(value)
         for engine in engines:
-            print(f"turn {repetition + 1} of {repetitions}: {engine.name}", file=sys.stderr, flush=True)
-            if keys:
-                for key, value in engine.time_cases(keys, seconds, data).items():
-                    samples[key][engine.name].append(value)
             if engine.runs_scripts and {IMPORT.key, FIRST_STEP.key} & set(cases):
                 imported, stepped = engine.time_first_step()
                 samples[IMPORT.key][engine.name].append(imported)

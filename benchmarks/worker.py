@@ -1,6 +1,7 @@
 """Times the cases of one engine in this interpreter; `run.py` starts it.
 
-Prints one JSON line per case: its key and the median time of a call in seconds, or why it failed.
+It reads keys of cases and answers each with a line of JSON: the median time of a call in seconds, or
+why it failed, or nothing if the engine has no such case. What engines print goes before the answer.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 BATCH_SECONDS = 0.01
+ANSWER = "answer: "
 
 
 def time_call(call: Callable[[], Any], budget: float) -> float:
@@ -63,25 +65,22 @@ def _batch(call: Callable[[], Any], count: int) -> float:
 
 
 def main() -> None:
-    """Time the cases named on the command line."""
+    """Time the cases named on standard input, one a line, until it ends."""
     parser = argparse.ArgumentParser(description="Time the benchmark cases of one engine.")
     parser.add_argument("module", help="module with the engine's cases")
-    parser.add_argument("cases", nargs="+")
     parser.add_argument("--seconds", type=float, default=0.3, help="time spent on each case")
     parser.add_argument("--original-data", default="", help="directory of the original pybullet_data")
     arguments = parser.parse_args()
     module = importlib.import_module(arguments.module)
-    for key in arguments.cases:
-        prepare = getattr(module, key, None)
-        if prepare is None:
-            continue
-        try:
-            result: dict[str, Any] = {
-                "seconds": time_case(prepare(arguments.original_data), arguments.seconds)
-            }
-        except Exception as error:
-            result = {"failure": f"{type(error).__name__}: {error}"}
-        sys.stdout.write(json.dumps({"case": key, **result}) + "\n")
+    for line in sys.stdin:
+        prepare = getattr(module, line.strip(), None)
+        result: dict[str, float | str] = {}
+        if prepare is not None:
+            try:
+                result = {"seconds": time_case(prepare(arguments.original_data), arguments.seconds)}
+            except Exception as error:
+                result = {"failure": f"{type(error).__name__}: {error}"}
+        sys.stdout.write(f"{ANSWER}{json.dumps(result)}\n")
         sys.stdout.flush()
 
 
