@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -56,11 +56,13 @@ class Mesh:
         path: The file, resolved to where it was found.
         scale: Factor along x, y and z, the global scaling included.
         concave: The triangles themselves collide, not their convex hull (static bodies only).
+        asked_for: The name under which a script asked for the file; empty if none did.
     """
 
     path: Path
     scale: Vector3 = (1.0, 1.0, 1.0)
     concave: bool = False
+    asked_for: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,24 +74,36 @@ class SignedDistanceField:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConvexHull:
-    """The convex hull of points; `points` is an (n, 3) array."""
+    """The convex hull of points.
+
+    Attributes:
+        points: (n, 3) positions.
+        scale: Factor along x, y and z that the points have been multiplied by.
+    """
 
     points: NDArray[np.float64]
+    scale: Vector3 = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TriangleMesh:
-    """Triangles that collide as they are.
+    """Triangles that are what they are: no hull is made of them.
 
     Attributes:
         vertices: (n, 3) positions.
         triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
         margin: Distance by which the surface is thought to lie outside the triangles [m].
+        scale: Factor along x, y and z that the vertices have been multiplied by.
+        normals: (n, 3) normals for shading, if there are any.
+        uvs: (n, 2) texture coordinates, if there are any.
     """
 
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int32]
     margin: float = 0.0
+    scale: Vector3 = (1.0, 1.0, 1.0)
+    normals: NDArray[np.float64] | None = None
+    uvs: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

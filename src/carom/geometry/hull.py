@@ -49,6 +49,32 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
     Raises:
         ValueError: There are no points, or one is not finite.
     """
+    middle, centred, loops = _hull_loops(points, tolerance, most_vertices)
+    return polyhedron_of_loops(centred, loops).moved(middle)
+
+
+def extreme_points(points: Points) -> Points:
+    """The corners of the convex hull of points, without a thickness it does not have.
+
+    Args:
+        points: (n, 3) positions, n at least 1.
+
+    Returns:
+        Those of the points that are corners, shape (k, 3).
+
+    Raises:
+        ValueError: There are no points, or one is not finite.
+    """
+    points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    _, _, loops = _hull_loops(points, EXACT, None)
+    # Thickening appends moved copies of all points.
+    return points[sorted({corner % len(points) for loop in loops for corner in loop})]
+
+
+def _hull_loops(
+    points: Points, tolerance: float, most_vertices: int | None
+) -> tuple[Points, Points, list[list[int]]]:
+    """Centre of the bounds, points relative to it, and their indices around each face of the hull."""
     points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     if not len(points):
         raise ValueError("a convex hull needs points")
@@ -66,7 +92,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
     hull = _Quickhull(centred, corners, size)
     hull.grow(tolerance * size, most_vertices)
     triangles = [face.corners for face in hull.faces.values()]
-    return polyhedron_of_loops(centred, merged_loops(centred, triangles, size)).moved(middle)
+    return middle, centred, merged_loops(centred, triangles, size)
 
 
 def _first_corners(points: Points, thin: float) -> list[int]:

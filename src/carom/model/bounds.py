@@ -125,9 +125,9 @@ def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:
             return Bounds.between(*read_field_bounds(path))
         case Mesh():
             return mesh_bounds(geometry)
-        case ConvexHull(points):
+        case ConvexHull(points=points):
             return _point_bounds(points).grown(MARGIN).grown(MARGIN)
-        case TriangleMesh(vertices, _, margin):
+        case TriangleMesh(vertices=vertices, margin=margin):
             return _point_bounds(vertices).grown(margin)
         case Heightfield(heights, (sx, sy, sz), middle):
             columns, rows = heights.shape

@@ -45,6 +45,8 @@ CYLINDER_SIDES = 32
 
 _CACHED = 256
 
+MeshGeometry = ConvexHull | TriangleMesh
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapePiece:
@@ -105,7 +107,10 @@ def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[Sha
         case Heightfield():
             return (_heightfield_piece(geometry),)
         case Mesh():
-            return _mesh_pieces.of(geometry)
+            pieces = (
+                shape_pieces(it, implicit_cylinder=implicit_cylinder) for it in mesh_geometries(geometry)
+            )
+            return tuple(piece for several in pieces for piece in several)
         case SignedDistanceField():
             return ()
 
@@ -162,38 +167,49 @@ def _heightfield_piece(geometry: Heightfield) -> ShapePiece:
     return _polyhedral(ShapeKind.HEIGHTFIELD, heightfield_surface(geometry), 0.0, geometry.heights.shape[1])
 
 
-class _MeshPieces:
-    """Pieces of mesh files, kept while the files stay the same."""
+class _MeshGeometries:
+    """What mesh files hold, kept while the files stay the same."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[Mesh, tuple[list[MeshPart], tuple[ShapePiece, ...]]] = OrderedDict()
+        self._kept: OrderedDict[Mesh, tuple[list[MeshPart], tuple[MeshGeometry, ...]]] = OrderedDict()
 
-    def of(self, mesh: Mesh) -> tuple[ShapePiece, ...]:
-        """The pieces of a mesh."""
+    def of(self, mesh: Mesh) -> tuple[MeshGeometry, ...]:
+        """The hulls or triangles of a mesh."""
         parts = read_mesh(mesh.path)
         kept = self._kept.get(mesh)
         # An unchanged file has the very same parts.
         if kept is not None and all(a is b for a, b in zip(parts, kept[0], strict=False)):
             self._kept.move_to_end(mesh)
             return kept[1]
-        pieces = tuple(_pieces_of_parts(mesh, parts))
-        self._kept[mesh] = (parts, pieces)
+        geometries = tuple(_geometries_of_parts(mesh, parts))
+        self._kept[mesh] = (parts, geometries)
         while len(self._kept) > _CACHED:
             self._kept.popitem(last=False)
-        return pieces
+        return geometries
 
 
-_mesh_pieces = _MeshPieces()
+_mesh_geometries = _MeshGeometries()
 
 
-def _pieces_of_parts(mesh: Mesh, parts: list[MeshPart]) -> list[ShapePiece]:
+def mesh_geometries(mesh: Mesh) -> tuple[MeshGeometry, ...]:
+    """What a mesh file stands for when it collides, scaled.
+
+    Returns:
+        A hull for each group of an OBJ file, one for any other file; one triangle mesh if it is concave.
+
+    Raises:
+        DescriptionError: The file cannot be used.
+    """
+    return _mesh_geometries.of(mesh)
+
+
+def _geometries_of_parts(mesh: Mesh, parts: list[MeshPart]) -> list[MeshGeometry]:
     if mesh.concave:
-        vertices, triangles = joined_parts(parts, mesh.scale)
-        return [_triangles_of(TriangleMesh(vertices, triangles))]
+        return [TriangleMesh(*joined_parts(parts, mesh.scale), scale=mesh.scale)]
     scale = np.array(mesh.scale)
     if mesh.path.suffix.lower() == ".obj":
-        return [_hull_piece(part.vertices * scale) for part in parts]
-    return [_hull_piece(np.concatenate([part.vertices for part in parts]) * scale)]
+        return [ConvexHull(part.vertices * scale, mesh.scale) for part in parts]
+    return [ConvexHull(np.concatenate([part.vertices for part in parts]) * scale, mesh.scale)]
 
 
 def joined_parts(parts: Sequence[MeshPart], scale: Vector3) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
