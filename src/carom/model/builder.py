@@ -69,7 +69,7 @@ class WorldArrays:
         self.model = ArrayTable(Model, None)
         self.state = ArrayTable(State, world_count)
         self.scratch = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
-        self.used = dict.fromkeys(
+        self.used: dict[str, int] = dict.fromkeys(
             ("tree", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
         )
 

@@ -38,7 +38,7 @@ class Launch:
             device: Warp device name.
         """
         with CompilationNotice():
-            self._command = wp.launch(
+            self._command: Any = wp.launch(
                 kernel, dim=count, inputs=list(arguments), device=device, record_cmd=True
             )
         self._keep_alive = arguments

@@ -11,7 +11,7 @@ import ast
 import functools
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     Vector8 = Any
     Quaternion = Any
     Matrix3 = Any
+    Matrix43 = Any
     Transform = Any
     Ints = Any
     Reals = Any
@@ -65,6 +66,7 @@ if not TYPE_CHECKING:
     Vector8 = wp.types.vector(8, real)
     Quaternion = wp.types.quaternion(real)
     Matrix3 = wp.types.matrix((3, 3), real)
+    Matrix43 = wp.types.matrix((4, 3), real)
     Transform = wp.types.transformation(real)
 
     # One value per tree, link, coordinate...: shared by all worlds.
@@ -103,7 +105,7 @@ class _RealLiterals(ast.NodeTransformer):
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 
-def _warp_function(function: _F, inline_hint: str) -> _F:
+def _warp_function(function: _F, inline_hint: Literal["forceinline", "noinline"]) -> _F:
     function.__globals__.setdefault("real", real)
     module = wp.get_module(function.__module__)
     key = function.__qualname__
