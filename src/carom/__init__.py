@@ -14,13 +14,20 @@ from carom.version import __version__
 if TYPE_CHECKING:
     from carom import control
     from carom.body import Body
+    from carom.camera import Camera
     from carom.joint import Joint
     from carom.link import Link
     from carom.world import World
 
-__all__ = ["Body", "Joint", "Link", "World", "__version__", "control"]
+__all__ = ["Body", "Camera", "Joint", "Link", "World", "__version__", "control"]
 
-_HOME = {"Body": "carom.body", "Joint": "carom.joint", "Link": "carom.link", "World": "carom.world"}
+_HOME = {
+    "Body": "carom.body",
+    "Camera": "carom.camera",
+    "Joint": "carom.joint",
+    "Link": "carom.link",
+    "World": "carom.world",
+}
 
 
 def __getattr__(name: str) -> Any:

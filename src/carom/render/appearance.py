@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
-from carom.description import Geometry, Material, Mesh, Plane, Pose
+from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.model.body_spec import BASE, LinkSpec
@@ -20,8 +20,8 @@ from carom.model.flags import LoadFlags
 from carom.render.images import read_image
 from carom.render.lights import Light
 from carom.render.meshes import shape_mesh
-from carom.render.textures import NO_TEXTURE, Textures
 from carom.render.render_mesh import RenderMesh
+from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -147,7 +147,7 @@ class Appearance:
 
     def _look(self, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags) -> ShapeLook:
         look = ShapeLook(geometry, frame, rgba)
-        if isinstance(geometry, Plane):
+        if isinstance(geometry, (Plane, Heightfield)):
             look.texture = self.textures.add_checker()
         elif isinstance(geometry, Mesh):
             mesh = shape_mesh(geometry)
@@ -169,9 +169,7 @@ class Appearance:
 
 
 def _colour(material: Material | None, link: int, flags: LoadFlags) -> Rgba:
-    if material is None or (
-        material.rgba is None and material.texture is None and material.specular is None
-    ):
+    if material is None or (material.rgba is None and material.texture is None and material.specular is None):
         return _undefined_colour(link, flags)
     return GREY if material.rgba is None else material.rgba
 

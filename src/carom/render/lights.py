@@ -14,7 +14,8 @@ class Light:
     Attributes:
         direction: Towards the light, world axes; of any length but 0.
         colour: Red, green and blue of the directed light.
-        distance: From the origin of the world to where shadows are looked up [m].
+        distance: From the origin of the world to the lamp that casts the shadows [m]; infinite for parallel
+            light.
         ambient: Share of a surface's colour that is seen without any light.
         diffuse: Share that is seen more the more it faces the light.
         specular: Strength of highlights.

@@ -8,16 +8,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from carom.description import Geometry, Mesh, SignedDistanceField
+from carom.description import (
+    ConvexHull,
+    Geometry,
+    Heightfield,
+    Mesh,
+    SignedDistanceField,
+    TriangleMesh,
+)
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.formats.mesh.part import cut_into_fans
+from carom.geometry.heightfield import heightfield_surface
+from carom.geometry.hull import convex_hull
+from carom.geometry.polyhedron import Polyhedron
 from carom.render.mesh_visuals import read_mesh_visual
 from carom.render.primitives import primitive_mesh
-from carom.render.render_mesh import RenderMesh, mesh_of, unit_vectors
+from carom.render.render_mesh import RenderMesh, flat_mesh, mesh_of, unit_vectors
 
 _log = logging.getLogger("carom")
 
 _NOTHING = mesh_of([], [], [], [])
+_TEXTURE_SIDE = 2.0
+"""Length of landscape that a texture covers [m]."""
 
 
 def shape_mesh(shape: Geometry) -> RenderMesh:
@@ -27,13 +40,15 @@ def shape_mesh(shape: Geometry) -> RenderMesh:
     """
     if isinstance(shape, SignedDistanceField):
         return _NOTHING
-    if not isinstance(shape, Mesh):
-        return primitive_mesh(shape)
-    try:
-        return _scaled(read_mesh_visual(shape.path), shape.scale)
-    except DescriptionError as error:
-        _log.warning("%s; the mesh is not shown", error)
-        return _NOTHING
+    if isinstance(shape, Mesh):
+        try:
+            return _scaled(read_mesh_visual(shape.path), shape.scale)
+        except DescriptionError as error:
+            _log.warning("%s; the mesh is not shown", error)
+            return _NOTHING
+    if isinstance(shape, (ConvexHull, TriangleMesh, Heightfield)):
+        return _from_memory(shape)
+    return primitive_mesh(shape)
 
 
 @functools.lru_cache(maxsize=256)
@@ -50,3 +65,19 @@ def _scaled(mesh: RenderMesh, scale: Vector3) -> RenderMesh:
         normals=unit_vectors(mesh.normals * (-cofactors if mirrored else cofactors)).astype(np.float32),
         triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]) if mirrored else mesh.triangles,
     )
+
+
+@functools.lru_cache(maxsize=256)
+def _from_memory(shape: ConvexHull | TriangleMesh | Heightfield) -> RenderMesh:
+    if isinstance(shape, TriangleMesh):
+        return flat_mesh(shape.vertices[shape.triangles])
+    if isinstance(shape, ConvexHull):
+        return flat_mesh(_corners(convex_hull(shape.points)))
+    landscape = flat_mesh(_corners(heightfield_surface(shape)))
+    return replace(landscape, uvs=landscape.positions[:, :2] / np.float32(_TEXTURE_SIDE))
+
+
+def _corners(solid: Polyhedron) -> np.ndarray:
+    """Corners (m, 3, 3) of the triangles that the faces are made of."""
+    triangles = cut_into_fans(solid.corners.astype(np.int64), solid.corner_count.astype(np.int64))
+    return solid.vertices[triangles]

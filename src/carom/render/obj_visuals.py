@@ -51,9 +51,7 @@ def read_obj_visual(file: Path) -> RenderMesh:
     """
     data, _ = read_bounded(file, MAX_FILE_BYTES)
     lines = _take_apart(data)
-    positions, uvs, normals = (
-        _numbers(lines.values[kind], width, file) for kind, width in _KINDS.values()
-    )
+    positions, uvs, normals = (_numbers(lines.values[kind], width, file) for kind, width in _KINDS.values())
     corners = _corners(lines, (len(positions), len(uvs), len(normals)), file)
     material = _material(lines, file)
     return _mesh(positions, uvs, normals, corners, material)
@@ -104,7 +102,9 @@ def _corners(lines: _Lines, counts: tuple[int, int, int], file: Path) -> NDArray
     known = np.repeat(np.array(lines.known, dtype=np.int64).reshape(-1, 3), sizes, axis=0)
     # From 1; negative ones count back from those known at the face; 0 is none.
     indices = np.where(indices < 0, indices + known, indices - 1)
-    for kind, (count, name) in enumerate(zip(counts, ("vertex", "texture coordinate", "normal"), strict=True)):
+    for kind, (count, name) in enumerate(
+        zip(counts, ("vertex", "texture coordinate", "normal"), strict=True)
+    ):
         least = 0 if kind == _VERTEX else -1
         outside = (indices[:, kind] < least) | (indices[:, kind] >= count)
         if outside.any():

@@ -37,7 +37,8 @@ def primitive_mesh(shape: Primitive) -> RenderMesh:
 
 
 # Each side of a box: its outward normal, two axes along the side with u × v = normal, and the texture
-# coordinates of its corners (-u, -v), (u, -v), (u, v) and (-u, v). One image wraps around all sides as in PyBullet.
+# coordinates of its corners (-u, -v), (u, -v), (u, v) and (-u, v). One image wraps around all sides, as in
+# PyBullet.
 _BOX_SIDES: tuple[tuple[Vector3, Vector3, Vector3, tuple[tuple[float, float], ...]], ...] = (
     ((0, 0, 1), (1, 0, 0), (0, 1, 0), ((0.75, 0.25), (1.0, 0.25), (1.0, 0.0), (0.75, 0.0))),
     ((0, 0, -1), (-1, 0, 0), (0, 1, 0), ((0.25, 0.25), (0.5, 0.25), (0.5, 0.0), (0.25, 0.0))),

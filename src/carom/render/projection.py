@@ -63,6 +63,27 @@ def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0,
     return matrix
 
 
+def parallel_projection(half_size: float, near: float, far: float) -> Matrix:
+    """Eye to clip coordinates for parallel rays through a square, from `near` to `far` before the eye [m]."""
+    matrix = np.diag([1.0 / half_size, 1.0 / half_size, -2.0 / (far - near), 1.0])
+    matrix[2, 3] = -(far + near) / (far - near)
+    return matrix
+
+
+def pinhole_projection(
+    width: int, height: int, fx: float, fy: float, cx: float, cy: float, near: float, far: float
+) -> Matrix:
+    """Eye to clip coordinates of a pinhole camera; pixel (0, 0) is the middle of the top left one."""
+    return np.array(
+        [
+            [2.0 * fx / width, 0.0, 1.0 - 2.0 * cx / width, 0.0],
+            [0.0, 2.0 * fy / height, 2.0 * (cy + 1.0) / height - 1.0, 0.0],
+            [0.0, 0.0, -(far + near) / (far - near), -2.0 * far * near / (far - near)],
+            [0.0, 0.0, -1.0, 0.0],
+        ]
+    )
+
+
 def poses_to_matrices(poses: Matrix) -> Matrix:
     """(n, 4, 4) matrices of poses (n, 7): position, unit quaternion (x, y, z, w)."""
     matrices = np.zeros((len(poses), 4, 4))

@@ -15,10 +15,10 @@ from carom.description.transform import compose, inverse, rotation_matrix
 from carom.model.body_spec import BASE
 from carom.model.real import NUMPY_REAL, Int32, Vector3, Vector4, real
 from carom.render.appearance import Appearance, ShapeLook
+from carom.render.kernels.structs import Scene, Vector2
 from carom.render.meshes import shape_mesh
 from carom.render.parallel import worker_count
 from carom.render.render_mesh import RenderMesh
-from carom.render.structs import Scene, Vector2
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
@@ -93,6 +93,9 @@ class SceneArrays:
     Attributes:
         struct: The arrays, for kernels.
         link_rows: Rows of `World.link_pose` of the links that show something.
+        part_links: Slot in `link_rows` of the link each part belongs to.
+        part_centres: (parts, 3) middle of a ball around each part, in the inertial frame of its link [m].
+        part_radii: Radius of that ball [m].
         vertex_count: Number of vertices.
         triangle_count: Number of triangles.
         chunk_count: Number of chunks the triangles are handled in.
@@ -113,6 +116,9 @@ class SceneArrays:
         self.link_rows = np.array(rows, dtype=np.int64)
         self.vertex_count = sum(columns.vertex_counts)
         self.triangle_count = sum(columns.triangle_counts)
+        self.part_links = np.array(columns.links, dtype=np.int64)
+        self.part_centres = np.array(columns.centres).reshape(-1, 3)
+        self.part_radii = np.array(columns.radii)
         self.struct, self.chunk_count = _struct(columns)
         self._changes = appearance.changes
         self._take_textures(appearance.textures)
@@ -173,13 +179,9 @@ def _struct(columns: _Columns) -> tuple[Any, int]:
     struct.vertex_uv = _reals(np.concatenate([none[:, :2], *columns.uvs]), Vector2)
     vertex_starts = _starts(columns.vertex_counts)
     triangle_starts = _starts(columns.triangle_counts)
-    corners = [
-        triangles + start for triangles, start in zip(columns.triangles, vertex_starts, strict=False)
-    ]
+    corners = [triangles + start for triangles, start in zip(columns.triangles, vertex_starts, strict=False)]
     struct.triangle_corners = _array(np.concatenate([none.astype(np.int32), *corners]), wp.vec3i)
-    struct.triangle_part = _array(
-        np.repeat(np.arange(len(columns.links)), columns.triangle_counts), Int32
-    )
+    struct.triangle_part = _array(np.repeat(np.arange(len(columns.links)), columns.triangle_counts), Int32)
     struct.part_first_vertex = _array(vertex_starts, Int32)
     struct.part_first_triangle = _array(triangle_starts, Int32)
     struct.part_centre = _reals(np.array(columns.centres).reshape(-1, 3), Vector3)

@@ -9,9 +9,7 @@ from carom.render.images import Texels
 NO_TEXTURE = -1
 
 # Blue and white in a square that repeats: how a plane without a mesh looks.
-_CHECKER = np.array(
-    [[(173, 199, 255), (255, 255, 255)], [(255, 255, 255), (173, 199, 255)]], dtype=np.uint8
-)
+_CHECKER = np.array([[(173, 199, 255), (255, 255, 255)], [(255, 255, 255), (173, 199, 255)]], dtype=np.uint8)
 
 
 class Textures:

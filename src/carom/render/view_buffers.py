@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,11 @@ import warp as wp
 
 from carom.model.launch import Launch
 from carom.model.real import Index4, Int32, Vector3, Vector4, real
-from carom.render.kernels import depth_kernel, project_kernel
+from carom.render.kernels.draw import depth_kernel, project_kernel
+from carom.render.kernels.structs import Matrix4, View
 from carom.render.parallel import worker_count
 from carom.render.projection import Matrix, facing_sign, to_pixels
 from carom.render.scene import SceneArrays
-from carom.render.structs import Matrix4, View
 
 BANDS_PER_WORKER = 4
 """Rows are shared out in more bands than there are threads: some show more than others."""
@@ -37,16 +38,16 @@ class ViewBuffers:
         view = View()
         view.width = width
         view.height = height
-        view.facing = _zeros(1, real)
-        view.link_to_pixel = _zeros(links, Matrix4)
-        view.vertex_pixel = _zeros(scene.vertex_count, Vector4)
+        view.facing = zeros(1, real)
+        view.link_to_pixel = zeros(links, Matrix4)
+        view.vertex_pixel = zeros(scene.vertex_count, Vector4)
         for name in ("facet_first", "facet_second", "facet_third", "facet_depth"):
-            setattr(view, name, _zeros(triangles, Vector3))
-        view.facet_box = _zeros(triangles, Index4)
-        view.facet_triangle = _zeros(triangles, Int32)
-        view.chunk_facet_count = _zeros(scene.chunk_count, Int32)
-        view.pixel_depth = _zeros(width * height, real)
-        view.pixel_facet = _zeros(width * height, Int32)
+            setattr(view, name, zeros(triangles, Vector3))
+        view.facet_box = zeros(triangles, Index4)
+        view.facet_triangle = zeros(triangles, Int32)
+        view.chunk_facet_count = zeros(scene.chunk_count, Int32)
+        view.pixel_depth = zeros(width * height, real)
+        view.pixel_facet = zeros(width * height, Int32)
         self.struct = view
         self._to_pixels = to_pixels(width, height)
         self._facing = view.facing.numpy()
@@ -62,7 +63,7 @@ class ViewBuffers:
         """Tasks that find what is nearest in each pixel, to be run after those of `project`."""
         return [
             Launch(depth_kernel, 1, [scene.struct, self.struct, first, end]).function
-            for first, end in zip(self.bands, self.bands[1:], strict=False)
+            for first, end in pairwise(self.bands)
         ]
 
     def look(self, world_to_clip: Matrix, link_to_world: Matrix, *, two_sided: bool = False) -> None:
@@ -78,5 +79,6 @@ class ViewBuffers:
         np.matmul(world_to_pixel, link_to_world, out=self._link_to_pixel, casting="same_kind")
 
 
-def _zeros(count: int, dtype: Any) -> Any:
+def zeros(count: int, dtype: Any) -> Any:
+    """An array of zeros for kernels."""
     return wp.zeros(count, dtype=dtype, device="cpu")

@@ -82,4 +82,5 @@ class Picture:
     link_to_projector: wp.array(dtype=Matrix4)  # (x, y, z, 1) to (u w, v w, ., w)
     rgba: wp.array(dtype=wp.uint32)  # red in the lowest byte
     depth: wp.array(dtype=wp.float32)  # 0..1
+    distance: wp.array(dtype=wp.float32)  # along the view; infinite: background
     label: wp.array(dtype=Int32)  # -1: background

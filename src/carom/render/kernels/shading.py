@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.model.real import Int32, Vector3, Vector4, func, real
-from carom.render.structs import Lighting, Picture, Scene, Vector2, View
+from carom.render.kernels.structs import Lighting, Picture, Scene, Vector2, View
 
 _WHITE = wp.constant(wp.uint32(0xFFFFFFFF))
 _OPAQUE = wp.constant(wp.uint32(0xFF000000))
@@ -55,8 +55,8 @@ def lit(lighting: Lighting, colour: Vector3, normal: Vector3, shadow: real) -> w
     """A surface's colour under the light, packed."""
     towards = lighting.direction
     facing = wp.dot(normal, towards)
-    mirrored = wp.normalize(normal * (2.0 * facing) - towards)
-    shine = wp.max(mirrored[2], 0.0)
+    # The highlight is where the light would be mirrored straight up, wherever the eye is: as in PyBullet.
+    shine = wp.max(2.0 * facing * normal[2] - towards[2], 0.0)
     directed = shadow * (lighting.diffuse * wp.max(facing, 0.0) + lighting.specular * shine * shine)
     result = _OPAQUE
     for channel in range(3):
@@ -67,24 +67,27 @@ def lit(lighting: Lighting, colour: Vector3, normal: Vector3, shadow: real) -> w
 
 
 @func
-def shade_pixel(scene: Scene, view: View, light: View, picture: Picture, pixel: Int32):
+def shade_pixel(
+    scene: Scene, view: View, light: View, picture: Picture, lighting: Lighting, row: Int32, column: Int32
+):
     """Writes colour, depth and label of a pixel whose facet is known."""
+    pixel = row * view.width + column
     facet = view.pixel_facet[pixel]
     if facet < 0:
         picture.rgba[pixel] = _WHITE
         picture.depth[pixel] = wp.float32(1.0)
+        picture.distance[pixel] = wp.float32(wp.inf)
         picture.label[pixel] = -1
         return
-    x = real(pixel % view.width)
-    y = real(pixel // view.width)
-    place = Vector3(x, y, 1.0)
+    place = Vector3(real(column), real(row), 1.0)
     # Perspective-correct: the weights of the corners in space, not on the screen.
     weights = Vector3(
         wp.dot(view.facet_first[facet], place),
         wp.dot(view.facet_second[facet], place),
         wp.dot(view.facet_third[facet], place),
     )
-    weights = weights / (weights[0] + weights[1] + weights[2])
+    inverse_w = weights[0] + weights[1] + weights[2]
+    weights = weights / inverse_w
     u = weights[0]
     v = weights[1]
     w = weights[2]
@@ -92,7 +95,6 @@ def shade_pixel(scene: Scene, view: View, light: View, picture: Picture, pixel: 
     corners = scene.triangle_corners[triangle]
     part = scene.triangle_part[triangle]
     link = scene.part_link[part]
-    lighting = picture.lighting[0]
     normal = (
         scene.vertex_normal[corners[0]] * u
         + scene.vertex_normal[corners[1]] * v
@@ -115,4 +117,5 @@ def shade_pixel(scene: Scene, view: View, light: View, picture: Picture, pixel: 
     normal = wp.normalize(picture.link_rotation[link] * normal)
     picture.rgba[pixel] = lit(lighting, surface_colour(scene, part, uv), normal, shadow)
     picture.depth[pixel] = wp.float32(0.5 + 0.5 * view.pixel_depth[pixel])
+    picture.distance[pixel] = wp.float32(1.0 / inverse_w)
     picture.label[pixel] = scene.part_label[part]

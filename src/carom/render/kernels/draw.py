@@ -1,9 +1,9 @@
 """The kernels of the renderer. Each launch is one thread that handles a chunk of triangles or some rows."""
 
 from carom.model.real import Int32, kernel
-from carom.render.shading import shade_pixel
-from carom.render.structs import Picture, Scene, View
-from carom.render.visibility import fill_rows, project_chunk
+from carom.render.kernels.shading import shade_pixel
+from carom.render.kernels.structs import Picture, Scene, View
+from carom.render.kernels.visibility import fill_rows, project_chunk
 
 
 @kernel
@@ -19,10 +19,10 @@ def depth_kernel(scene: Scene, view: View, first_row: Int32, end_row: Int32):
 
 
 @kernel
-def image_kernel(
-    scene: Scene, view: View, light: View, picture: Picture, first_row: Int32, end_row: Int32
-):
+def image_kernel(scene: Scene, view: View, light: View, picture: Picture, first_row: Int32, end_row: Int32):
     """Draws some rows of an image."""
     fill_rows(scene, view, first_row, end_row)
-    for pixel in range(first_row * view.width, end_row * view.width):
-        shade_pixel(scene, view, light, picture, pixel)
+    lighting = picture.lighting[0]
+    for row in range(first_row, end_row):
+        for column in range(view.width):
+            shade_pixel(scene, view, light, picture, lighting, row, column)

@@ -8,7 +8,7 @@ positive inside and only there, and so is the depth. What lies behind the eye ha
 import warp as wp
 
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
-from carom.render.structs import Matrix4, Scene, Vector2, View
+from carom.render.kernels.structs import Matrix4, Scene, Vector2, View
 
 # Share of a pixel by which one may lie outside an edge and still be on it.
 _ON_EDGE = real(1.0e-7)
@@ -154,9 +154,7 @@ def fill_facet(view: View, facet: Int32, first_row: Int32, end_row: Int32):
         span = where_positive(span, -depth[0], 1.0 - start)
         if span[0] - _ON_EDGE <= span[1] + _ON_EDGE:
             line = row * view.width
-            for column in range(
-                Int32(wp.ceil(span[0] - _ON_EDGE)), Int32(wp.floor(span[1] + _ON_EDGE)) + 1
-            ):
+            for column in range(Int32(wp.ceil(span[0] - _ON_EDGE)), Int32(wp.floor(span[1] + _ON_EDGE)) + 1):
                 z = depth[0] * real(column) + start
                 if z <= view.pixel_depth[line + column]:
                     view.pixel_depth[line + column] = z

@@ -1,0 +1,144 @@
+"""Memory and kernel runs for images of one size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import warp as wp
+from numpy.typing import NDArray
+
+from carom.model.launch import Launch
+from carom.model.real import Matrix3
+from carom.render.kernels.draw import image_kernel
+from carom.render.kernels.structs import Lighting, Matrix4, Picture
+from carom.render.lights import Light
+from carom.render.parallel import run_all
+from carom.render.projection import Matrix
+from carom.render.scene import SceneArrays
+from carom.render.shadows import ShadowCamera, shadow_camera
+from carom.render.view_buffers import Task, ViewBuffers, zeros
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawImage:
+    """What one image shows; row 0 is the top.
+
+    Attributes:
+        rgba: (height, width, 4) uint8 red, green, blue and 255.
+        depth: (height, width) float32 depth as in OpenGL's buffer: 0 at the near plane, 1 at the far one.
+        distance: (height, width) float32 distance from the plane of the eye [m]; infinite where there is
+            nothing. Of use for perspective only.
+        label: (height, width) int32: body id + (link + 1) << 24; -1 where there is nothing.
+    """
+
+    rgba: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    distance: NDArray[np.float32]
+    label: NDArray[np.int32]
+
+
+@dataclass(slots=True, eq=False)
+class _Shadows:
+    """The view of the light, and the tasks that depend on it."""
+
+    view: ViewBuffers
+    depth_tasks: list[Task]
+    image_tasks: list[Task]
+
+
+class ImageTarget:
+    """Draws images of one size of one scene."""
+
+    def __init__(self, scene: SceneArrays, width: int, height: int) -> None:
+        self._scene = scene
+        self._size = (width, height)
+        self._view = ViewBuffers(scene, width, height)
+        # Made when first needed: most images go without shadows.
+        self._shadows: dict[tuple[int, int], _Shadows] = {}
+        picture = Picture()
+        links = len(scene.link_rows)
+        picture.lighting = zeros(1, Lighting)
+        picture.link_rotation = zeros(links, Matrix3)
+        picture.link_to_projector = zeros(links, Matrix4)
+        picture.rgba = zeros(width * height, wp.uint32)
+        picture.depth = zeros(width * height, wp.float32)
+        picture.distance = zeros(width * height, wp.float32)
+        picture.label = zeros(width * height, wp.int32)
+        self._picture = picture
+        self._lighting = picture.lighting.numpy()
+        self._link_rotation = picture.link_rotation.numpy()
+        self._link_to_projector = picture.link_to_projector.numpy()
+        self._rgba = picture.rgba.numpy().view(np.uint8).reshape(height, width, 4)
+        self._depth = picture.depth.numpy().reshape(height, width)
+        self._distance = picture.distance.numpy().reshape(height, width)
+        self._label = picture.label.numpy().reshape(height, width)
+        self._image_tasks = self._make_image_tasks(self._view)
+
+    def draw(
+        self,
+        link_to_world: Matrix,
+        view: Matrix,
+        projection: Matrix,
+        light: Light,
+        projector: Matrix | None,
+    ) -> RawImage:
+        """Draws an image; see `Renderer.draw`.
+
+        Args:
+            link_to_world: (links, 4, 4) poses of the links of the scene.
+            view: World to eye.
+            projection: Eye to clip coordinates.
+            light: The light.
+            projector: World to homogeneous texture coordinates, or None.
+        """
+        self._view.look(projection @ view, link_to_world)
+        self._link_rotation[:] = link_to_world[:, :3, :3]
+        if projector is not None:
+            np.matmul(projector, link_to_world, out=self._link_to_projector, casting="same_kind")
+        self._set_lighting(light, projector is not None)
+        image_tasks = self._image_tasks
+        if light.shadow:
+            camera = shadow_camera(light, self._scene, link_to_world, projection, *self._size)
+            shadows = self._shadows_of_size(camera.width, camera.height)
+            self._set_bias(camera)
+            shadows.view.look(camera.projection @ camera.view, link_to_world, two_sided=True)
+            run_all(self._view.project + shadows.view.project)
+            run_all(shadows.depth_tasks)
+            image_tasks = shadows.image_tasks
+        else:
+            run_all(self._view.project)
+        run_all(image_tasks)
+        return RawImage(self._rgba.copy(), self._depth.copy(), self._distance.copy(), self._label.copy())
+
+    def _shadows_of_size(self, width: int, height: int) -> _Shadows:
+        shadows = self._shadows.get((width, height))
+        if shadows is None:
+            view = ViewBuffers(self._scene, width, height)
+            shadows = _Shadows(view, view.depth_tasks(self._scene), self._make_image_tasks(view))
+            self._shadows[width, height] = shadows
+        return shadows
+
+    def _make_image_tasks(self, light_view: ViewBuffers) -> list[Task]:
+        structs = [self._scene.struct, self._view.struct, light_view.struct, self._picture]
+        bands = self._view.bands
+        return [Launch(image_kernel, 1, [*structs, first, end]).function for first, end in pairwise(bands)]
+
+    def _set_lighting(self, light: Light, projected: bool) -> None:
+        lighting = self._lighting[0]
+        direction = np.array(light.direction)
+        lighting["direction"] = direction / np.linalg.norm(direction)
+        lighting["colour"] = light.colour
+        lighting["ambient"] = light.ambient
+        lighting["diffuse"] = light.diffuse
+        lighting["specular"] = light.specular
+        lighting["shadow"] = light.shadow
+        lighting["shade"] = light.shade
+        lighting["projected"] = projected
+
+    def _set_bias(self, camera: ShadowCamera) -> None:
+        lighting = self._lighting[0]
+        # What (depth w, w) change by where a point comes nearer to the light.
+        lighting["bias_depth"] = -camera.bias * camera.projection[2, 2]
+        lighting["bias_w"] = -camera.bias * camera.projection[3, 2]

@@ -1,0 +1,1 @@
+"""What runs on every triangle and every pixel, as Warp kernels."""

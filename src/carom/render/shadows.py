@@ -1,0 +1,86 @@
+"""Where a light looks from, to find out what it reaches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isinf
+
+import numpy as np
+
+from carom.render.lights import Light
+from carom.render.projection import Matrix, look_at, parallel_projection
+from carom.render.scene import SceneArrays
+
+PARALLEL_MAP_SIDE = 1024
+"""Columns and rows of the shadow map of parallel light."""
+
+LARGEST_CASTER = 50.0
+"""Shapes larger than this, such as floors, cast no shadows of parallel light [m]: radius around them."""
+
+# A surface this far behind what the light sees is still lit, or it would shade itself.
+_LAMP_BIAS = 0.05
+"""Of a lamp [m]."""
+_PARALLEL_BIAS = 3.0
+"""Of parallel light [pixels of the shadow map]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShadowCamera:
+    """The light as a camera.
+
+    Attributes:
+        view: (4, 4) world to eye.
+        projection: (4, 4) eye to clip coordinates.
+        width: Columns of the shadow map.
+        height: Rows of the shadow map.
+        bias: Distance behind what the light sees that is still lit [m].
+    """
+
+    view: Matrix
+    projection: Matrix
+    width: int
+    height: int
+    bias: float
+
+
+def shadow_camera(
+    light: Light, scene: SceneArrays, link_to_world: Matrix, projection: Matrix, width: int, height: int
+) -> ShadowCamera:
+    """The camera that finds what a light reaches.
+
+    A lamp at a finite distance sees, as in PyBullet, what the camera of the image would see from there.
+    Parallel light sees everything that may cast a shadow.
+
+    Args:
+        light: The light.
+        scene: The scene.
+        link_to_world: (links, 4, 4) poses of its links.
+        projection: (4, 4) of the image.
+        width: Columns of the image.
+        height: Rows of the image.
+    """
+    direction = np.array(light.direction) / np.linalg.norm(light.direction)
+    if not isinf(light.distance):
+        view = look_at(light.distance * direction, np.zeros(3))
+        return ShadowCamera(view, projection, width, height, _LAMP_BIAS)
+    centre, radius = _casters(scene, link_to_world)
+    return ShadowCamera(
+        look_at(centre + 2.0 * radius * direction, centre),
+        parallel_projection(radius, radius, 3.0 * radius),
+        PARALLEL_MAP_SIDE,
+        PARALLEL_MAP_SIDE,
+        _PARALLEL_BIAS * 2.0 * radius / PARALLEL_MAP_SIDE,
+    )
+
+
+def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, float]:
+    """A ball around everything that may cast shadows."""
+    casts = scene.part_radii < LARGEST_CASTER
+    if not casts.any():
+        return np.zeros(3), 1.0
+    poses = link_to_world[scene.part_links[casts]]
+    centres = np.einsum("nij,nj->ni", poses[:, :3, :3], scene.part_centres[casts]) + poses[:, :3, 3]
+    radii = scene.part_radii[casts][:, None]
+    low, high = (centres - radii).min(axis=0), (centres + radii).max(axis=0)
+    middle = 0.5 * (low + high)
+    return middle, max(float((np.linalg.norm(centres - middle, axis=1) + radii[:, 0]).max()), 1e-3)
