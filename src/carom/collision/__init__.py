@@ -1,0 +1,1 @@
+"""Which shapes touch, and where: broad phase, narrow phase, persistent contacts, rays, distances."""

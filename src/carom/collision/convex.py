@@ -1,0 +1,134 @@
+"""Any two convex shapes: the normal from their nearest or deepest points, then all of the contact."""
+
+import warp as wp
+
+from carom.collision.candidates import add_candidate, candidate_distance
+from carom.collision.clip import clip_faces
+from carom.collision.cores import Core
+from carom.collision.faces import supporting_face
+from carom.collision.gjk import TOUCHING, nearest_points
+from carom.collision.polytope import overlap
+from carom.model.contact_structs import Pairs, Shapes
+from carom.model.real import Int32, Vector3, Vector3Rows, func, real
+
+# Cosine of the angle between a face and the contact beyond which the face does not lie on the other.
+FLAT_ON = real(0.999)
+# A nearest point this much deeper than all others belongs to the contact [m].
+DEEPER = real(1.0e-6)
+
+
+@func
+def nearest_or_deepest(shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core, core_b: Core, reach: real):
+    """Distance of two cores (negative: overlap), normal on b towards a, nearest points on a and on b.
+
+    If the distance is more than `reach` it is a lower bound, and the rest means nothing.
+    """
+    start = core_a.position - core_b.position
+    distance, point_a, point_b = nearest_points(core_a, core_b, shapes.vertex_position, start, reach)
+    normal = start
+    if distance > TOUCHING:
+        normal = (point_a - point_b) / wp.length(point_a - point_b)
+    else:
+        depth, normal, point_a, point_b = overlap(
+            core_a,
+            core_b,
+            shapes.vertex_position,
+            pairs.polytope_point,
+            pairs.polytope_point_a,
+            pairs.polytope_plane,
+            pairs.polytope_face,
+            pairs.polytope_edge,
+            world,
+            start,
+            point_a,
+        )
+        distance = -depth
+    return distance, normal, point_a, point_b
+
+
+@func
+def face_towards(
+    shapes: Shapes, core: Core, shape: Int32, direction: Vector3, polygon: Vector3Rows, world: Int32
+):
+    """The face of a shape's core that looks most along `direction`: normal and number of corners."""
+    normal, count = supporting_face(
+        core,
+        shapes.shape_first_face[shape],
+        shapes.shape_face_count[shape],
+        shapes.vertex_position,
+        shapes.face_plane,
+        shapes.face_first_corner,
+        shapes.face_corner_count,
+        shapes.corner_vertex,
+        direction,
+        polygon,
+        world,
+    )
+    return normal, count
+
+
+@func
+def touch_faces(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    core_a: Core,
+    core_b: Core,
+    normal: Vector3,
+    reach: real,
+    found: Int32,
+) -> Int32:
+    """Add the candidates of two faces that lie on each other; none if neither face is flat on the normal."""
+    normal_a, count_a = face_towards(shapes, core_a, a, -normal, pairs.polygon_a, world)
+    normal_b, count_b = face_towards(shapes, core_b, b, normal, pairs.polygon_b, world)
+    flat_a = -wp.dot(normal_a, normal)
+    flat_b = wp.dot(normal_b, normal)
+    if count_a < 3:
+        flat_a = real(0.0)
+    if count_b < 3:
+        flat_b = real(0.0)
+    count = found
+    if flat_a >= flat_b and flat_a > FLAT_ON:
+        count = clip_faces(
+            pairs.polygon_a, count_a, normal_a, pairs.polygon_b, count_b, pairs.polygon_clipped,
+            normal, 1, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
+        )  # fmt: skip
+    elif flat_b > FLAT_ON:
+        count = clip_faces(
+            pairs.polygon_b, count_b, normal_b, pairs.polygon_a, count_a, pairs.polygon_clipped,
+            normal, 0, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
+        )  # fmt: skip
+    return count
+
+
+@func
+def touch_convex(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    core_a: Core,
+    core_b: Core,
+    reach: real,
+    found: Int32,
+) -> Int32:
+    """Add the candidates of two cores at most `reach` apart to those found; returns their number."""
+    rounding = core_a.radius + core_b.radius
+    core_distance, normal, _point_a, point_b = nearest_or_deepest(
+        shapes, pairs, world, core_a, core_b, reach + rounding
+    )
+    distance = core_distance - rounding
+    if distance > reach:
+        return found
+    count = touch_faces(shapes, pairs, world, a, b, core_a, core_b, normal, reach, found)
+    deepest = distance + 2.0 * DEEPER
+    for row in range(found, count):
+        deepest = wp.min(deepest, candidate_distance(pairs.candidate_terms, world, row))
+    if count == found or distance < deepest - DEEPER:
+        count = add_candidate(
+            pairs.candidate_terms, world, count, point_b + normal * core_b.radius, normal, distance
+        )
+    return count

@@ -1,0 +1,107 @@
+"""Contact candidates of a pair of shapes, by their kinds."""
+
+import warp as wp
+
+from carom.collision.balls import touch_ball
+from carom.collision.boxes import APART, EDGES, box_axis, box_edge_points
+from carom.collision.candidates import add_candidate, flip_candidates, keep_four
+from carom.collision.convex import face_towards, touch_convex, touch_faces
+from carom.collision.cores import Core, core_of, segment_half
+from carom.collision.planes import touch_plane, with_sharp_edges
+from carom.collision.segments import touch_segments
+from carom.model.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE
+from carom.model.contact_structs import Pairs, Shapes
+from carom.model.real import Int32, func, real
+
+
+@func
+def touch_boxes(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, core_b: Core, reach: real
+) -> Int32:
+    """Candidates of two boxes, their edges sharp."""
+    sharp_a = with_sharp_edges(core_a)
+    sharp_b = with_sharp_edges(core_b)
+    code, normal, _gap = box_axis(
+        sharp_a.frame, sharp_a.size, sharp_b.frame, sharp_b.size, sharp_b.position - sharp_a.position, reach
+    )
+    count = Int32(0)
+    if code >= EDGES:
+        point_a, point_b = box_edge_points(
+            sharp_a.frame, sharp_a.size, sharp_b.frame, sharp_b.size, sharp_a.position, sharp_b.position,
+            code, normal,
+        )  # fmt: skip
+        count = add_candidate(
+            pairs.candidate_terms, world, 0, point_b, normal, wp.dot(point_a - point_b, normal)
+        )
+    elif code != APART:
+        count = touch_faces(shapes, pairs, world, a, b, sharp_a, sharp_b, normal, reach, 0)
+    return count
+
+
+@func
+def touch_in_order(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> Int32:
+    """Candidates of two shapes, the kind of a not above that of b but for planes, which come last."""
+    kind_a = shapes.shape_kind[a]
+    kind_b = shapes.shape_kind[b]
+    count = Int32(0)
+    core_a = core_of(shapes, pairs, world, a)
+    if kind_b == PLANE:
+        normal = pairs.shape_frame[world, b] * shapes.shape_size[b]
+        sharp = with_sharp_edges(core_a)
+        corners = Int32(0)
+        if kind_a != HULL:
+            _normal, corners = face_towards(shapes, sharp, a, -normal, pairs.polygon_a, world)
+        return touch_plane(
+            sharp, pairs.polygon_a, corners, shapes.vertex_position, pairs.shape_position[world, b],
+            normal, reach, pairs.candidate_terms, world,
+        )  # fmt: skip
+    core_b = core_of(shapes, pairs, world, b)
+    a_is_round = kind_a == SPHERE or kind_a == CAPSULE
+    b_is_round = kind_b == SPHERE or kind_b == CAPSULE
+    if a_is_round and b_is_round:
+        count = touch_segments(
+            core_a.position, segment_half(core_a), core_a.radius,
+            core_b.position, segment_half(core_b), core_b.radius,
+            reach, pairs.candidate_terms, world,
+        )  # fmt: skip
+    elif kind_a == SPHERE and (kind_b == BOX or kind_b == CYLINDER):
+        count = touch_ball(core_a.position, core_a.radius, core_b, reach, pairs.candidate_terms, world)
+    elif kind_a == BOX and kind_b == BOX:
+        count = touch_boxes(shapes, pairs, world, a, b, core_a, core_b, reach)
+    else:
+        count = touch_convex(shapes, pairs, world, a, b, core_a, core_b, reach, 0)
+    return count
+
+
+@func
+def rank(kind: Int32) -> Int32:
+    """Place of a kind in the order in which pairs are treated."""
+    if kind == PLANE:
+        return 100
+    return kind
+
+
+@func
+def touch(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> Int32:
+    """Write at most four candidates for two shapes that are at most `reach` apart; returns their number.
+
+    Args:
+        shapes: All shapes.
+        pairs: Room for intermediate results, and the poses of the shapes.
+        world: The world.
+        a: Row of one shape.
+        b: Row of the other; normals point from it towards a.
+        reach: Largest distance of a contact [m].
+    """
+    first = a
+    second = b
+    flipped = rank(shapes.shape_kind[a]) > rank(shapes.shape_kind[b])
+    if flipped:
+        first = b
+        second = a
+    count = touch_in_order(shapes, pairs, world, first, second, reach)
+    if count > 4:
+        count = keep_four(pairs.candidate_terms, world, count)
+    if flipped:
+        flip_candidates(pairs.candidate_terms, world, count)
+    return count

@@ -1,0 +1,158 @@
+"""Shapes at poses, put into the engine's arrays without bodies, joints or files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import warp as wp
+
+from carom.collision.capacity import scratch_capacity
+from carom.collision.collide import collide_kernel
+from carom.model.arrays import ArrayTable
+from carom.model.codes import ShapeKind
+from carom.model.contact_structs import Contacts, Pairs, Shapes
+from carom.model.structs import Model, Settings, State
+
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass
+class Shape:
+    """One shape, on a free body of its own."""
+
+    kind: ShapeKind
+    size: Sequence[float]
+    position: Sequence[float] = (0.0, 0.0, 0.0)
+    orientation: Sequence[float] = IDENTITY
+    margin: float = 0.0
+    breaking: float = 0.02
+    vertices: np.ndarray | None = None
+    loops: list[list[int]] = field(default_factory=list)
+    static: bool = False
+
+
+def sphere(radius, **options):
+    return Shape(ShapeKind.SPHERE, (radius, 0, 0), margin=radius, **options)
+
+
+def box(half_extents, **options):
+    return Shape(ShapeKind.BOX, half_extents, **options)
+
+
+def capsule(radius, half_length, **options):
+    return Shape(ShapeKind.CAPSULE, (radius, half_length, 0), margin=radius, **options)
+
+
+def cylinder(radius, half_length, **options):
+    return Shape(ShapeKind.CYLINDER, (radius, half_length, 0), **options)
+
+
+def plane(normal=(0, 0, 1), **options):
+    return Shape(ShapeKind.PLANE, normal, static=True, **options)
+
+
+class Scene:
+    """A world of shapes, each its own link and tree."""
+
+    def __init__(self, shapes: Sequence[Shape], contact_room: int = 64, pair_room: int = 64) -> None:
+        count = len(shapes)
+        self.tables = {
+            "shapes": ArrayTable(Shapes, None),
+            "model": ArrayTable(Model, None),
+            "state": ArrayTable(State, 1),
+            "contacts": ArrayTable(Contacts, 1),
+            "pairs": ArrayTable(Pairs, 1),
+        }
+        self.tables["shapes"].reserve({"shape": count, "link": count})
+        self.tables["model"].reserve({"link": count, "tree": count})
+        self.tables["state"].reserve({"link": count})
+        self.tables["contacts"].reserve({"contact": contact_room})
+        self.grow_scratch(count, pair_room)
+        self.settings = Settings()
+        self.settings.shape_count = count
+        self._used = {"vertex": 0, "face": 0, "corner": 0}
+        for row, shape in enumerate(shapes):
+            self._write(row, shape)
+
+    def grow_scratch(self, count: int, pair_room: int) -> None:
+        room = scratch_capacity(count, self.tables["contacts"].capacity["contact"])
+        self.tables["pairs"].reserve({**room, "pair": pair_room})
+
+    def numpy(self, table: str) -> dict[str, np.ndarray]:
+        return self.tables[table].numpy
+
+    def _write(self, row: int, shape: Shape) -> None:
+        arrays, model = self.numpy("shapes"), self.numpy("model")
+        arrays["shape_link"][row] = row
+        arrays["shape_tree"][row] = row
+        arrays["shape_kind"][row] = shape.kind
+        arrays["shape_size"][row] = shape.size
+        arrays["shape_pose"][row] = (0, 0, 0, *IDENTITY)
+        arrays["shape_margin"][row] = shape.margin
+        arrays["shape_breaking"][row] = shape.breaking
+        arrays["link_shape_count"][row] = 1
+        arrays["link_first_shape"][row] = row
+        arrays["link_group"][row] = 1
+        arrays["link_mask"][row] = -1
+        model["link_parent"][row] = -1
+        model["link_dof_count"][row] = 0 if shape.static else 6
+        self.place(row, shape.position, shape.orientation)
+        if shape.vertices is not None:
+            self._write_mesh(row, shape, np.asarray(shape.vertices, dtype=float))
+
+    def _write_mesh(self, row: int, shape: Shape, vertices: np.ndarray) -> None:
+        table = self.tables["shapes"]
+        corners = sum(len(loop) for loop in shape.loops)
+        first = dict(self._used)
+        self._used["vertex"] += len(vertices)
+        self._used["face"] += len(shape.loops)
+        self._used["corner"] += corners
+        table.reserve(self._used)
+        arrays = table.numpy
+        arrays["shape_first_vertex"][row] = first["vertex"]
+        arrays["shape_vertex_count"][row] = len(vertices)
+        arrays["shape_first_face"][row] = first["face"]
+        arrays["shape_face_count"][row] = len(shape.loops)
+        arrays["vertex_position"][first["vertex"] : first["vertex"] + len(vertices)] = vertices
+        lower, upper = vertices.min(axis=0), vertices.max(axis=0)
+        arrays["shape_center"][row] = (lower + upper) / 2
+        arrays["shape_size"][row] = (upper - lower) / 2
+        corner = first["corner"]
+        for i, loop in enumerate(shape.loops):
+            face = first["face"] + i
+            a, b, c = vertices[loop[0]], vertices[loop[1]], vertices[loop[2]]
+            normal = np.cross(b - a, c - a)
+            normal /= np.linalg.norm(normal)
+            arrays["face_plane"][face] = (*normal, normal @ a)
+            arrays["face_first_corner"][face] = corner
+            arrays["face_corner_count"][face] = len(loop)
+            arrays["corner_vertex"][corner : corner + len(loop)] = first["vertex"] + np.asarray(loop)
+            corner += len(loop)
+
+    def place(self, row: int, position: Sequence[float], orientation: Sequence[float] = IDENTITY) -> None:
+        """Move a shape."""
+        self.numpy("state")["link_pose"][0, row] = (*position, *orientation)
+
+    def collide(self) -> None:
+        """Run collision detection."""
+        structs = {name: table.struct("cpu") for name, table in self.tables.items()}
+        wp.launch(
+            collide_kernel,
+            dim=1,
+            inputs=[
+                self.settings,
+                *(structs[name] for name in ("shapes", "model", "state", "contacts", "pairs")),
+            ],
+        )
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        count = self.numpy("pairs")["count_pairs"][0, 0]
+        return [tuple(pair[:2]) for pair in self.numpy("pairs")["pair_shapes"][0, :count].tolist()]
+
+    def contacts(self, name: str) -> np.ndarray:
+        """A field of the present contacts, without `contact_`."""
+        count = self.numpy("contacts")["count_contacts"][0, 0]
+        return self.numpy("contacts")["contact_" + name][0, :count]
