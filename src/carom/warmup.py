@@ -11,6 +11,7 @@ KERNEL_MODULES = (
     "carom.physics.step",
     "carom.algorithms.kernels",
     "carom.algorithms.reach.search",
+    "carom.render.kernels.draw",
 )
 
 

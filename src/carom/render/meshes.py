@@ -24,7 +24,7 @@ from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
 from carom.render.mesh_visuals import read_mesh_visual
 from carom.render.primitives import primitive_mesh
-from carom.render.render_mesh import RenderMesh, flat_mesh, mesh_of, unit_vectors
+from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
 
 _log = logging.getLogger("carom")
 
@@ -70,11 +70,22 @@ def _scaled(mesh: RenderMesh, scale: Vector3) -> RenderMesh:
 @functools.lru_cache(maxsize=256)
 def _from_memory(shape: ConvexHull | TriangleMesh | Heightfield) -> RenderMesh:
     if isinstance(shape, TriangleMesh):
-        return flat_mesh(shape.vertices[shape.triangles])
+        return _given_triangles(shape)
     if isinstance(shape, ConvexHull):
         return flat_mesh(_corners(convex_hull(shape.points)))
     landscape = flat_mesh(_corners(heightfield_surface(shape)))
     return replace(landscape, uvs=landscape.positions[:, :2] / np.float32(_TEXTURE_SIDE))
+
+
+def _given_triangles(shape: TriangleMesh) -> RenderMesh:
+    count = len(shape.vertices)
+    if shape.normals is None or len(shape.normals) != count:
+        flat = flat_mesh(shape.vertices[shape.triangles])
+        if shape.uvs is None or len(shape.uvs) != count:
+            return flat
+        return replace(flat, uvs=shape.uvs[shape.triangles.reshape(-1)].astype(np.float32))
+    uvs = np.full((count, 2), NO_TEXTURE_UV) if shape.uvs is None or len(shape.uvs) != count else shape.uvs
+    return mesh_of(shape.vertices, unit_vectors(shape.normals), uvs, shape.triangles)
 
 
 def _corners(solid: Polyhedron) -> np.ndarray:

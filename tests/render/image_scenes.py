@@ -1,0 +1,108 @@
+"""Scenes for comparing images with PyBullet's; this file runs under PyBullet as well as under Carom."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ASSETS = Path(__file__).parents[2] / "src" / "pybullet_data"
+WIDTH, HEIGHT = 96, 72
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is built, and where the camera stands.
+
+    The near plane of scenes with shadows is at 1 cm: PyBullet's shadows darken everything when it is
+    farther away.
+    """
+
+    name: str
+    build: Callable[[Any], None]
+    eye: Vector
+    target: Vector
+    field_of_view: float
+    near: float = 0.1
+    shadow: int = 0
+
+
+def panda(p: Any) -> None:
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    arm = p.loadURDF(str(ASSETS / "franka_panda" / "panda.urdf"), useFixedBase=1)
+    for joint, angle in enumerate((0.0, -0.5, 0.2, -2.0, 0.1, 1.7, 0.8)):
+        p.resetJointState(arm, joint, angle)
+
+
+def r2d2(p: Any) -> None:
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    p.loadURDF(str(ASSETS / "r2d2.urdf"), [0, 0, 0.5])
+
+
+def table(p: Any) -> None:
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    p.loadURDF(str(ASSETS / "table" / "table.urdf"))
+    p.loadURDF(str(ASSETS / "cube_small.urdf"), [0, 0, 0.65])
+    p.loadURDF(str(ASSETS / "duck_vhacd.urdf"), [0.3, 0.2, 0.65])
+    p.loadURDF(str(ASSETS / "soccerball.urdf"), [-0.4, 0.1, 0.9], globalScaling=0.3)
+
+
+def kuka(p: Any) -> None:
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    p.loadURDF(str(ASSETS / "kuka_iiwa" / "model.urdf"), useFixedBase=1)
+    p.loadURDF(str(ASSETS / "tray" / "traybox.urdf"), [0.6, 0, 0])
+
+
+def close_by(p: Any) -> None:
+    """A cube that reaches through the near plane, and a floor that reaches behind the camera."""
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    p.loadURDF(str(ASSETS / "cube.urdf"), [0.55, 0.45, 0.2], p.getQuaternionFromEuler([0, 0, 0.6]))
+
+
+def painted(p: Any) -> None:
+    """Changed colours and textures, a hidden cube, one that has fallen for a while, and one removed."""
+    p.setGravity(0, 0, -10)
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    cubes = [p.loadURDF(str(ASSETS / "cube.urdf"), [i - 2, 0, 0.7], globalScaling=0.6) for i in range(5)]
+    texture = p.loadTexture(str(ASSETS / "uvmap.png"))
+    p.changeVisualShape(cubes[0], -1, rgbaColor=[0.9, 0.2, 0.1, 1])
+    p.changeVisualShape(cubes[1], -1, textureUniqueId=texture)
+    p.changeVisualShape(cubes[2], -1, rgbaColor=[0, 1, 0, 0])
+    p.changeVisualShape(cubes[3], -1, textureUniqueId=-1, rgbaColor=[0.5, 0.5, 1, 1])
+    p.removeBody(cubes[4])
+    p.resetBaseVelocity(cubes[0], [0, 3, 4], [2, 3, 1])
+    for _ in range(20):
+        p.stepSimulation()
+
+
+SCENES = (
+    Scene("panda", panda, (1.2, -0.8, 1.0), (0.2, 0.0, 0.4), 50),
+    Scene("r2d2", r2d2, (2.0, -2.0, 1.5), (0.0, 0.0, 0.4), 50),
+    Scene("table", table, (0.9, -0.9, 1.3), (0.0, 0.0, 0.6), 60, near=0.01, shadow=1),
+    Scene("kuka", kuka, (1.2, 0.8, 0.9), (0.2, 0.0, 0.4), 60),
+    Scene("close_by", close_by, (0.0, 0.0, 0.3), (0.0, 1.0, 0.2), 80),
+    Scene("painted", painted, (1.5, -2.5, 1.8), (-0.3, 0.0, 0.4), 60),
+)
+
+
+def take_picture(p: Any, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Colours, depth and labels of a scene in a client that is connected."""
+    p.resetSimulation()
+    scene.build(p)
+    view = p.computeViewMatrix(scene.eye, scene.target, (0.0, 0.0, 1.0))
+    projection = p.computeProjectionMatrixFOV(scene.field_of_view, WIDTH / HEIGHT, scene.near, 20.0)
+    _, _, rgba, depth, label = p.getCameraImage(
+        WIDTH,
+        HEIGHT,
+        view,
+        projection,
+        shadow=scene.shadow,
+        renderer=p.ER_TINY_RENDERER,
+        flags=p.ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX,
+    )
+    return rgba, depth, label
