@@ -17,6 +17,7 @@ from carom import Body, World
 from carom.description import JointType
 from carom.model.body_spec import BodySpec
 from carom.model.codes import MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION
+from carom.model.solver_order import quicksort_order
 
 SPECS = [
     random_tree(0, 5, fixed_base=True),
@@ -153,6 +154,29 @@ def test_numbers_of_removed_bodies_are_given_again_the_last_first():
     world.remove(3)
     assert [world.load(free_body()).id for _ in range(3)] == [3, 1, 4]
     assert sorted(world.bodies) == [0, 1, 2, 3, 4]
+
+
+def constraint_links(world: World) -> list[int]:
+    """Link rows of the constraints in the order of the solver."""
+    world.step()
+    return world.arrays.model.numpy["constraint_link"][: world.arrays.used["constraint"]].tolist()
+
+
+def test_removed_constraints_are_replaced_by_the_last_ones():
+    """All motors are solved together here, so that their order is that of the list, sorted by body."""
+    world = World()
+    world.parameters.minimum_island_size = 100
+    world.apply_parameters()
+    bodies = [world.load(pendulum(count)) for count in (1, 3, 2)]
+    world.remove(bodies[0].id)
+    # The list was 0 | 1a 1b 1c | 2a 2b; 2b takes the place of 0.
+    remaining = ["2b", "1a", "1b", "1c", "2a"]
+    rows = {"1a": 1, "1b": 2, "1c": 3, "2a": 5, "2b": 6}
+    # Bodies are sorted by the number of their last link's collision object: 2b took that of 0, too.
+    first_body = [name for name in remaining if name[0] == "2"]
+    tags = [0 if name in first_body else 1 for name in remaining]
+    expected = [rows[remaining[i]] for i in quicksort_order(tags)]
+    assert constraint_links(world) == expected
 
 
 def test_removing_a_body_that_is_not_there_is_an_error():

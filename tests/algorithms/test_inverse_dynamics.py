@@ -9,7 +9,7 @@ from tests.physics.aba_reference import rotation
 from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulum, put_in_motion, random_tree
 
 from carom import Body, World
-from carom.algorithms import inverse_dynamics
+from carom.algorithms import inverse_dynamics, mass_matrix
 from carom.model.codes import MOTOR_MAX_IMPULSE
 
 GRAVITY = (0.4, -0.2, -9.81)
@@ -50,6 +50,21 @@ def test_it_finds_the_forces_that_caused_a_motion(link_count, is_chain, fixed_ba
     # Nothing but gravity pushes a free base.
     expected = torque if fixed_base else np.concatenate([np.zeros(6), torque])
     assert_allclose(forces_of_last_step(body, position, velocity), expected, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("fixed_base", [True, False], ids=["fixed", "free"])
+def test_it_inverts_the_dynamics_of_a_chain_of_200_links(fixed_base):
+    """Such a chain whips: what is to vanish are differences of forces thousands of times as large."""
+    body = moving_body(7, 200, fixed_base=fixed_base, is_chain=True)
+    position, velocity = (values.copy() for values in coordinates(body))
+    at_rest, matrix = np.zeros(len(velocity) - 6), mass_matrix(body, position[7:])
+    body.world.step()
+    change = coordinates(body)[1] - velocity
+    largest = (np.abs(matrix) @ np.abs(change[-len(matrix) :])).max()
+    expected = at_rest if fixed_base else np.concatenate([np.zeros(6), at_rest])
+    found = forces_of_last_step(body, position, velocity)
+    assert_allclose(found, expected, rtol=0, atol=1e-11 * largest)
+    assert_allclose(found, expected, rtol=0, atol=1e-6)
 
 
 def test_forces_on_a_free_base_are_those_applied_to_it():
@@ -127,3 +142,23 @@ def test_a_fixed_base_can_be_taken_to_be_turned_otherwise():
     as_if_level = inverse_dynamics(one, position, rest, rest, base_orientation=coordinates(other)[0][3:7])
     assert_allclose(as_if_level, inverse_dynamics(other, position, rest, rest), rtol=0, atol=1e-12)
     assert np.abs(as_if_level - inverse_dynamics(one, position, rest, rest)).max() > 0.01
+
+
+def test_answers_stay_right_when_bodies_come_and_go():
+    world = World()
+    world.gravity = GRAVITY
+    bodies = [world.load(random_tree(n, 4 + n, fixed_base=True)) for n in range(4)]
+
+    def ask(body: Body) -> np.ndarray:
+        count = len(joint_coordinates(body)[1])
+        position = 0.3 * np.ones(len(joint_coordinates(body)[0]))
+        return inverse_dynamics(body, position, np.linspace(-1.0, 1.0, count), np.linspace(2.0, 1.0, count))
+
+    expected = {body.id: ask(body) for body in bodies}
+    world.remove(bodies.pop(0).id)
+    for body in bodies:
+        np.testing.assert_array_equal(ask(body), expected[body.id])
+    newcomer = world.load(random_tree(9, 40, fixed_base=True))
+    ask(newcomer)
+    for body in bodies:
+        np.testing.assert_array_equal(ask(body), expected[body.id])

@@ -29,6 +29,28 @@ def test_quicksort_order_moves_equal_keys_in_a_fixed_way(keys, order):
     assert quicksort_order(keys) == order
 
 
+def sorted_as_bullet_does(items: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Quicksort of (key, index) by key: partition by exchange around the middle key, then both parts."""
+    if len(items) < 2:
+        return items
+    items, pivot = list(items), items[(len(items) - 1) // 2][0]
+    left, right = 0, len(items) - 1
+    while left <= right:
+        left = next(i for i in range(left, len(items)) if items[i][0] >= pivot)
+        right = next(i for i in range(right, -1, -1) if items[i][0] <= pivot)
+        if left <= right:
+            items[left], items[right] = items[right], items[left]
+            left, right = left + 1, right - 1
+    between = items[right + 1 : left]
+    return [*sorted_as_bullet_does(items[: right + 1]), *between, *sorted_as_bullet_does(items[left:])]
+
+
+@given(st.lists(st.integers(-3, 3), max_size=40))
+def test_quicksort_order_leaves_equal_keys_where_the_recursion_does(keys):
+    expected = sorted_as_bullet_does([(key, index) for index, key in enumerate(keys)])
+    assert quicksort_order(keys) == [index for _, index in expected]
+
+
 def test_quicksort_order_of_very_many_keys_needs_no_recursion():
     keys = [n % 7 for n in range(20_000)]
     assert [keys[i] for i in quicksort_order(keys)] == sorted(keys)

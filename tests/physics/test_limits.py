@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.physics.one_joint import DT, OFF, Motor, free_rate, hanging_rod, joint_state, place
+from tests.physics.one_joint import DT, INERTIA, OFF, Motor, free_rate, hanging_rod, joint_state, place
 from tests.physics.robots import pendulum
 
 from carom import Body, World
@@ -94,6 +94,19 @@ def test_the_impulse_of_a_limit_is_bounded():
     body.change_dynamics(0, joint_limit_force=30.0 / DT)
     assert rate_after_step(body, UPPER, v) == pytest.approx(v - 30.0 / inertia)
     assert body.dynamics(0).joint_limit_impulse == pytest.approx(30.0)
+
+
+def test_the_bound_is_the_force_times_the_substep_of_the_moment_it_is_set():
+    body = limited_rod()
+    body.world.parameters.substeps = 4
+    body.world.apply_parameters()
+    body.change_dynamics(0, joint_limit_force=60.0)
+    assert body.dynamics(0).joint_limit_impulse == pytest.approx(60.0 * DT / 4)
+    body.world.parameters.substeps = 0
+    body.world.apply_parameters()
+    place(body, UPPER, 1.0)
+    body.world.step()
+    assert joint_state(body)[1] == pytest.approx(1.0 - 60.0 * DT / 4 / INERTIA)
 
 
 def test_the_rod_rests_on_its_limit():
