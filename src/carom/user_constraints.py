@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.model.codes import UserConstraintKind
-from carom.model.touch_arrays import TouchArrays
+from carom.touch_arrays import TouchArrays
 
 if TYPE_CHECKING:
     from carom.body import Body

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -21,15 +20,13 @@ from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.launch import Launch
 from carom.model.structs import Settings
-from carom.model.touch_arrays import TouchArrays
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
-from carom.physics.quarantine import OVERFLOW
-from carom.physics.step import step_kernel
+from carom.stepper import Stepper
+from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
 
 _DEVICE = "cpu"
-_SUBSTEPS_ARGUMENT = 8
 # Flat arrays of the state that users read or write: attribute of `World`, field of `State`.
 _VIEWS = {
     "position": "position",
@@ -190,6 +187,7 @@ class World:
         body = self.bodies.pop(body_id)
         self.constraints.remove_body(body)
         self.user_constraints.remove_body(body)
+        self.touch.forget_contacts()
         self.touch.shapes.remove(body.rows)
         self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
         for other in self.bodies.values():
@@ -253,6 +251,7 @@ class World:
 
     def apply_parameters(self) -> None:
         """Make changes of `parameters` take effect."""
+        self.touch.shapes.set_breaking_fraction(self.parameters.contact_breaking_threshold)
         self._step = None
         self._query_space = None
 
@@ -270,18 +269,12 @@ class World:
                 was before that step, without the forces applied for it.
         """
         for _ in range(count):
-            step = self._step or self._prepare_step()
-            step()
-            while self._fault[0]:
-                step = self._handle_fault()
-                step()
+            (self._step or self._prepare_step())()
+            if self._fault[0]:
+                self._raise_fault()
             self.time += self.parameters.time_step
 
-    def _handle_fault(self) -> Callable[[], None]:
-        """After a step that did not happen: make room and return the step to take, or raise."""
-        if self._fault[0] == OVERFLOW:
-            self.touch.grow()
-            return self._prepare_step()
+    def _raise_fault(self) -> None:
         tree = self._fault[0] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
         raise SimulationError(
@@ -291,30 +284,49 @@ class World:
 
     def _prepare_step(self) -> Callable[[], None]:
         """The function that performs one step with the bodies and parameters there are."""
+        stepper = self._make_stepper()
+        if self.parameters.substeps <= 1:
+            self._unspent_time = 0.0
+        self._step = stepper.single or self._step_with_care
+        return self._step
+
+    def _make_stepper(self) -> Stepper:
+        """Write constraints and settings to the arrays and make the launches of a step."""
         user_rows = self.user_constraints.rows
         if self.constraints.write(self.arrays, user_rows, self.parameters.minimum_island_size):
             self._take_arrays()
         self.user_constraints.write(self.touch)
-        launch = Launch(step_kernel, 1, [self._settings(), *self._structs, *self.touch.structs(), 1], _DEVICE)
-        if self.parameters.substeps > 1:
-            self._step = partial(self._step_in_parts, launch)
-        else:
-            self._unspent_time = 0.0
-            self._step = launch.function
-        return self._step
+        model, state, scratch = self._structs
+        structs = {"settings": self._settings(), "model": model, "state": state, "scratch": scratch}
+        structs |= self.touch.structs()
+        self._stepper = Stepper(structs, self.touch, self._fault, self.parameters.substeps, _DEVICE)
+        return self._stepper
 
-    def _step_in_parts(self, launch: Launch) -> None:
-        """One step in substeps.
+    def _step_with_care(self) -> None:
+        """One step in substeps, and again with longer arrays as long as something does not fit."""
+        substeps = self._substeps_due()
+        while not self._stepper.step(substeps):
+            self._make_stepper()
 
-        Like Bullet's clock it performs as many as fit the time that has passed, which rounding can
-        make one fewer, then one more, than asked for; never more.
+    def _substeps_due(self) -> int:
+        """Substeps of the next step.
+
+        Like Bullet's clock it counts as many as fit the time that has passed, which rounding can make
+        one fewer, then one more, than asked for; never more.
         """
+        if self.parameters.substeps <= 1:
+            return 1
         part = self.parameters.substep_time
         self._unspent_time += self.parameters.time_step
         count = int(self._unspent_time / part)
         self._unspent_time -= count * part
-        launch.replace(_SUBSTEPS_ARGUMENT, min(count, self.parameters.substeps))
-        launch()
+        return min(count, self.parameters.substeps)
+
+    def detect_collisions(self) -> None:
+        """Find all contacts for the present coordinates, without a step."""
+        detection = self._make_stepper().detection
+        while detection is not None and not detection.run():
+            detection = self._make_stepper().detection
 
     def _settings(self) -> Any:
         p = self.parameters
@@ -338,6 +350,9 @@ class World:
         settings.contact_slop = p.contact_slop
         settings.restitution_threshold = p.restitution_velocity_threshold
         settings.cone_friction = int(p.cone_friction)
+        settings.shape_count = self.touch.shapes.shape_count
+        settings.filter_count = self.touch.shapes.filter_count
+        settings.filter_both = int(p.collision_filter_mode == 0)
         return settings
 
     def analytics(self) -> list[dict[str, float]]:

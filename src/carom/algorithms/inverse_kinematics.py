@@ -17,6 +17,7 @@ from carom.algorithms.reach.structs import Search
 from carom.model.arrays import ArrayTable
 from carom.model.codes import BASE_POSITIONS
 from carom.model.launch import Launch
+from carom.model.real import NUMPY_REAL
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -26,6 +27,9 @@ DEFAULT_THRESHOLD = 1e-4
 DEFAULT_DAMPING = 0.5
 _LEAST_DAMPING = 1e-9
 _DEVICE = "cpu"
+_NO_POSE = np.array(IDENTITY_BASE, dtype=NUMPY_REAL).data
+# The first of the kernel's arguments that change from call to call.
+_FIRST_OPTION = 3
 # More would not help, but take forever.
 _MOST_ITERATIONS = 100_000
 Numbers = Sequence[float] | np.ndarray
@@ -111,7 +115,7 @@ class _Solver:
         sizes = chain.sizes
         self._dofs = int(sizes.dofs)
         self._coordinates = int(sizes.coordinates)
-        rows = 6 * len(links)
+        blocks = 2 * len(links)
         search = ArrayTable(Search, None)
         search.reserve(
             {
@@ -121,16 +125,17 @@ class _Solver:
                 "coordinate": self._coordinates,
                 "joint": int(sizes.joints),
                 "column": int(sizes.columns),
-                "row": rows,
-                "entry": rows * int(sizes.columns),
-                "square": rows * rows,
+                "block": blocks,
+                "entry": blocks * int(sizes.columns),
+                "square": blocks * blocks,
+                "spectrum": 9 * blocks * blocks,
             }
         )
         arrays = search.numpy
         self._positions = arrays["end_given_position"][: len(links)]
         self._rotations = arrays["end_given_rotation"][: len(links)]
-        self._base = arrays["base_pose"][:BASE_POSITIONS]
-        self._start = arrays["coordinate_start"][: self._coordinates]
+        self._base = memoryview(arrays["base_pose"])[:BASE_POSITIONS]
+        self._start = memoryview(arrays["coordinate_start"])[: self._coordinates]
         self._best = arrays["coordinate_best"][: self._coordinates]
         self._damping, self._lower, self._upper, self._ranges, self._rest = (
             arrays[f"dof_{name}"][: self._dofs] for name in ("damping", "lower", "upper", "range", "rest")
@@ -139,6 +144,7 @@ class _Solver:
         self._lower.fill(-inf)
         self._upper.fill(inf)
         self._has_limits = self._has_damping = False
+        self._options: tuple[float, ...] = ()
         self._launch = Launch(
             inverse_kinematics_kernel,
             1,
@@ -154,17 +160,17 @@ class _Solver:
     def set_base(self, body: Body | None) -> None:
         """Say where the base is; without a body, that the targets are given in its frame."""
         if body is None:
-            self._base[:] = IDENTITY_BASE
+            self._base[:] = _NO_POSE
         else:
             first = body.first_position
-            self._base[:] = body.world.position[first : first + BASE_POSITIONS]
+            self._base[:] = body.world.position_memory[first : first + BASE_POSITIONS]
 
     def set_start(self, body: Body, start: Numbers | None) -> None:
         if start is None:
             first = body.first_position + BASE_POSITIONS
-            self._start[:] = body.world.position[first : first + self._coordinates]
+            self._start[:] = body.world.position_memory[first : first + self._coordinates]
         else:
-            self._start[:] = start
+            self._start[:] = np.array(start, dtype=NUMPY_REAL).data
 
     def set_damping(self, damping: Numbers | None) -> None:
         if damping is not None:
@@ -193,13 +199,12 @@ class _Solver:
     def solve(
         self, oriented: bool, step: Step, bounded: bool, iterations: int, threshold: float
     ) -> list[float]:
-        launch = self._launch
-        launch.replace(3, oriented)
-        launch.replace(4, step)
-        launch.replace(5, bounded)
-        launch.replace(6, min(iterations, _MOST_ITERATIONS))
-        launch.replace(7, threshold)
-        launch()
+        options = (oriented, step, bounded, min(iterations, _MOST_ITERATIONS), threshold)
+        if options != self._options:
+            for index, value in enumerate(options, start=_FIRST_OPTION):
+                self._launch.replace(index, value)
+            self._options = options
+        self._launch()
         return self._best.tolist()
 
 

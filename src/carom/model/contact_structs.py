@@ -177,6 +177,7 @@ class Couplings:
 
     tree_first_constraint: IntRows  # islands as linked lists that start at their root
     tree_first_contact: IntRows
+    tree_touches: IntRows  # whether it has contacts itself
     constraint_next: IntRows
     contact_next: IntRows
     contact_rows: (

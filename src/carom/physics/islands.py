@@ -64,9 +64,14 @@ def build_islands(
     contact_count = contacts.count_contacts[world, 0]
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = model.tree_batch[tree]
+        couplings.tree_touches[world, tree] = 0
     for contact in range(contact_count):
         pair = contacts.contact_shapes[world, contact]
-        unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
+        tree_a = shapes.shape_tree[pair[0]]
+        tree_b = shapes.shape_tree[pair[1]]
+        unite(model, state, world, tree_a, tree_b)
+        couplings.tree_touches[world, tree_a] = 1
+        couplings.tree_touches[world, tree_b] = 1
     for user in range(settings.user_count):
         unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
 

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 from carom.model.real import Int32, Quaternion, Transform, TransformRows, Vector3, Vector6, func, kernel
-from carom.model.structs import Model, Scratch, State
+from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.rotation import axis_rotation, canonical, rotation_matrix
 
 
@@ -156,6 +156,14 @@ def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, 
 def forward_kinematics_kernel(model: Model, state: State, tree: Int32):
     """Bring the link poses of one tree up to date with its coordinates."""
     forward_kinematics(model, state, state.link_pose, wp.tid(), tree)
+
+
+@kernel
+def link_poses_kernel(settings: Settings, model: Model, state: State):
+    """Bring the link poses of all trees up to date with their coordinates."""
+    world = wp.tid()
+    for tree in range(settings.tree_count):
+        forward_kinematics(model, state, state.link_pose, world, tree)
 
 
 @kernel

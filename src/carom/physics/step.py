@@ -17,12 +17,20 @@ from carom.physics.islands import build_islands
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd, joint_damping
-from carom.physics.quarantine import OVERFLOW, keep_start, return_to_start
+from carom.physics.quarantine import keep_start, return_to_start
 from carom.physics.solver import apply_delta_velocities, clear_delta_velocities, solve_island
 
 
 @func
-def free_motion(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+def free_motion(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    tree: Int32,
+):
     """Velocities after the substep if there were no constraints."""
     explicit_pd(model, state, world, tree)
     forward_kinematics(model, state, state.link_pose, world, tree)
@@ -37,7 +45,7 @@ def free_motion(model: Model, settings: Settings, state: State, scratch: Scratch
         measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
         clear_constraint_forces(model, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
-    if model.tree_constraint_count[tree] > 0:
+    if model.tree_constraint_count[tree] > 0 or couplings.tree_touches[world, tree] != 0:
         invert(model, scratch, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
 
@@ -66,7 +74,6 @@ def solve_constraints(
     world: Int32,
 ):
     """Find the changes of velocity that motors, limits, user constraints and contacts ask for."""
-    build_islands(settings, model, state, shapes, contacts, users, couplings, world)
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
             solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
@@ -83,17 +90,25 @@ def step_kernel(
     users: UserConstraints,
     couplings: Couplings,
     substeps: Int32,
+    begins: Int32,
+    ends: Int32,
 ):
-    """Advance each world by one step of `substeps` substeps."""
+    """Advance each world by `substeps` substeps of one step.
+
+    Where bodies can touch, collision detection comes between substeps and each is a launch: then
+    `begins` and `ends` tell the first and the last of a step.
+    """
     world = wp.tid()
-    state.fault_tree[world, 0] = 0
-    for tree in range(settings.tree_count):
-        keep_start(model, state, scratch, world, tree)
-        joint_damping(model, state, world, tree)
+    if begins != 0:
+        state.fault_tree[world, 0] = 0
+        for tree in range(settings.tree_count):
+            keep_start(model, state, scratch, world, tree)
+            joint_damping(model, state, world, tree)
 
     for _substep in range(substeps):
+        build_islands(settings, model, state, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
-            free_motion(model, settings, state, scratch, world, tree)
+            free_motion(model, settings, state, scratch, couplings, world, tree)
         solve_constraints(settings, model, state, scratch, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
             if model.tree_sensor_count[tree] > 0:
@@ -105,5 +120,5 @@ def step_kernel(
     for tree in range(settings.tree_count):
         if fault != 0:
             return_to_start(model, state, scratch, world, tree)
-        if fault != OVERFLOW:
+        if fault > 0 or (fault == 0 and ends != 0):
             clear_forces(model, state, world, tree)

@@ -16,7 +16,8 @@ from carom.render.mtl import ObjMaterial, read_materials
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
-_KINDS = {b"v": (_VERTEX, 3), b"vt": (_UV, 2), b"vn": (_NORMAL, 3)}
+# Keyword: what it states, and how many numbers are used and needed; colours or weights may follow.
+_KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
 
 @dataclass(slots=True)
@@ -51,7 +52,9 @@ def read_obj_visual(file: Path) -> RenderMesh:
     """
     data, _ = read_bounded(file, MAX_FILE_BYTES)
     lines = _take_apart(data)
-    positions, uvs, normals = (_numbers(lines.values[kind], width, file) for kind, width in _KINDS.values())
+    positions, uvs, normals = (
+        _numbers(lines.values[kind], width, least, file) for kind, width, least in _KINDS.values()
+    )
     corners = _corners(lines, (len(positions), len(uvs), len(normals)), file)
     material = _material(lines, file)
     return _mesh(positions, uvs, normals, corners, material)
@@ -78,14 +81,17 @@ def _take_apart(data: bytes) -> _Lines:
     return lines
 
 
-def _numbers(lines: list[tuple[int, bytes]], width: int, file: Path) -> NDArray[np.float64]:
-    """The first `width` numbers of each line; a weight or a colour may follow."""
-    rows = np.empty((len(lines), width))
+def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path) -> NDArray[np.float64]:
+    """The first `width` numbers of each line, 0 for those left out after `least`."""
+    rows = np.zeros((len(lines), width))
     for index, (number, line) in enumerate(lines):
         try:
-            rows[index] = [float(word) for word in line.split()[:width]]
+            values = [float(word) for word in line.split()[:width]]
         except ValueError:
-            raise DescriptionError(f"{width} numbers are due", file=file, line=number) from None
+            values = []
+        if len(values) < least:
+            raise DescriptionError(f"at least {least} numbers are due", file=file, line=number)
+        rows[index, : len(values)] = values
         if not np.isfinite(rows[index]).all():
             raise DescriptionError("a number is not finite", file=file, line=number)
     return rows

@@ -11,14 +11,12 @@ from carom.physics.rotation import axis_rotation
 @func
 def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
     """Find the frames of all joints of a chain."""
+    # What the next joint most often hangs on stays at hand.
+    last_position = Vector3(0.0, 0.0, 0.0)
+    last_rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
     for joint in range(sizes.joints):
-        parent = chain.joint_parent[joint]
         origin = chain.joint_origin[joint]
         rotation = chain.joint_turn[joint]
-        if parent >= 0:
-            carrier = search.joint_rotation[parent]
-            origin = search.joint_position[parent] + wp.quat_rotate(carrier, origin)
-            rotation = carrier * rotation
         kind = chain.joint_kind[joint]
         axis = chain.joint_axis[joint]
         q = chain.joint_first_coordinate[joint]
@@ -37,8 +35,17 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
                 + chain.joint_planar_axis2[joint] * coordinates[q + 2],
             )
             rotation = rotation * axis_rotation(axis, coordinates[q])
+        parent = chain.joint_parent[joint]
+        if parent >= 0:
+            if parent != joint - 1:
+                last_position = search.joint_position[parent]
+                last_rotation = search.joint_rotation[parent]
+            origin = last_position + wp.quat_rotate(last_rotation, origin)
+            rotation = last_rotation * rotation
         search.joint_position[joint] = origin
         search.joint_rotation[joint] = rotation
+        last_position = origin
+        last_rotation = rotation
 
 
 @func
@@ -68,19 +75,18 @@ def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
 
 @func
 def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Vector3:
-    """Fill `row_error` with the ways from the ends to their targets.
+    """Fill `block_error` with the ways from the ends to their targets.
 
     Returns:
-        Greatest distance [m], greatest angle [rad], sum of squares of all rows.
+        Greatest distance [m], greatest angle [rad], sum of the squares of all errors.
     """
     distance = real(0.0)
     angle = real(0.0)
     squares = real(0.0)
-    stride = 3 + 3 * oriented
+    stride = 1 + oriented
     for end in range(sizes.ends):
         way = search.end_target_position[end] - end_position(chain, search, end)
-        for axis in range(3):
-            search.row_error[end * stride + axis] = way[axis]
+        search.block_error[end * stride] = way
         distance = wp.max(distance, wp.length(way))
         squares += wp.dot(way, way)
         if oriented == 1:
@@ -89,63 +95,56 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
             if joint >= 0:
                 rotation = search.joint_rotation[joint] * rotation
             turn = rotation_vector(rotation, search.end_target_rotation[end])
-            for axis in range(3):
-                search.row_error[end * stride + 3 + axis] = turn[axis]
+            search.block_error[end * stride + 1] = turn
             angle = wp.max(angle, wp.length(turn))
             squares += wp.dot(turn, turn)
     return Vector3(distance, angle, squares)
 
 
 @func
-def write_column(
-    search: Search, rows: Int32, row: Int32, column: Int32, oriented: Int32, linear: Vector3, angular: Vector3
-):
-    """Set what a unit of one freedom does to an end whose first row is `row`."""
-    entry = column * rows + row
-    for axis in range(3):
-        search.entry_jacobian[entry + axis] = linear[axis]
+def write_column(search: Search, entry: Int32, oriented: Int32, linear: Vector3, angular: Vector3):
+    """Set what a unit of one freedom does to an end."""
+    search.entry_jacobian[entry] = linear
     if oriented == 1:
-        for axis in range(3):
-            search.entry_jacobian[entry + 3 + axis] = angular[axis]
+        search.entry_jacobian[entry + 1] = angular
 
 
 @func
 def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, oriented: Int32):
     """Find how the joints, in their present frames, move the ends."""
-    stride = 3 + 3 * oriented
-    rows = stride * sizes.ends
+    stride = 1 + oriented
+    blocks = stride * sizes.ends
     zero = Vector3(0.0, 0.0, 0.0)
     if sizes.ends > 1:
-        for entry in range(rows * sizes.columns):
-            search.entry_jacobian[entry] = real(0.0)
+        for entry in range(blocks * sizes.columns):
+            search.entry_jacobian[entry] = zero
     for end in range(sizes.ends):
         position = end_position(chain, search, end)
-        row = end * stride
         joint = chain.end_joint[end]
         while joint >= 0:
             kind = chain.joint_kind[joint]
-            column = chain.joint_first_column[joint]
+            entry = chain.joint_first_column[joint] * blocks + end * stride
             rotation = search.joint_rotation[joint]
             axis = wp.quat_rotate(rotation, chain.joint_axis[joint])
             arm = position - search.joint_position[joint]
             if kind == REVOLUTE:
-                write_column(search, rows, row, column, oriented, wp.cross(axis, arm), axis)
+                write_column(search, entry, oriented, wp.cross(axis, arm), axis)
             elif kind == PRISMATIC:
-                write_column(search, rows, row, column, oriented, axis, zero)
+                write_column(search, entry, oriented, axis, zero)
             elif kind == SPHERICAL:
                 for k in range(3):
                     unit = Vector3(0.0, 0.0, 0.0)
                     unit[k] = 1.0
                     axis = wp.quat_rotate(rotation, unit)
-                    write_column(search, rows, row, column + k, oriented, wp.cross(axis, arm), axis)
+                    write_column(search, entry + k * blocks, oriented, wp.cross(axis, arm), axis)
             elif kind == PLANAR:
-                write_column(search, rows, row, column, oriented, wp.cross(axis, arm), axis)
+                write_column(search, entry, oriented, wp.cross(axis, arm), axis)
                 angle = coordinates[chain.joint_first_coordinate[joint]]
                 unturned = rotation * axis_rotation(chain.joint_axis[joint], -angle)
                 first = wp.quat_rotate(unturned, chain.joint_planar_axis1[joint])
                 second = wp.quat_rotate(unturned, chain.joint_planar_axis2[joint])
-                write_column(search, rows, row, column + 1, oriented, first, zero)
-                write_column(search, rows, row, column + 2, oriented, second, zero)
+                write_column(search, entry + blocks, oriented, first, zero)
+                write_column(search, entry + 2 * blocks, oriented, second, zero)
             joint = chain.joint_parent[joint]
 
 

@@ -13,7 +13,7 @@ from carom.algorithms.reach.selective_step import selective_step
 from carom.algorithms.reach.steps import bounded_step, damped_step, null_space_step
 from carom.algorithms.reach.structs import Chain, ChainSizes, Search
 from carom.model.codes import SPHERICAL
-from carom.model.real import Int32, Quaternion, Reals, Vector3, func, kernel, real
+from carom.model.real import Int32, Quaternion, Reals, Vector3, Vector4, func, kernel, real
 
 # What follows PyBullet's iteration: `step_kind` of the kernel.
 DAMPED, NULL_SPACE, SELECTIVE = wp.constant(0), wp.constant(1), wp.constant(2)
@@ -43,7 +43,7 @@ def follow(
     threshold: real,
 ):
     """PyBullet's iteration: the last step is that after the one that came close enough."""
-    rows = (3 + 3 * oriented) * sizes.ends
+    blocks = (1 + oriented) * sizes.ends
     iteration = Int32(0)
     while iteration < iterations:
         place(sizes, chain, search, search.coordinate_now)
@@ -51,11 +51,11 @@ def follow(
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
         greatest = real(0.0)
         if step_kind == NULL_SPACE:
-            greatest = null_space_step(sizes, chain, search, search.coordinate_now, rows)
+            greatest = null_space_step(sizes, chain, search, search.coordinate_now, blocks)
         elif step_kind == SELECTIVE:
-            greatest = selective_step(sizes, chain, search, rows)
+            greatest = selective_step(sizes, chain, search, blocks)
         else:
-            greatest = damped_step(sizes, chain, search, rows)
+            greatest = damped_step(sizes, chain, search, blocks)
         advance(sizes, chain, search, search.coordinate_now, search.coordinate_now)
         iteration += 1
         if error[0] <= threshold or greatest < _NO_STEP:
@@ -85,48 +85,54 @@ def descend(
     oriented: Int32,
     budget: Int32,
     threshold: real,
-) -> Int32:
+    error: Vector3,
+) -> Vector4:
     """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
 
+    Args:
+        sizes: How many of everything there are.
+        chain: The chain; its joints are placed.
+        search: The question; its errors are measured.
+        oriented: 1 if the ends are to be turned as well.
+        budget: How many poses may be tried.
+        threshold: Distance and angle that are close enough.
+        error: Distance, angle and sum of squares at `coordinate_now`.
+
     Returns:
-        How many poses it tried.
+        The same at the end, and how many poses were tried.
     """
-    rows = (3 + 3 * oriented) * sizes.ends
-    place(sizes, chain, search, search.coordinate_now)
-    error = measure_errors(sizes, chain, search, oriented)
+    blocks = (1 + oriented) * sizes.ends
     tried = Int32(0)
     slow = Int32(0)
     growth = real(1.0)
-    while tried < budget and (error[0] > threshold or error[1] > threshold):
+    while tried < budget and slow < _SLOW_STEPS and (error[0] > threshold or error[1] > threshold):
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
-        squares = error[2]
         attempt = Int32(0)
-        while attempt < _TRIES and tried < budget:
-            damping = growth * _DAMPING_BY_ERROR * squares + _LEAST_DAMPING
-            bounded_step(sizes, chain, search, search.coordinate_now, rows, damping)
+        better = Int32(0)
+        while better == 0 and attempt < _TRIES and tried < budget:
+            damping = growth * _DAMPING_BY_ERROR * error[2] + _LEAST_DAMPING
+            bounded_step(sizes, chain, search, search.coordinate_now, blocks, damping)
             advance(sizes, chain, search, search.coordinate_now, search.coordinate_trial)
             place(sizes, chain, search, search.coordinate_trial)
-            error = measure_errors(sizes, chain, search, oriented)
+            trial = measure_errors(sizes, chain, search, oriented)
             tried += 1
             attempt += 1
-            if error[2] < squares:
-                attempt = Int32(2 * _TRIES)
+            if trial[2] < error[2]:
+                better = Int32(1)
                 growth = wp.max(0.25 * growth, real(1.0e-3))
+                slow += 1
+                if trial[2] < _LITTLE_PROGRESS * error[2]:
+                    slow = Int32(0)
+                error = trial
+                copy(sizes.coordinates, search.coordinate_trial, search.coordinate_now)
             else:
                 growth *= 8.0
-                # The rows of the next try are those of the pose it starts from.
+                # The errors of the next try are those of the pose it starts from.
                 place(sizes, chain, search, search.coordinate_now)
                 measure_errors(sizes, chain, search, oriented)
-        if attempt <= _TRIES:
-            return tried
-        copy(sizes.coordinates, search.coordinate_trial, search.coordinate_now)
-        if error[2] > _LITTLE_PROGRESS * squares:
-            slow += 1
-            if slow >= _SLOW_STEPS:
-                return tried
-        else:
-            slow = Int32(0)
-    return tried
+        if better == 0:
+            slow = _SLOW_STEPS
+    return Vector4(error[0], error[1], error[2], real(tried))
 
 
 @func
@@ -215,12 +221,11 @@ def inverse_kinematics_kernel(
     spread = _FIRST_SPREAD
     seed = Int32(1)
     while left > 0:
-        left -= descend(sizes, chain, search, oriented, left, goal) + 1
-        place(sizes, chain, search, search.coordinate_now)
-        error = measure_errors(sizes, chain, search, oriented)
-        arrived = error[0] <= goal and error[1] <= goal
-        if arrived or (error[2] < best and not content):
-            best = error[2]
+        outcome = descend(sizes, chain, search, oriented, left, goal, error)
+        left -= Int32(outcome[3]) + 1
+        arrived = outcome[0] <= goal and outcome[1] <= goal
+        if arrived or (outcome[2] < best and not content):
+            best = outcome[2]
             copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
         if arrived:
             return
@@ -229,5 +234,7 @@ def inverse_kinematics_kernel(
             search.dof_step[dof] = real(0.0)
         if bounded == 1:
             keep_limits(sizes, chain, search, search.coordinate_now)
+        place(sizes, chain, search, search.coordinate_now)
+        error = measure_errors(sizes, chain, search, oriented)
         spread = wp.min(1.6 * spread, real(1.0))
         seed += 1

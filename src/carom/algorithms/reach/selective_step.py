@@ -9,7 +9,7 @@ import warp as wp
 
 from carom.algorithms.reach.steps import MAX_STEP, limit_step
 from carom.algorithms.reach.structs import Chain, ChainSizes, Search
-from carom.model.real import Int32, func, real
+from carom.model.real import Int32, Vector3, func, real
 
 _MOST_SWEEPS = wp.constant(30)
 _NEGLIGIBLE = real(1e-20)
@@ -17,8 +17,8 @@ _NEGLIGIBLE = real(1e-20)
 
 @func
 def diagonalise_rows(search: Search, rows: Int32):
-    """Eigenvalues of J Jᵀ in the diagonal of `square_matrix`, eigenvectors as columns of `square_vectors`."""
-    a = search.square_matrix
+    """Put the eigenvalues of `spectrum_matrix` on its diagonal, and the eigenvectors into columns."""
+    a = search.spectrum_matrix
     sweep = Int32(0)
     while sweep < _MOST_SWEEPS:
         off = real(0.0)
@@ -39,8 +39,8 @@ def diagonalise_rows(search: Search, rows: Int32):
 @func
 def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
     """The Jacobi rotation that clears the entries (p, q) and (q, p)."""
-    a = search.square_matrix
-    v = search.square_vectors
+    a = search.spectrum_matrix
+    v = search.spectrum_vectors
     entry = a[p * rows + q]
     if entry == 0.0:
         return
@@ -67,26 +67,20 @@ def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
 
 
 @func
-def block_length(search: Search, first: Int32) -> real:
-    """Length of three entries of the Jacobian."""
-    squares = real(0.0)
-    for axis in range(3):
-        entry = search.entry_jacobian[first + axis]
-        squares += entry * entry
-    return wp.sqrt(squares)
-
-
-@func
-def selective_step(sizes: ChainSizes, chain: Chain, search: Search, rows: Int32) -> real:
+def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
     """Fill `dof_step`; returns its greatest part."""
-    a = search.square_matrix
-    v = search.square_vectors
+    rows = 3 * blocks
+    a = search.spectrum_matrix
+    v = search.spectrum_vectors
     for i in range(rows):
         for k in range(rows):
             total = real(0.0)
             for column in range(sizes.columns):
-                first = column * rows
-                total += search.entry_jacobian[first + i] * search.entry_jacobian[first + k]
+                first = column * blocks
+                total += (
+                    search.entry_jacobian[first + i // 3][i % 3]
+                    * search.entry_jacobian[first + k // 3][k % 3]
+                )
             a[i * rows + k] = total
             v[i * rows + k] = real(0.0)
         v[i * rows + i] = real(1.0)
@@ -98,47 +92,52 @@ def selective_step(sizes: ChainSizes, chain: Chain, search: Search, rows: Int32)
         search.dof_step[chain.column_dof[column]] = real(0.0)
     for i in range(rows):
         if a[i * rows + i] > 1.0e-12 * largest:
-            add_direction(sizes, chain, search, rows, i)
+            add_direction(sizes, chain, search, blocks, i)
     return limit_step(sizes, search)
 
 
 @func
-def add_direction(sizes: ChainSizes, chain: Chain, search: Search, rows: Int32, direction: Int32):
+def direction_block(search: Search, blocks: Int32, block: Int32, direction: Int32) -> Vector3:
+    """Three entries of an eigenvector."""
+    rows = 3 * blocks
+    first = 3 * block * rows + direction
+    v = search.spectrum_vectors
+    return Vector3(v[first], v[first + rows], v[first + 2 * rows])
+
+
+@func
+def add_direction(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32, direction: Int32):
     """Add the part of a step that belongs to one singular direction."""
-    v = search.square_vectors
-    singular = wp.sqrt(search.square_matrix[direction * rows + direction])
+    singular = wp.sqrt(search.spectrum_matrix[direction * 3 * blocks + direction])
     along = real(0.0)
     end_motion = real(0.0)
-    for block in range(rows // 3):
-        squares = real(0.0)
-        for axis in range(3):
-            row = 3 * block + axis
-            entry = v[row * rows + direction]
-            along += entry * search.row_error[row]
-            squares += entry * entry
-        end_motion += wp.sqrt(squares)
+    for block in range(blocks):
+        part = direction_block(search, blocks, block, direction)
+        along += wp.dot(part, search.block_error[block])
+        end_motion += wp.length(part)
     joint_motion = real(0.0)
     greatest = real(0.0)
     for column in range(sizes.columns):
-        share = direction_share(search, rows, column, direction) / singular
+        share = wp.abs(direction_share(search, blocks, column, direction) / singular)
         reach = real(0.0)
-        for block in range(rows // 3):
-            reach += block_length(search, column * rows + 3 * block)
-        joint_motion += wp.abs(share) * reach
-        greatest = wp.max(greatest, wp.abs(share))
+        for block in range(blocks):
+            reach += wp.length(search.entry_jacobian[column * blocks + block])
+        joint_motion += share * reach
+        greatest = wp.max(greatest, share)
     bound = MAX_STEP * wp.min(real(1.0), end_motion * singular / wp.max(joint_motion, _NEGLIGIBLE))
     factor = along / singular
     if wp.abs(factor) * greatest > bound:
         factor *= bound / (wp.abs(factor) * greatest)
     for column in range(sizes.columns):
-        share = direction_share(search, rows, column, direction) / singular
+        share = direction_share(search, blocks, column, direction) / singular
         search.dof_step[chain.column_dof[column]] += factor * share
 
 
 @func
-def direction_share(search: Search, rows: Int32, column: Int32, direction: Int32) -> real:
+def direction_share(search: Search, blocks: Int32, column: Int32, direction: Int32) -> real:
     """Singular value times the entry of a joint in the singular vector of the joints."""
     total = real(0.0)
-    for row in range(rows):
-        total += search.entry_jacobian[column * rows + row] * search.square_vectors[row * rows + direction]
+    for block in range(blocks):
+        part = direction_block(search, blocks, block, direction)
+        total += wp.dot(search.entry_jacobian[column * blocks + block], part)
     return total

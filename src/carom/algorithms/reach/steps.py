@@ -1,6 +1,6 @@
 """Steps of the joints towards targets that are out of reach of a linear step, or near singular poses.
 
-A step solves (J W Jᵀ + μ) y = e for the rows and is W Jᵀ y: the least one, as the weights W measure
+A step solves (J W Jᵀ + μ) y = e and is W Jᵀ y: the least one, as the weights W measure
 it, that takes the ends some way towards their targets, and the further the smaller the damping μ.
 """
 
@@ -9,7 +9,7 @@ import math
 import warp as wp
 
 from carom.algorithms.reach.structs import Chain, ChainSizes, Search
-from carom.model.real import Int32, Reals, func, real
+from carom.model.real import Int32, Matrix3, Reals, Vector3, func, real
 
 # No joint turns by more than this in one step.
 MAX_STEP = real(math.pi / 4.0)
@@ -21,62 +21,67 @@ _NULL_SPACE_DAMPING = real(0.36)
 
 
 @func
-def jacobian_times(search: Search, rows: Int32, column: Int32, factor: real):
-    """Subtract from `row_solution` what a freedom does to the ends."""
-    for row in range(rows):
-        search.row_solution[row] -= search.entry_jacobian[column * rows + row] * factor
+def jacobian_times(search: Search, blocks: Int32, column: Int32, factor: real):
+    """Subtract from `block_solution` what a freedom does to the ends."""
+    for block in range(blocks):
+        search.block_solution[block] -= search.entry_jacobian[column * blocks + block] * factor
 
 
 @func
-def response(search: Search, rows: Int32, column: Int32) -> real:
-    """One entry of the transposed Jacobian times `row_solution`."""
+def response(search: Search, blocks: Int32, column: Int32) -> real:
+    """One entry of the transposed Jacobian times `block_solution`."""
     total = real(0.0)
-    for row in range(rows):
-        total += search.entry_jacobian[column * rows + row] * search.row_solution[row]
+    for block in range(blocks):
+        total += wp.dot(search.entry_jacobian[column * blocks + block], search.block_solution[block])
     return total
 
 
 @func
-def solve_rows(sizes: ChainSizes, search: Search, rows: Int32, damping: real):
-    """Replace `row_solution` by (J W Jᵀ + damping)⁻¹ times it, leaving out the columns that are held."""
-    a = search.square_matrix
-    for i in range(rows):
-        for k in range(i):
-            a[i * rows + k] = real(0.0)
-        a[i * rows + i] = damping
+def start_from_errors(search: Search, blocks: Int32):
+    """Set `block_solution` to the errors."""
+    for block in range(blocks):
+        search.block_solution[block] = search.block_error[block]
+
+
+@func
+def row_weights(sizes: ChainSizes, search: Search, blocks: Int32, i: Int32, k: Int32) -> Matrix3:
+    """The block (i, k) of J W Jᵀ without the columns that are held."""
+    total = Matrix3()
     for column in range(sizes.columns):
         if search.column_held[column] == 0:
-            first = column * rows
-            weight = search.column_weight[column]
-            for i in range(rows):
-                scaled = weight * search.entry_jacobian[first + i]
-                for k in range(i + 1):
-                    a[i * rows + k] += scaled * search.entry_jacobian[first + k]
-    # LDLᵀ in place; the diagonal holds the inverse pivots.
-    for i in range(rows):
+            weighted = search.column_weight[column] * search.entry_jacobian[column * blocks + i]
+            total += wp.outer(weighted, search.entry_jacobian[column * blocks + k])
+    return total
+
+
+@func
+def solve_blocks(sizes: ChainSizes, search: Search, blocks: Int32, damping: real):
+    """Replace `block_solution` by (J W Jᵀ + damping)⁻¹ times it, leaving out the columns that are held."""
+    a = search.square_matrix
+    x = search.block_solution
+    # LDLᵀ by blocks; the diagonal holds the inverse pivots.
+    for i in range(blocks):
+        pivot = row_weights(sizes, search, blocks, i, i) + wp.diag(Vector3(damping, damping, damping))
         for k in range(i):
-            entry = a[i * rows + k]
+            entry = row_weights(sizes, search, blocks, i, k)
             for before in range(k):
-                entry -= a[i * rows + before] * a[k * rows + before]
-            a[i * rows + k] = entry
-        pivot = a[i * rows + i]
+                entry -= a[i * blocks + before] * wp.transpose(a[k * blocks + before])
+            a[i * blocks + k] = entry
         for k in range(i):
-            entry = a[i * rows + k]
-            scaled = entry * a[k * rows + k]
-            a[i * rows + k] = scaled
-            pivot -= entry * scaled
-        # No pivot is less than the damping, but for rounding.
-        a[i * rows + i] = 1.0 / wp.max(pivot, damping)
-    x = search.row_solution
-    for i in range(rows):
+            entry = a[i * blocks + k]
+            scaled = entry * a[k * blocks + k]
+            a[i * blocks + k] = scaled
+            pivot -= entry * wp.transpose(scaled)
+        a[i * blocks + i] = wp.inverse(pivot)
+    for i in range(blocks):
         for k in range(i):
-            x[i] -= a[i * rows + k] * x[k]
-    for i in range(rows):
-        x[i] = x[i] * a[i * rows + i]
-    for back in range(rows):
-        i = rows - 1 - back
-        for k in range(i + 1, rows):
-            x[i] -= a[k * rows + i] * x[k]
+            x[i] -= a[i * blocks + k] * x[k]
+    for i in range(blocks):
+        x[i] = a[i * blocks + i] * x[i]
+    for back in range(blocks):
+        i = blocks - 1 - back
+        for k in range(i + 1, blocks):
+            x[i] -= wp.transpose(a[k * blocks + i]) * x[k]
 
 
 @func
@@ -92,20 +97,21 @@ def limit_step(sizes: ChainSizes, search: Search) -> real:
 
 
 @func
-def damped_step(sizes: ChainSizes, chain: Chain, search: Search, rows: Int32) -> real:
+def damped_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
     """PyBullet's step: every joint as unwilling to move as its damping says. Returns its greatest part."""
-    for row in range(rows):
-        search.row_solution[row] = search.row_error[row]
-    solve_rows(sizes, search, rows, real(1.0))
+    start_from_errors(search, blocks)
+    solve_blocks(sizes, search, blocks, real(1.0))
     for column in range(sizes.columns):
         search.dof_step[chain.column_dof[column]] = search.column_weight[column] * response(
-            search, rows, column
+            search, blocks, column
         )
     return limit_step(sizes, search)
 
 
 @func
-def null_space_step(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, rows: Int32) -> real:
+def null_space_step(
+    sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, blocks: Int32
+) -> real:
     """PyBullet's step with a pull towards rest poses, and back into limits, that spares the ends.
 
     Returns its greatest part.
@@ -124,19 +130,18 @@ def null_space_step(sizes: ChainSizes, chain: Chain, search: Search, coordinates
             if push != 0.0 and search.dof_range[dof] != 0.0:
                 pull += _LIMIT_GAIN * push / search.dof_range[dof]
         search.dof_step[dof] = pull
-    for row in range(rows):
-        search.row_solution[row] = search.row_error[row]
+    start_from_errors(search, blocks)
     for column in range(sizes.columns):
-        jacobian_times(search, rows, column, search.dof_step[chain.column_dof[column]])
-    solve_rows(sizes, search, rows, _NULL_SPACE_DAMPING)
+        jacobian_times(search, blocks, column, search.dof_step[chain.column_dof[column]])
+    solve_blocks(sizes, search, blocks, _NULL_SPACE_DAMPING)
     for column in range(sizes.columns):
-        search.dof_step[chain.column_dof[column]] += response(search, rows, column)
+        search.dof_step[chain.column_dof[column]] += response(search, blocks, column)
     return limit_step(sizes, search)
 
 
 @func
 def bounded_step(
-    sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, rows: Int32, damping: real
+    sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, blocks: Int32, damping: real
 ):
     """A step that keeps within the limits.
 
@@ -147,17 +152,16 @@ def bounded_step(
     passes = Int32(0)
     settled = Int32(0)
     while settled == 0:
-        for row in range(rows):
-            search.row_solution[row] = search.row_error[row]
+        start_from_errors(search, blocks)
         for column in range(sizes.columns):
             if search.column_held[column] == 1:
-                jacobian_times(search, rows, column, search.dof_step[chain.column_dof[column]])
-        solve_rows(sizes, search, rows, damping)
+                jacobian_times(search, blocks, column, search.dof_step[chain.column_dof[column]])
+        solve_blocks(sizes, search, blocks, damping)
         settled = Int32(1)
         for column in range(sizes.columns):
             if search.column_held[column] == 0:
                 dof = chain.column_dof[column]
-                step = search.column_weight[column] * response(search, rows, column)
+                step = search.column_weight[column] * response(search, blocks, column)
                 coordinate = chain.dof_coordinate[dof]
                 if coordinate >= 0:
                     position = coordinates[coordinate]

@@ -12,7 +12,9 @@ three dofs and a quaternion. A field's axis is the first word of its name.
 
 import warp as wp
 
-from carom.model.real import Int32, Ints, Quaternions, Reals, Vectors3
+from carom.model.real import Int32, Ints, Matrix3, Quaternions, Reals, Vectors3
+
+Matrices3 = wp.array(dtype=Matrix3)
 
 
 @wp.struct
@@ -55,7 +57,8 @@ class Chain:
 class Search:
     """A question, and the memory that answering it needs.
 
-    The Jacobian is stored column by column, matrices over rows row by row.
+    Errors come in *blocks* of three rows: the way of an end and, where it is to be turned, its turn.
+    The Jacobian is stored column by column, matrices over blocks row by row.
     """
 
     base_pose: Reals  # position, quaternion: the targets are given in axes that have the base there
@@ -79,8 +82,9 @@ class Search:
     dof_step: Reals
     column_weight: Reals
     column_held: Ints  # 1 at a bound that its step would pass
-    row_error: Reals
-    row_solution: Reals
-    entry_jacobian: Reals
-    square_matrix: Reals
-    square_vectors: Reals
+    block_error: Vectors3
+    block_solution: Vectors3
+    entry_jacobian: Vectors3
+    square_matrix: Matrices3
+    spectrum_matrix: Reals  # of the selective step, number by number
+    spectrum_vectors: Reals

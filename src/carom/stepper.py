@@ -1,0 +1,116 @@
+"""Performing steps: which kernels run, in which order, and what happens when something does not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from carom.collision.collide import collide_kernel
+from carom.collision.hierarchy import PAIRS
+from carom.collision.manifold import WANTED
+from carom.model.launch import Launch
+from carom.physics.kinematics import link_poses_kernel
+from carom.physics.quarantine import OVERFLOW
+from carom.physics.step import step_kernel
+from carom.touch_arrays import TouchArrays
+
+_SUBSTEPS, _BEGINS, _ENDS = "substeps", "begins", "ends"
+
+
+class Detection:
+    """Collision detection of a world, over arrays that grow until everything fits."""
+
+    def __init__(self, structs: dict[str, Any], touch: TouchArrays, device: str) -> None:
+        self._touch = touch
+        self._poses = launch(link_poses_kernel, structs, device)
+        self._collide = launch(collide_kernel, structs, device)
+        self._pair_room = touch.pairs.capacity["pair"]
+        self._contact_room = touch.contacts.capacity["contact"]
+        self._pair_counts = memoryview(touch.pairs.numpy["count_pairs"][0])
+        self._contact_counts = memoryview(touch.contacts.numpy["count_contacts"][0])
+
+    def run(self) -> bool:
+        """Bring all link poses up to date and find all contacts.
+
+        Returns:
+            False if pairs or contacts did not fit; then the arrays have been replaced by longer ones.
+        """
+        self._poses()
+        self._collide()
+        fits = (
+            self._pair_counts[PAIRS] <= self._pair_room and self._contact_counts[WANTED] <= self._contact_room
+        )
+        if not fits:
+            self._touch.grow_detection()
+        return fits
+
+
+class Stepper:
+    """One step of a world as it is now: its bodies, parameters and arrays.
+
+    Without anything that can touch, a step is one launch whatever the number of substeps. With it,
+    each substep is collision detection and a launch.
+
+    Args:
+        structs: Warp structs by the name kernels give them.
+        touch: The arrays of what bodies do to each other.
+        fault: `State.fault_tree` of the world.
+        substeps: Greatest number of substeps.
+        device: Warp device name.
+    """
+
+    def __init__(
+        self, structs: dict[str, Any], touch: TouchArrays, fault: memoryview, substeps: int, device: str
+    ) -> None:
+        self._launch = launch(step_kernel, structs, device, **{_SUBSTEPS: 1, _BEGINS: 1, _ENDS: 1})
+        self._index = argument_indices(step_kernel)
+        self._touch = touch
+        self._fault = fault
+        self._touching = touch.shapes.shape_count > 1
+        self.detection = Detection(structs, touch, device) if self._touching else None
+        if not self._touching:
+            touch.forget_contacts()
+        self._substeps = substeps
+
+    @property
+    def single(self) -> Callable[[], None] | None:
+        """A step of one substep as one launch, where that is all there is to it."""
+        return None if self._touching or self._substeps > 1 else self._launch.function
+
+    def step(self, substeps: int) -> bool:
+        """Perform a step of `substeps` substeps.
+
+        Returns:
+            False if rows or contacts did not fit: then nothing has happened, but for longer arrays.
+        """
+        if self.detection is None:
+            self._launch.replace(self._index[_SUBSTEPS], substeps)
+            self._launch()
+            return self._fits()
+        for substep in range(max(1, substeps)):
+            if not self.detection.run():
+                return False
+            self._launch.replace(self._index[_SUBSTEPS], min(1, substeps))
+            self._launch.replace(self._index[_BEGINS], int(substep == 0))
+            self._launch.replace(self._index[_ENDS], int(substep >= substeps - 1))
+            self._launch()
+            if self._fault[0]:
+                return self._fits()
+        return True
+
+    def _fits(self) -> bool:
+        if self._fault[0] == OVERFLOW:
+            self._touch.grow_couplings()
+            return False
+        return True
+
+
+def argument_indices(kernel: Any) -> dict[str, int]:
+    """Place of each argument of a kernel, by name."""
+    return {argument.label: index for index, argument in enumerate(kernel.adj.args)}
+
+
+def launch(kernel: Any, structs: dict[str, Any], device: str, **scalars: int) -> Launch:
+    """A launch of a kernel whose arguments are found by their names."""
+    values = {**structs, **scalars}
+    return Launch(kernel, 1, [values[name] for name in argument_indices(kernel)], device)
