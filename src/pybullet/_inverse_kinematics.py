@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, overload
@@ -29,6 +30,7 @@ _CURRENT_POSITIONS = (
     "calculateInverseKinematics the size of input current positions needs to be equal to the number of "
     "degrees of freedom."
 )
+_LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
 _DEFAULT_ITERATIONS = 20
 _DEFAULT_THRESHOLD = 1e-4
@@ -152,10 +154,8 @@ def calculateInverseKinematics(
     )
     _check_link(body, link)
 
-    from carom.algorithms import inverse_kinematics
-
     with client.lock:
-        found = inverse_kinematics(
+        found = _algorithm()(
             body, (link,), (position,), None if orientation is None else (orientation,), **options
         )
     return _result(body, found)
@@ -228,10 +228,16 @@ def calculateInverseKinematics2(
     for link in links:
         _check_link(body, link)
 
+    with client.lock:
+        return _result(body, _algorithm()(body, links, positions, **options))
+
+
+@cache
+def _algorithm() -> Callable[..., list[float]]:
+    """Imported when it is first needed: it brings Warp along."""
     from carom.algorithms import inverse_kinematics
 
-    with client.lock:
-        return _result(body, inverse_kinematics(body, links, positions, **options))
+    return inverse_kinematics
 
 
 def _orientation(values: Any) -> tuple[float, float, float, float] | None:
@@ -267,12 +273,12 @@ def _options(
         "iterations": most if most > 0 else _DEFAULT_ITERATIONS,
         "threshold": close if close >= 0.0 else _DEFAULT_THRESHOLD,
     }
-    names = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
-    lower, upper, ranges, rest = (
-        _for_each_freedom(values, name, freedoms) for values, name in zip(limits, names, strict=True)
-    )
-    if lower is not None and upper is not None:
-        options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
+    if any(values is not None for values in limits):
+        lower, upper, ranges, rest = (
+            _for_each_freedom(values, name, freedoms) for values, name in zip(limits, _LIMITS, strict=True)
+        )
+        if lower is not None and upper is not None:
+            options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
     if damping is not None:
         values = numbers(damping, _PROBLEM, "jointDamping")
         if len(values) >= freedoms:

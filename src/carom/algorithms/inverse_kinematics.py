@@ -134,8 +134,8 @@ class _Solver:
         arrays = search.numpy
         self._positions = arrays["end_given_position"][: len(links)]
         self._rotations = arrays["end_given_rotation"][: len(links)]
-        self._base = memoryview(arrays["base_pose"])[:BASE_POSITIONS]
-        self._start = memoryview(arrays["coordinate_start"])[: self._coordinates]
+        self._base = arrays["base_pose"].data[:BASE_POSITIONS]
+        self._start = arrays["coordinate_start"].data[: self._coordinates]
         self._best = arrays["coordinate_best"][: self._coordinates]
         self._damping, self._lower, self._upper, self._ranges, self._rest = (
             arrays[f"dof_{name}"][: self._dofs] for name in ("damping", "lower", "upper", "range", "rest")
