@@ -13,6 +13,8 @@ from pybullet._algebra import *
 from pybullet._bodies import *
 from pybullet._camera import *
 from pybullet._camera_maths import *
+from pybullet._collision_filters import *
+from pybullet._collision_shapes import *
 from pybullet._connection import *
 from pybullet._constants import *
 from pybullet._constraints import *
@@ -29,5 +31,8 @@ from pybullet._loading import *
 from pybullet._maths import *
 from pybullet._motors import *
 from pybullet._motors_multi_dof import *
+from pybullet._multi_body import *
+from pybullet._shape_data import *
 from pybullet._textures import *
 from pybullet._unavailable import *
+from pybullet._visual_shapes import *

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import integer
 from pybullet._errors import fail
+from pybullet._shape_registry import ShapeRegistry
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,6 +34,7 @@ class Client:
         real_time: `useRealTimeSimulation` as the script set it.
         report_analytics: `stepSimulation` returns the statistics of the solver.
         search_path: Directory that is searched for files besides the usual ones.
+        shapes: Shapes the script has created.
         window: What the script sees of a graphical interface.
         clock: Steps the world by the wall clock while that is asked for.
         lock: Held during a step and while bodies come, go or change shape. Getters and setters of the
@@ -47,6 +49,7 @@ class Client:
         "real_time",
         "report_analytics",
         "search_path",
+        "shapes",
         "time_step",
         "window",
         "world",
@@ -61,6 +64,7 @@ class Client:
         self.real_time = 0
         self.report_analytics = False
         self.search_path: Path | None = None
+        self.shapes = ShapeRegistry()
         self.clock: RealTimeClock | None = None
         self.lock = RLock()
         bodies.client = self

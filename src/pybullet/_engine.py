@@ -10,6 +10,7 @@ from pybullet._builtin import exported
 from pybullet._clients import Client, client_of, clients
 from pybullet._constants import GUI, GUI_MAIN_THREAD, GUI_SERVER
 from pybullet._errors import fail
+from pybullet._shape_registry import ShapeRegistry
 
 __all__ = [
     "getPhysicsEngineParameters",
@@ -70,6 +71,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
     with client.lock:
         client.bodies.clear()
         client.world.reset()
+        client.shapes = ShapeRegistry()
         client.report_analytics = False
         client.window.remove_drawings()
 

@@ -18,6 +18,7 @@ from pybullet._constants import JOINT_PRISMATIC, JOINT_REVOLUTE
 
 if TYPE_CHECKING:
     from carom.body import Body
+    from carom.model.body_spec import LinkSpec
 
 JointInfo = tuple[
     int,
@@ -65,15 +66,18 @@ def joint_info(body: Body, index: int) -> JointInfo:
         float(link.effort),
         float(link.velocity),
         link.name.encode() or _NOT_AVAILABLE,
-        _axis_in_inertial_frame(link.joint_axis, link.inertial_frame) if has_motor else (0.0, 0.0, 0.0),
+        _axis_in_inertial_frame(link) if has_motor else (0.0, 0.0, 0.0),
         in_parent.position,
         _rotation_from_parent(in_parent, link.inertial_frame),
         link.parent,
     )
 
 
-def _axis_in_inertial_frame(axis: Vector3, inertial_frame: Pose) -> Vector3:
-    return rotate(conjugate(inertial_frame.orientation), axis)
+def _axis_in_inertial_frame(link: LinkSpec) -> Vector3:
+    """The axis of a link's joint, as long as it was stated."""
+    x, y, z = rotate(conjugate(link.inertial_frame.orientation), link.joint_axis)
+    length = link.joint_axis_length
+    return (x * length, y * length, z * length)
 
 
 def _rotation_from_parent(joint_frame: Pose, inertial_frame: Pose) -> Quaternion:

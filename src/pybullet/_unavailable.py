@@ -16,25 +16,16 @@ from pybullet._errors import fail
 
 __all__ = [
     "addUserData",
-    "createCollisionShape",
-    "createCollisionShapeArray",
-    "createMultiBody",
     "createSoftBodyAnchor",
-    "createVisualShape",
-    "createVisualShapeArray",
     "executePluginCommand",
-    "getAABB",
     "getClosestPoints",
-    "getCollisionShapeData",
     "getContactPoints",
-    "getMeshData",
     "getNumUserData",
     "getOverlappingObjects",
     "getTetraMeshData",
     "getUserData",
     "getUserDataId",
     "getUserDataInfo",
-    "getVisualShapeData",
     "loadBullet",
     "loadMJCF",
     "loadPlugin",
@@ -43,7 +34,6 @@ __all__ = [
     "performCollisionDetection",
     "rayTest",
     "rayTestBatch",
-    "removeCollisionShape",
     "removeState",
     "removeUserData",
     "renderImage",
@@ -52,8 +42,6 @@ __all__ = [
     "saveBullet",
     "saveState",
     "saveWorld",
-    "setCollisionFilterGroupMask",
-    "setCollisionFilterPair",
     "startStateLogging",
     "stopStateLogging",
     "submitProfileTiming",
@@ -135,48 +123,7 @@ startStateLogging = _later(
     "linkIndexA=-2, linkIndexB=-2, deviceTypeFilter=-1, logFlags=-1, physicsClientId=0",
 )
 stopStateLogging = _later("stopStateLogging", "loggingId, physicsClientId=0")
-getAABB = _later("getAABB", "bodyUniqueId, linkIndex=-1, physicsClientId=0")
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
-createCollisionShape = _later(
-    "createCollisionShape",
-    "shapeType, radius=0.5, halfExtents=None, height=1, fileName=None, meshScale=None, "
-    "planeNormal=None, flags=0, collisionFramePosition=None, collisionFrameOrientation=None, "
-    "vertices=None, indices=None, heightfieldTextureScaling=1, heightfieldData=None, "
-    "numHeightfieldRows=-1, numHeightfieldColumns=-1, replaceHeightfieldIndex=-1, physicsClientId=0",
-)
-createCollisionShapeArray = _later(
-    "createCollisionShapeArray",
-    "shapeTypes, radii=None, halfExtents=None, lengths=None, fileNames=None, meshScales=None, "
-    "planeNormals=None, flags=None, collisionFramePositions=None, collisionFrameOrientations=None, "
-    "physicsClientId=0",
-)
-removeCollisionShape = _later("removeCollisionShape", "collisionShapeId, physicsClientId=0")
-createVisualShape = _later(
-    "createVisualShape",
-    "shapeType, radius=0.5, halfExtents=None, length=1, fileName=None, meshScale=None, "
-    "planeNormal=None, flags=0, rgbaColor=None, specularColor=None, visualFramePosition=None, "
-    "visualFrameOrientation=None, vertices=None, indices=None, normals=None, uvs=None, "
-    "physicsClientId=0",
-)
-createVisualShapeArray = _later(
-    "createVisualShapeArray",
-    "shapeTypes, radii=None, halfExtents=None, lengths=None, fileNames=None, meshScales=None, "
-    "planeNormals=None, flags=None, rgbaColors=None, visualFramePositions=None, "
-    "visualFrameOrientations=None, physicsClientId=0",
-)
-createMultiBody = _later(
-    "createMultiBody",
-    "baseMass=0, baseCollisionShapeIndex=-1, baseVisualShapeIndex=-1, basePosition=None, "
-    "baseOrientation=None, baseInertialFramePosition=None, baseInertialFrameOrientation=None, "
-    "linkMasses=None, linkCollisionShapeIndices=None, linkVisualShapeIndices=None, linkPositions=None, "
-    "linkOrientations=None, linkInertialFramePositions=None, linkInertialFrameOrientations=None, "
-    "linkParentIndices=None, linkJointTypes=None, linkJointAxis=None, useMaximalCoordinates=0, "
-    "flags=-1, batchPositions=None, physicsClientId=0",
-)
-getMeshData = _later(
-    "getMeshData",
-    "bodyUniqueId, linkIndex=-1, collisionShapeIndex=-1, flags=-1, physicsClientId=0",
-)
 getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
 resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")
 vhacd = _later(
@@ -184,14 +131,6 @@ vhacd = _later(
     "fileNameIn, fileNameOut, fileNameLogging, concavity=-1, alpha=-1, beta=-1, gamma=-1, "
     "minVolumePerCH=-1, resolution=-1, maxNumVerticesPerCH=-1, depth=-1, planeDownsampling=-1, "
     "convexhullDownsampling=-1, pca=-1, mode=-1, convexhullApproximation=-1, physicsClientId=0",
-)
-setCollisionFilterPair = _later(
-    "setCollisionFilterPair",
-    "bodyUniqueIdA, bodyUniqueIdB, linkIndexA, linkIndexB, enableCollision, physicsClientId=0",
-)
-setCollisionFilterGroupMask = _later(
-    "setCollisionFilterGroupMask",
-    "bodyUniqueId, linkIndexA, collisionFilterGroup, collisionFilterMask, physicsClientId=0",
 )
 getContactPoints = _later(
     "getContactPoints",
@@ -214,8 +153,6 @@ rayTestBatch = _later(
     "reportHitNumber=-1, collisionFilterMask=-1, fractionEpsilon=-1, physicsClientId=0",
 )
 renderImage = _later("renderImage", "*arguments")
-getVisualShapeData = _later("getVisualShapeData", "objectUniqueId, flags=0, physicsClientId=0")
-getCollisionShapeData = _later("getCollisionShapeData", "objectUniqueId, linkIndex, physicsClientId=0")
 addUserData = _later(
     "addUserData",
     "bodyUniqueId, key, value, linkIndex=-1, visualShapeIndex=-1, physicsClientId=0",

@@ -1,0 +1,95 @@
+"""Which bodies and links collide."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pybullet._arguments import integer
+from pybullet._builtin import exported
+from pybullet._clients import Client, client_of
+from pybullet._errors import logger
+from pybullet._lookup import no_body, no_joint
+
+__all__ = ["setCollisionFilterGroupMask", "setCollisionFilterPair"]
+
+_BASE = -1
+
+
+@exported
+def setCollisionFilterPair(
+    bodyUniqueIdA: int,
+    bodyUniqueIdB: int,
+    linkIndexA: int,
+    linkIndexB: int,
+    enableCollision: int,
+    physicsClientId: int = 0,
+) -> None:
+    """Lets two links collide or keeps them from it, whatever their groups and masks say.
+
+    No such body or link is no error. Removing one of the bodies ends the rule.
+
+    Args:
+        bodyUniqueIdA: A body.
+        bodyUniqueIdB: Another body, or the same.
+        linkIndexA: Link of the first, from 0; -1 for the base.
+        linkIndexB: Link of the second.
+        enableCollision: 1: they collide; 0: they do not.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    enabled = integer(enableCollision, "enableCollision") != 0
+    row_a = _row(client, bodyUniqueIdA, linkIndexA, "setCollisionFilterPair")
+    row_b = _row(client, bodyUniqueIdB, linkIndexB, "setCollisionFilterPair")
+    if row_a is None or row_b is None:
+        return
+    with client.lock:
+        client.world.touch.shapes.filters.set(row_a, row_b, enabled=enabled)
+        client.world.constraints_changed()
+
+
+@exported
+def setCollisionFilterGroupMask(
+    bodyUniqueId: int,
+    linkIndexA: int,
+    collisionFilterGroup: int,
+    collisionFilterMask: int,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets the groups a link is in and the groups it collides with, as bits.
+
+    Two links collide when each is in a group of the other's mask; see `collisionFilterMode` of
+    `setPhysicsEngineParameter`. At first what moves has group 1 and mask -1, a fixed base group 2 and a
+    mask of all groups but 2. No such body or link is no error.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndexA: The link, from 0; -1 for the base.
+        collisionFilterGroup: Its groups.
+        collisionFilterMask: Groups it collides with.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    group = integer(collisionFilterGroup, "collisionFilterGroup")
+    mask = integer(collisionFilterMask, "collisionFilterMask")
+    row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
+    if row is not None:
+        client.world.touch.shapes.set_group_and_mask(row, group, mask)
+
+
+def _row(client: Client, body_id: Any, link_index: Any, function: str) -> int | None:
+    """Row of a link; None, with a warning, if it does not exist."""
+    number, link = integer(body_id, "bodyUniqueId"), integer(link_index, "linkIndex")
+    body = client.world.bodies.get(number)
+    if body is None:
+        logger.warning("%s: %s", function, no_body(number))
+        return None
+    if not _BASE <= link < body.joint_count:
+        logger.warning("%s: %s", function, no_joint(body, link))
+        return None
+    return body.first_link + 1 + link

@@ -1,0 +1,251 @@
+"""Visual shapes made by scripts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
+from pybullet._arguments import Vector, integer, sequence, text, vector3, vector4
+from pybullet._builtin import exported
+from pybullet._clients import Client, client_of
+from pybullet._constants import GEOM_MESH
+from pybullet._errors import error, fail, logger
+from pybullet._shape_arguments import (
+    PRIMITIVES,
+    Column,
+    each_shape,
+    find_file,
+    frame,
+    points,
+    primitive,
+    scale_of,
+    triangles,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["createVisualShape", "createVisualShapeArray"]
+
+_FAILED = "createVisualShape failed."
+_ARRAY_FAILED = "createVisualShapeArray failed."
+
+_WHITE = (1.0, 1.0, 1.0, 1.0)
+_HIGHLIGHT = (1.0, 1.0, 1.0)
+
+
+@exported
+def createVisualShape(
+    shapeType: int,
+    radius: float = 0.5,
+    halfExtents: Vector | None = None,
+    length: float = 1,
+    fileName: str | None = None,
+    meshScale: Vector | None = None,
+    planeNormal: Vector | None = None,
+    flags: int = 0,
+    rgbaColor: Vector | None = None,
+    specularColor: Vector | None = None,
+    visualFramePosition: Vector | None = None,
+    visualFrameOrientation: Vector | None = None,
+    vertices: Any = None,
+    indices: Any = None,
+    normals: Any = None,
+    uvs: Any = None,
+    physicsClientId: int = 0,
+) -> int:
+    """Makes a visual shape, from which `createMultiBody` makes what is seen of bodies.
+
+    Args:
+        shapeType: `GEOM_SPHERE`, `GEOM_BOX`, `GEOM_CAPSULE`, `GEOM_CYLINDER`, `GEOM_PLANE` or `GEOM_MESH`.
+            Cylinders and capsules lie along z.
+        radius: Of a sphere, capsule or cylinder [m].
+        halfExtents: Half the size of a box along x, y and z [m]; boxes need it.
+        length: Of a cylinder, or of the part of a capsule between its two half balls [m].
+        fileName: OBJ, STL or DAE file of a mesh. One that is missing or cannot be used logs a warning, and
+            nothing is seen.
+        meshScale: Factor on a mesh along x, y and z.
+        planeNormal: Direction out of the plane; z if not given.
+        flags: Nothing here.
+        rgbaColor: Red, green, blue and opacity from 0 to 1; white if not given.
+        specularColor: Red, green and blue of its highlights.
+        visualFramePosition: Origin of the shape in the link frame [m].
+        visualFrameOrientation: Orientation of the shape in the link frame (x, y, z, w).
+        vertices: Points of a mesh, three numbers each, instead of a file; with `indices`.
+        indices: Three vertices for each triangle, one after the other.
+        normals: Direction of the surface at each vertex.
+        uvs: Texture coordinates of each vertex, two numbers each.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the shape; visual and collision shapes are counted apart.
+
+    Raises:
+        pybullet.error: Not connected, an unknown type, or a size that is missing, negative or not finite.
+    """
+    client = client_of(physicsClientId)
+    kind = integer(shapeType, "shapeType")
+    integer(flags, "flags")
+    pose = frame(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
+    material = Material(
+        rgba=_WHITE if rgbaColor is None else vector4(rgbaColor, _FAILED, "rgbaColor"),
+        specular=_HIGHLIGHT if specularColor is None else vector3(specularColor, _FAILED, "specularColor"),
+    )
+    if kind in PRIMITIVES:
+        geometry = primitive(
+            kind,
+            _FAILED,
+            radius=radius,
+            length=length,
+            half_extents=halfExtents,
+            normal=planeNormal,
+            length_name="length",
+        )
+    elif kind == GEOM_MESH and vertices is not None and indices is not None:
+        geometry = _mesh_from_data(vertices, indices, normals, uvs, scale_of(meshScale, _FAILED))
+    elif kind == GEOM_MESH and fileName is not None:
+        geometry = _mesh_from_file(client, text(fileName, "fileName"), meshScale, _FAILED)
+    elif kind == GEOM_MESH:
+        fail(_FAILED, "A mesh needs fileName, or vertices and indices.")
+    else:
+        fail(_FAILED, f"There is no type of visual shape {kind}.")
+    return client.shapes.visuals.add((Visual(geometry, pose, material=material),))
+
+
+@exported
+def createVisualShapeArray(
+    shapeTypes: Sequence[int],
+    radii: Any = None,
+    halfExtents: Any = None,
+    lengths: Any = None,
+    fileNames: Any = None,
+    meshScales: Any = None,
+    planeNormals: Any = None,
+    flags: Any = None,
+    rgbaColors: Any = None,
+    visualFramePositions: Any = None,
+    visualFrameOrientations: Any = None,
+    physicsClientId: int = 0,
+) -> int:
+    """Makes one visual shape of several parts.
+
+    The lists hold a value for each part, whether its type needs it or not. Parts that cannot be made are
+    left out, with a warning.
+
+    Args:
+        shapeTypes: `GEOM_*` of each part.
+        radii: As `radius` of `createVisualShape`.
+        halfExtents: As `halfExtents`; 1 m if not given.
+        lengths: As `length`.
+        fileNames: As `fileName`.
+        meshScales: As `meshScale`.
+        planeNormals: As `planeNormal`.
+        flags: Nothing here.
+        rgbaColors: As `rgbaColor`.
+        visualFramePositions: As `visualFramePosition`.
+        visualFrameOrientations: As `visualFrameOrientation`.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the shape.
+
+    Raises:
+        pybullet.error: Not connected, an argument is not a sequence, or no part can be made.
+    """
+    client = client_of(physicsClientId)
+    kinds = [
+        integer(kind, "shapeTypes")
+        for kind in sequence(shapeTypes, "expected a sequence of shape types", "shapeTypes")
+    ]
+    radius = Column(radii, "radii", "expected a sequence of radii")
+    extents = Column(halfExtents, "halfExtents", "expected a sequence of half extents")
+    length = Column(lengths, "lengths", "expected a sequence of lengths")
+    file = Column(fileNames, "fileNames", "expected a sequence of filename")
+    scale = Column(meshScales, "meshScales", "expected a sequence of mesh scale")
+    normal = Column(planeNormals, "planeNormals", "expected a sequence of plane normal")
+    bits = Column(flags, "flags", "expected a sequence of flags")
+    colour = Column(rgbaColors, "rgbaColors", "expected a sequence of rgba color")
+    position = Column(
+        visualFramePositions, "visualFramePositions", "expected a sequence of visual frame positions"
+    )
+    orientation = Column(
+        visualFrameOrientations, "visualFrameOrientations", "expected a sequence of visual frame orientations"
+    )
+
+    def part(index: int, kind: int) -> Visual:
+        pose = frame(position.item(index), orientation.item(index), _ARRAY_FAILED, "visualFrame")
+        integer(bits.item(index, 0), "flags")
+        rgba = colour.item(index)
+        material = None if rgba is None else Material(rgba=vector4(rgba, _ARRAY_FAILED, "rgbaColors"))
+        if kind in PRIMITIVES:
+            geometry = primitive(
+                kind,
+                _ARRAY_FAILED,
+                radius=radius.item(index, 0.0),
+                length=length.item(index, 0.0),
+                half_extents=extents.item(index, (1.0, 1.0, 1.0)),
+                normal=normal.item(index),
+                length_name="lengths",
+            )
+        elif kind == GEOM_MESH and file.item(index) is not None:
+            name = text(file.item(index), "fileNames")
+            geometry = _mesh_from_file(client, name, scale.item(index), _ARRAY_FAILED)
+        else:
+            fail(_ARRAY_FAILED, f"type {kind} cannot be made here.")
+        return Visual(geometry, pose, material=material)
+
+    parts = each_shape(
+        kinds, _ARRAY_FAILED, part, lambda reason: logger.warning("createVisualShapeArray: %s", reason)
+    )
+    return client.shapes.visuals.add(tuple(parts))
+
+
+def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
+    """A mesh file. One that cannot be used stops nobody, as in PyBullet: nothing is seen then."""
+    from carom.errors import DescriptionError
+    from carom.formats.mesh import read_mesh
+
+    scale = scale_of(mesh_scale, problem)
+    try:
+        mesh = Mesh(find_file(client, name, problem), scale, asked_for=name)
+        read_mesh(mesh.path)
+    except (error, DescriptionError) as reason:
+        logger.warning("%s", reason)
+        return _nothing()
+    return mesh
+
+
+def _nothing() -> TriangleMesh:
+    import numpy as np
+
+    return TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
+
+
+def _mesh_from_data(
+    vertices: Any, indices: Any, normals: Any, uvs: Any, scale: tuple[float, float, float]
+) -> Geometry:
+    positions = points(vertices, _FAILED, "vertices")
+    corners = triangles(indices, len(positions), _FAILED)
+    if not len(corners):
+        fail(_FAILED, "There are no triangles.")
+    return TriangleMesh(
+        positions * scale,
+        corners,
+        scale=scale,
+        normals=_per_vertex(normals, len(positions), "normals", 3),
+        uvs=_per_vertex(uvs, len(positions), "uvs", 2),
+    )
+
+
+def _per_vertex(values: Any, count: int, name: str, columns: int) -> NDArray[np.float64] | None:
+    if values is None:
+        return None
+    rows = points(values, _FAILED, name, columns)
+    if not len(rows):
+        return None
+    if len(rows) != count:
+        fail(_FAILED, f"{name} has {len(rows)} items for {count} vertices.")
+    return rows
