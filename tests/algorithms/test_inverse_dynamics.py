@@ -139,7 +139,9 @@ def test_a_fixed_base_can_be_taken_to_be_turned_otherwise():
     one, other = turned.load(spec, orientation=turn), level.load(spec)
     rest = np.zeros(sum(one.velocity_count))
     position = coordinates(one)[0][7:]
-    as_if_level = inverse_dynamics(one, position, rest, rest, base_orientation=coordinates(other)[0][3:7])
+    as_if_level = inverse_dynamics(
+        one, position, rest, rest, base_orientation=coordinates(other)[0][3:7].tolist()
+    )
     assert_allclose(as_if_level, inverse_dynamics(other, position, rest, rest), rtol=0, atol=1e-12)
     assert np.abs(as_if_level - inverse_dynamics(one, position, rest, rest)).max() > 0.01
 
