@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import warp as wp
 
 from carom.collision.capacity import scratch_capacity
+from carom.collision.closest import closest_points_kernel, place_shapes_kernel
 from carom.collision.collide import collide_kernel
 from carom.model.arrays import ArrayTable
 from carom.model.codes import ShapeKind
 from carom.model.contact_structs import Contacts, Pairs, Shapes
+from carom.model.real import NUMPY_REAL, Vector8
 from carom.model.structs import Model, Settings, State
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
@@ -135,9 +138,12 @@ class Scene:
         """Move a shape."""
         self.numpy("state")["link_pose"][0, row] = (*position, *orientation)
 
+    def structs(self) -> dict[str, Any]:
+        return {name: table.struct("cpu") for name, table in self.tables.items()}
+
     def collide(self) -> None:
         """Run collision detection."""
-        structs = {name: table.struct("cpu") for name, table in self.tables.items()}
+        structs = self.structs()
         wp.launch(
             collide_kernel,
             dim=1,
@@ -146,6 +152,23 @@ class Scene:
                 *(structs[name] for name in ("shapes", "model", "state", "contacts", "pairs")),
             ],
         )
+
+    def closest(self, pairs: Sequence[tuple[int, int]], reach: float = 1e6) -> np.ndarray:
+        """Nearest points: (n, 8) point on b, normal on b, distance, 1 if within reach."""
+        structs = self.structs()
+        wp.launch(
+            place_shapes_kernel,
+            dim=1,
+            inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
+        )
+        found = wp.zeros((1, len(pairs)), dtype=Vector8)
+        first, second = (wp.array([pair[side] for pair in pairs], dtype=wp.int32) for side in range(2))
+        wp.launch(
+            closest_points_kernel,
+            dim=1,
+            inputs=[structs["shapes"], structs["pairs"], first, second, NUMPY_REAL(reach), found],
+        )
+        return found.numpy()[0]
 
     @property
     def pairs(self) -> list[tuple[int, int]]:

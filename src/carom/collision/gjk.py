@@ -135,7 +135,8 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
         reach: The search ends where the distance is found to be more than this.
 
     Returns:
-        The distance, 0 where they overlap, and the point on each. If the distance is more than `reach` it
+        The distance, and the point on each. Where they overlap the distance is 0 and the points are one
+        of a's. If the distance is more than `reach` it
         is a lower bound and the points mean nothing.
     """
     differences = Matrix43()
@@ -168,6 +169,8 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
                 points[count, axis] = on_a[axis]
             count += 1
             weights = nearest_weights(differences, count)
+            if count == 4 and wp.min(weights) > 0.0:
+                return real(0.0), on_a, on_a
             nearest = weighted(differences, weights)
             distance = wp.length(nearest)
             if least >= 0.0 and distance >= least:
@@ -184,7 +187,7 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
                             differences[kept, axis] = differences[i, axis]
                             points[kept, axis] = points[i, axis]
                         kept += 1
-                if kept == 4 or distance <= TOUCHING:
+                if distance <= TOUCHING:
                     return real(0.0), point_a, point_a
                 count = kept
     return least, point_a, point_a - v

@@ -28,6 +28,8 @@ from carom.model.real import (
 MOST_CORNERS = 64
 # A face this near to the boundary is on it [m].
 PRECISION = real(1.0e-9)
+# A face whose plane a new corner is this much above cannot stay [m]; less than the above.
+VISIBLE = real(1.0e-10)
 # A set of differences thinner than this has no inside [m].
 THIN = real(1.0e-10)
 # Distance of faces without area, which are never the nearest.
@@ -260,7 +262,7 @@ def overlap(
             kept = Int32(0)
             for face in range(face_count):
                 corners = faces[world, face]
-                if plane_height(planes[world, face], w) > 0.0:
+                if plane_height(planes[world, face], w) > VISIBLE:
                     edge_count = add_hole_edge(edges, world, edge_count, corners[0], corners[1])
                     edge_count = add_hole_edge(edges, world, edge_count, corners[1], corners[2])
                     edge_count = add_hole_edge(edges, world, edge_count, corners[2], corners[0])
