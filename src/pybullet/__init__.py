@@ -18,6 +18,7 @@ from pybullet._collision_shapes import *
 from pybullet._connection import *
 from pybullet._constants import *
 from pybullet._constraints import *
+from pybullet._contacts import *
 from pybullet._debug_drawing import *
 from pybullet._dynamics import *
 from pybullet._engine import *
@@ -35,4 +36,5 @@ from pybullet._multi_body import *
 from pybullet._shape_data import *
 from pybullet._textures import *
 from pybullet._unavailable import *
+from pybullet._vhacd import *
 from pybullet._visual_shapes import *

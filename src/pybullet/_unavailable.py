@@ -19,7 +19,6 @@ __all__ = [
     "createSoftBodyAnchor",
     "executePluginCommand",
     "getClosestPoints",
-    "getContactPoints",
     "getNumUserData",
     "getOverlappingObjects",
     "getTetraMeshData",
@@ -31,7 +30,6 @@ __all__ = [
     "loadPlugin",
     "loadSDF",
     "loadSoftBody",
-    "performCollisionDetection",
     "rayTest",
     "rayTestBatch",
     "removeState",
@@ -48,7 +46,6 @@ __all__ = [
     "syncUserData",
     "unloadPlugin",
     "unsupportedChangeScaling",
-    "vhacd",
 ]
 
 
@@ -94,7 +91,6 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
 
 
 syncUserData = _later("syncUserData", "bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None")
-performCollisionDetection = _later("performCollisionDetection", "physicsClientId=0")
 submitProfileTiming = _later("submitProfileTiming", "eventName=None, physicsClientId=0")
 loadSDF = _later("loadSDF", "sdfFileName, useMaximalCoordinates=-1, globalScaling=-1, physicsClientId=0")
 loadMJCF = _later("loadMJCF", "mjcfFileName, flags=-1, useMultiBody=-1, physicsClientId=0")
@@ -126,16 +122,6 @@ stopStateLogging = _later("stopStateLogging", "loggingId, physicsClientId=0")
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
 getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
 resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")
-vhacd = _later(
-    "vhacd",
-    "fileNameIn, fileNameOut, fileNameLogging, concavity=-1, alpha=-1, beta=-1, gamma=-1, "
-    "minVolumePerCH=-1, resolution=-1, maxNumVerticesPerCH=-1, depth=-1, planeDownsampling=-1, "
-    "convexhullDownsampling=-1, pca=-1, mode=-1, convexhullApproximation=-1, physicsClientId=0",
-)
-getContactPoints = _later(
-    "getContactPoints",
-    "bodyA=-1, bodyB=-1, linkIndexA=-2, linkIndexB=-2, physicsClientId=0",
-)
 getClosestPoints = _later(
     "getClosestPoints",
     "bodyA, bodyB, distance, linkIndexA=-2, linkIndexB=-2, collisionShapeA=-1, collisionShapeB=-1, "
