@@ -1,0 +1,61 @@
+"""Solids cut into pieces that are nearly convex, by the library CoACD."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import CaromError
+
+
+@dataclass(frozen=True, slots=True)
+class DecompositionOptions:
+    """How finely a solid is cut.
+
+    Attributes:
+        threshold: Concavity that may be left in a piece, from 0.01 (fine) to 1 (coarse).
+        grid: Cells along the longest side with which a mesh that is no closed surface is made one.
+        most_vertices: Of each piece.
+        align: Turn the solid into its principal axes before cutting.
+    """
+
+    threshold: float = 0.05
+    grid: int = 50
+    most_vertices: int = 64
+    align: bool = False
+
+
+def decompose(
+    vertices: NDArray[np.float64], triangles: NDArray[np.int32], options: DecompositionOptions
+) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
+    """Cuts a solid into convex pieces.
+
+    Args:
+        vertices: (n, 3) positions.
+        triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
+        options: How finely.
+
+    Returns:
+        Vertices and triangles of each piece.
+
+    Raises:
+        CaromError: CoACD is not installed.
+    """
+    try:
+        import coacd
+    except ImportError:
+        raise CaromError(
+            "this needs the library CoACD; install it with: pip install carom[decompose]"
+        ) from None
+    coacd.set_log_level("error")
+    pieces = coacd.run_coacd(
+        coacd.Mesh(vertices, triangles),
+        threshold=options.threshold,
+        preprocess_resolution=options.grid,
+        pca=options.align,
+        decimate=True,
+        max_ch_vertex=options.most_vertices,
+    )
+    return [(np.asarray(points, np.float64), np.asarray(corners, np.int32)) for points, corners in pieces]
