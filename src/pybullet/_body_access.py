@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import Quaternion, Vector3
 from pybullet._joint_access import JointAccess, joint_access
+from pybullet._joint_groups import JointGroups
 from pybullet._joint_info import JointInfo, joint_info
 from pybullet._link_access import LinkAccess
 from pybullet._rotations import canonical
@@ -26,6 +27,7 @@ class BodyAccess:
     Attributes:
         body: The body itself.
         joints: Access to its joints, by index.
+        groups: Access to several of its joints, by their indices.
     """
 
     def __init__(self, client: Client, body: Body) -> None:
@@ -38,6 +40,7 @@ class BodyAccess:
         self.joints: dict[int, JointAccess] = {
             index: joint_access(client, body, index) for index in range(body.joint_count)
         }
+        self.groups = JointGroups(client, self.joints)
 
     @cached_property
     def links(self) -> dict[int, LinkAccess]:

@@ -43,9 +43,9 @@ JointState = tuple[float, float, Wrench, float]
 MultiDofState = tuple[tuple[float, ...], tuple[float, ...], Wrench, tuple[float, ...]]
 
 ILLEGAL_MODE = "Illegal control mode."
+NO_WRENCH = (0.0,) * 6
 _DOUBLE = 8
 _MOTOR_COLUMNS = 8
-_NO_WRENCH = (0.0,) * 6
 _MOTOR_ROW = _MOTOR_COLUMNS * _DOUBLE
 _WRENCH_ROW = 6 * _DOUBLE
 # The greatest force of a motor that was given a target but no force [N or N m].
@@ -65,7 +65,7 @@ assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD, MOTOR_MAX_IMPULSE, M
     4,
     5,
 )
-_write_target = Struct("5d").pack_into
+write_target = Struct("5d").pack_into
 _write_target_and_clamp = Struct("6d").pack_into
 _read_wrench = Struct("6d").unpack_from
 
@@ -138,7 +138,7 @@ class JointAccess:
             fail(ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
 
     def _reaction(self) -> Wrench:
-        return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else _NO_WRENCH
+        return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH
 
     def add_torques(self, torques: Sequence[float]) -> None:
         """Adds to the torques of the next step; ignored unless there is one for each freedom."""
@@ -192,7 +192,7 @@ class AxisJoint(JointAccess):
         return (
             self.positions[self.q],
             self.velocities[u],
-            _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else _NO_WRENCH,
+            _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH,
             self.impulses[u] / self.client.time_step,
         )
 
@@ -207,7 +207,7 @@ class AxisJoint(JointAccess):
             if not self.lower <= position <= self.upper:
                 position = self._within_limits(position)
             impulse = float(force) * self.client.time_step
-            _write_target(self.motors, self.row_at, position, velocity, kp, kd, impulse)
+            write_target(self.motors, self.row_at, position, velocity, kp, kd, impulse)
             if clamp > 0.0:
                 self.motors[self.u * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
         elif mode == VELOCITY_CONTROL:
@@ -238,7 +238,7 @@ class AxisJoint(JointAccess):
         has_position, has_velocity = len(position) == 1, len(velocity) == 1
         if not (has_position or has_velocity):
             return
-        _write_target(
+        write_target(
             self.motors,
             self.row_at,
             self._within_limits(position[0] if has_position else 0.0),
@@ -271,7 +271,7 @@ class AxisJoint(JointAccess):
 
     def _drive(self, position: float, velocity: float, force: float, kp: float, kd: float) -> None:
         greatest = force if force >= _LEAST_PD_FORCE else 0.0
-        _write_target(self.pd_drives, self.row_at, self._within_limits(position), velocity, kp, kd, greatest)
+        write_target(self.pd_drives, self.row_at, self._within_limits(position), velocity, kp, kd, greatest)
 
 
 class MultiDofJoint(JointAccess):
@@ -362,7 +362,7 @@ class MultiDofJoint(JointAccess):
         motors, time_step = self.motors, self.client.time_step
         for axis in range(3):
             row = self.u + axis
-            _write_target(
+            write_target(
                 motors,
                 row * _MOTOR_ROW,
                 target[axis],

@@ -106,8 +106,8 @@ def getJointStates(
         pybullet.error: Not connected, or there is no such body or joint.
     """
     try:
-        joints = clients[physicsClientId].bodies[bodyUniqueId].joints
-        return tuple([joints[index].state() for index in jointIndices]) or None
+        group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
+        return group.states() or None
     except (KeyError, TypeError):
         requested = _requested(bodyUniqueId, jointIndices, physicsClientId)
         if not requested:

@@ -199,19 +199,15 @@ def setJointMotorControlArray(
             numbers as there are joints, or a number is not finite.
     """
     try:
-        joints = clients[physicsClientId].bodies[bodyUniqueId].joints
-        chosen = [joints[index] for index in jointIndices]
-        count = len(chosen)
+        group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
+        count = group.count
         positions = (0.0,) * count if targetPositions is None else _finite(targetPositions, count)
         velocities = (0.0,) * count if targetVelocities is None else _finite(targetVelocities, count)
         bounds = (DEFAULT_FORCE,) * count if forces is None else _finite(forces, count)
         kps = (DEFAULT_POSITION_GAIN,) * count if positionGains is None else _finite(positionGains, count)
         kds = (DEFAULT_VELOCITY_GAIN,) * count if velocityGains is None else _finite(velocityGains, count)
         if controlMode in _MODES:
-            for joint, position, velocity, force, kp, kd in zip(
-                chosen, positions, velocities, bounds, kps, kds, strict=True
-            ):
-                joint.command(controlMode, position, velocity, force, kp, kd, _NO_CLAMP)
+            group.command(controlMode, positions, velocities, bounds, kps, kds)
             return
     except (KeyError, TypeError, ValueError, AttributeError, StructError):
         pass
