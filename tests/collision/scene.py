@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,9 @@ import warp as wp
 from carom.collision.capacity import scratch_capacity
 from carom.collision.closest import closest_points_kernel, place_shapes_kernel
 from carom.collision.collide import collide_kernel
+from carom.geometry.hull import convex_hull
+from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
+from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.model.arrays import ArrayTable
 from carom.model.codes import ShapeKind
 from carom.model.contact_structs import Contacts, Pairs, Shapes
@@ -31,8 +34,9 @@ class Shape:
     orientation: Sequence[float] = IDENTITY
     margin: float = 0.0
     breaking: float = 0.02
-    vertices: np.ndarray | None = None
-    loops: list[list[int]] = field(default_factory=list)
+    polyhedron: Polyhedron | None = None
+    hierarchy: TriangleHierarchy | None = None
+    columns: int = 0
     static: bool = False
 
 
@@ -56,6 +60,37 @@ def plane(normal=(0, 0, 1), **options):
     return Shape(ShapeKind.PLANE, normal, static=True, **options)
 
 
+def hull(points, **options):
+    return Shape(ShapeKind.HULL, (0, 0, 0), polyhedron=convex_hull(np.asarray(points, dtype=float)), **options)
+
+
+def triangles(vertices, faces, **options):
+    surface = polyhedron_of_triangles(np.asarray(vertices, dtype=float), np.asarray(faces))
+    hierarchy = triangle_hierarchy(surface)
+    return Shape(
+        ShapeKind.TRIANGLES,
+        (0, 0, 0),
+        polyhedron=hierarchy.surface,
+        hierarchy=hierarchy,
+        static=True,
+        **options,
+    )
+
+
+def height_field(heights, spacing=(1.0, 1.0), **options):
+    """A height field over a grid centred at the origin; `heights` by row (y) and column (x)."""
+    heights = np.asarray(heights, dtype=float)
+    rows, columns = heights.shape
+    x = (np.arange(columns) - (columns - 1) / 2) * spacing[0]
+    y = (np.arange(rows) - (rows - 1) / 2) * spacing[1]
+    points = np.stack([*np.meshgrid(x, y), heights], axis=-1).reshape(-1, 3)
+    nothing = np.empty(0, dtype=np.int32)
+    grid = Polyhedron(points, np.empty((0, 4)), nothing, nothing.copy(), nothing.copy())
+    return Shape(
+        ShapeKind.HEIGHTFIELD, (0, 0, 0), polyhedron=grid, columns=columns, static=True, **options
+    )
+
+
 class Scene:
     """A world of shapes, each its own link and tree."""
 
@@ -75,7 +110,7 @@ class Scene:
         self.grow_scratch(count, pair_room)
         self.settings = Settings()
         self.settings.shape_count = count
-        self._used = {"vertex": 0, "face": 0, "corner": 0}
+        self._used = {"vertex": 0, "face": 0, "corner": 0, "node": 0}
         for row, shape in enumerate(shapes):
             self._write(row, shape)
 
@@ -102,37 +137,42 @@ class Scene:
         model["link_parent"][row] = -1
         model["link_dof_count"][row] = 0 if shape.static else 6
         self.place(row, shape.position, shape.orientation)
-        if shape.vertices is not None:
-            self._write_mesh(row, shape, np.asarray(shape.vertices, dtype=float))
+        if shape.polyhedron is not None:
+            self._write_polyhedron(row, shape, shape.polyhedron)
 
-    def _write_mesh(self, row: int, shape: Shape, vertices: np.ndarray) -> None:
+    def _write_polyhedron(self, row: int, shape: Shape, body: Polyhedron) -> None:
         table = self.tables["shapes"]
-        corners = sum(len(loop) for loop in shape.loops)
+        nodes = 0 if shape.hierarchy is None else 2 * shape.hierarchy.leaf_count
+        count = {
+            "vertex": len(body.vertices),
+            "face": len(body.planes),
+            "corner": len(body.corners),
+            "node": nodes,
+        }
         first = dict(self._used)
-        self._used["vertex"] += len(vertices)
-        self._used["face"] += len(shape.loops)
-        self._used["corner"] += corners
+        rows = {axis: slice(first[axis], first[axis] + count[axis]) for axis in count}
+        for axis, number in count.items():
+            self._used[axis] += number
         table.reserve(self._used)
         arrays = table.numpy
         arrays["shape_first_vertex"][row] = first["vertex"]
-        arrays["shape_vertex_count"][row] = len(vertices)
+        arrays["shape_vertex_count"][row] = count["vertex"]
         arrays["shape_first_face"][row] = first["face"]
-        arrays["shape_face_count"][row] = len(shape.loops)
-        arrays["vertex_position"][first["vertex"] : first["vertex"] + len(vertices)] = vertices
-        lower, upper = vertices.min(axis=0), vertices.max(axis=0)
+        arrays["shape_face_count"][row] = count["face"]
+        arrays["shape_columns"][row] = shape.columns
+        lower, upper = body.bounds()
         arrays["shape_center"][row] = (lower + upper) / 2
         arrays["shape_size"][row] = (upper - lower) / 2
-        corner = first["corner"]
-        for i, loop in enumerate(shape.loops):
-            face = first["face"] + i
-            a, b, c = vertices[loop[0]], vertices[loop[1]], vertices[loop[2]]
-            normal = np.cross(b - a, c - a)
-            normal /= np.linalg.norm(normal)
-            arrays["face_plane"][face] = (*normal, normal @ a)
-            arrays["face_first_corner"][face] = corner
-            arrays["face_corner_count"][face] = len(loop)
-            arrays["corner_vertex"][corner : corner + len(loop)] = first["vertex"] + np.asarray(loop)
-            corner += len(loop)
+        arrays["vertex_position"][rows["vertex"]] = body.vertices
+        arrays["face_plane"][rows["face"]] = body.planes
+        arrays["face_first_corner"][rows["face"]] = first["corner"] + body.first_corner
+        arrays["face_corner_count"][rows["face"]] = body.corner_count
+        arrays["corner_vertex"][rows["corner"]] = first["vertex"] + body.corners
+        if shape.hierarchy is not None:
+            arrays["shape_first_node"][row] = first["node"]
+            arrays["shape_leaf_count"][row] = shape.hierarchy.leaf_count
+            arrays["node_lower"][rows["node"]] = shape.hierarchy.lower
+            arrays["node_upper"][rows["node"]] = shape.hierarchy.upper
 
     def place(self, row: int, position: Sequence[float], orientation: Sequence[float] = IDENTITY) -> None:
         """Move a shape."""
