@@ -61,7 +61,7 @@ def kuka(p: Any) -> None:
 def close_by(p: Any) -> None:
     """A cube that reaches through the near plane, and a floor that reaches behind the camera."""
     p.loadURDF(str(ASSETS / "plane.urdf"))
-    p.loadURDF(str(ASSETS / "cube.urdf"), [0.55, 0.45, 0.2], p.getQuaternionFromEuler([0, 0, 0.6]))
+    p.loadURDF(str(ASSETS / "cube.urdf"), [0.5, 0.4, 0.2], p.getQuaternionFromEuler([0, 0, 0.6]))
 
 
 def painted(p: Any) -> None:

@@ -24,7 +24,7 @@ DEPTH_STEP = 1e-6
 def main() -> None:
     pybullet: Any = importlib.import_module("pybullet")
     pybullet.connect(pybullet.DIRECT)
-    arrays: dict[str, np.ndarray] = {"pybullet": np.array(version("pybullet"))}
+    arrays: dict[str, Any] = {"pybullet": np.array(version("pybullet"))}
     for scene in SCENES:
         rgba, depth, label = take_picture(pybullet, scene)
         arrays[f"{scene.name}_colour"] = rgba[:, :, :3]

@@ -46,8 +46,9 @@ def is_lit(light: View, lighting: Lighting, point: Vector4) -> bool:
         return True
     if not (x < real(light.width) and y < real(light.height)):
         return True
+    pixel = Int32(y) * light.width + Int32(x)
     nearer = (point[2] - lighting.bias_depth) / (point[3] - lighting.bias_w)
-    return light.pixel_depth[Int32(y) * light.width + Int32(x)] >= nearer
+    return light.pixel_facet[pixel] < 0 or light.pixel_depth[pixel] >= nearer
 
 
 @func
