@@ -1,5 +1,7 @@
 """What is drawn: the nearest surface of every pixel, found again by rays."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from drawing import FAR, NEAR, add_collision_only, add_shape, draw, first_hit, rays
@@ -109,7 +111,7 @@ def test_round_shapes_are_round():
 def test_surfaces_are_seen_from_outside_only_unless_they_have_two_sides():
     world = World()
     body = add_shape(world, Cylinder(2.0, 4.0))
-    inside = {"eye": (0.0, 0.0, 0.0), "target": (0.0, 1.0, 0.0)}
+    inside: dict[str, Any] = {"eye": (0.0, 0.0, 0.0), "target": (0.0, 1.0, 0.0)}
     assert np.all(draw(world, **inside).label == -1)
     appearance_of(world).change(body, -1, two_sided=True)
     assert np.all(draw(world, **inside).label == 0)
@@ -182,7 +184,7 @@ def test_images_are_the_same_bit_for_bit_whatever_the_number_of_threads(monkeypa
 def test_sizes_out_of_range_are_refused(size):
     world = World()
     with pytest.raises(ValueError, match="cannot be drawn"):
-        renderer_of(world).draw(world, np.eye(4), np.eye(4), *size, Light())
+        renderer_of(world).draw(world, np.eye(4), np.eye(4), size[0], size[1], Light())
 
 
 @pytest.mark.parametrize(
@@ -233,7 +235,7 @@ def test_the_image_after_a_step_shows_where_things_are_after_it():
     body.set_base_velocity((240.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     world.step()
     columns = np.nonzero(draw(world, focal=20.0).label == 0)[1]
-    body.set_base_pose(world.position[:3], (0.0, 0.0, 0.0, 1.0))
+    body.set_base_pose(world.position[:3].tolist(), (0.0, 0.0, 0.0, 1.0))
     assert columns.tolist() == np.nonzero(draw(world, focal=20.0).label == 0)[1].tolist()
     # The front is 4.5 m away.
     assert columns.mean() == pytest.approx(23.5 + 20.0 * world.position[0] / 4.5, abs=0.6)

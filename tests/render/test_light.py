@@ -1,5 +1,7 @@
 """Colours under the light, and shadows."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from drawing import add_shape, draw
@@ -11,7 +13,7 @@ from carom.render.projection import look_at, parallel_projection
 from carom.render.renderer import renderer_of
 from carom.world import World
 
-ABOVE = {"eye": (0.0, 0.0, 4.0), "target": (0.0, 0.0, 0.0)}
+ABOVE: dict[str, Any] = {"eye": (0.0, 0.0, 4.0), "target": (0.0, 0.0, 0.0)}
 
 
 def box_colour(light: Light, rgba=(1.0, 1.0, 1.0, 1.0)) -> list[int]:
@@ -60,7 +62,12 @@ def floor_with_box() -> World:
 @pytest.mark.parametrize(("distance", "shift"), [(3.0, 1.95), (np.inf, 1.0)])
 def test_a_box_casts_a_shadow_away_from_the_light(distance, shift):
     light = Light(direction=(-1.0, 0.0, 1.0), distance=distance, shadow=True, shade=0.0)
-    view = {"eye": (1.0, -0.01, 5.0), "target": (1.0, 0.0, 0.0), "size": (240, 240), "focal": 180.0}
+    view: dict[str, Any] = {
+        "eye": (1.0, -0.01, 5.0),
+        "target": (1.0, 0.0, 0.0),
+        "size": (240, 240),
+        "focal": 180.0,
+    }
     world = floor_with_box()
     shadowed = draw(world, light=light, **view)
     plain = draw(world, light=Light(direction=(-1.0, 0.0, 1.0)), **view)
@@ -75,7 +82,12 @@ def test_a_box_casts_a_shadow_away_from_the_light(distance, shift):
 
 def test_parallel_light_casts_shadows_of_the_same_size():
     light = Light(direction=(0.0, 0.0, 1.0), distance=np.inf, shadow=True, shade=0.0, specular=0.0)
-    view = {"eye": (0.0, -3.0, 0.5), "target": (0.0, 0.0, 0.1), "size": (160, 120), "focal": 100.0}
+    view: dict[str, Any] = {
+        "eye": (0.0, -3.0, 0.5),
+        "target": (0.0, 0.0, 0.1),
+        "size": (160, 120),
+        "focal": 100.0,
+    }
     image = draw(floor_with_box(), light=light, **view)
     floor = image.label == 0
     dark = floor & (image.rgba[:, :, 0] < 200)
@@ -86,7 +98,7 @@ def test_parallel_light_casts_shadows_of_the_same_size():
 
 def test_surfaces_in_the_light_do_not_shade_themselves():
     light = Light(direction=(-1.0, 0.5, 2.0), distance=np.inf, shadow=True, shade=0.0)
-    view = {"eye": (1.0, -4.0, 3.0), "target": (0.0, 0.0, 1.0), "focal": 100.0}
+    view: dict[str, Any] = {"eye": (1.0, -4.0, 3.0), "target": (0.0, 0.0, 1.0), "focal": 100.0}
     world = floor_with_box()
     box = draw(world, light=light, **view).label == 1
     with_shadows = draw(world, light=light, **view).rgba[box]
