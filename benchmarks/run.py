@@ -22,6 +22,7 @@ from cases import COLD_BUILD, FIRST_STEP, IMPORT, IN_PROCESS, Case
 from engines import ROOT, Engine, original_data_directory
 
 OURS, REFERENCE = "Carom", "PyBullet"
+MARKS = ("<!-- figures -->", "<!-- end of figures -->")
 
 Medians = dict[str, dict[str, float]]
 
@@ -95,6 +96,15 @@ def table(engines: list[Engine], medians: Medians) -> str:
     )
 
 
+def put_between_marks(page: Path, figures: str) -> None:
+    """Replace what stands between the two marks of a page."""
+    before, opening, rest = page.read_text(encoding="utf-8").partition(MARKS[0])
+    _, closing, after = rest.partition(MARKS[1])
+    if not opening or not closing:
+        raise SystemExit(f"{page} has no {MARKS[0]} ... {MARKS[1]}")
+    page.write_text(f"{before}{opening}\n\n{figures}\n\n{closing}{after}", encoding="utf-8")
+
+
 def main() -> None:
     """Measure and print."""
     known = [case.key for case in (*IN_PROCESS, IMPORT, FIRST_STEP, COLD_BUILD)]
@@ -105,6 +115,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", default=known, choices=known, metavar="CASE")
     parser.add_argument("--without-cold-build", action="store_true", help="skip the minute of building")
     parser.add_argument("--json", type=Path, help="write the medians there as well")
+    parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
     arguments = parser.parse_args()
 
     engines = [Engine(OURS, Path(sys.executable), "pybullet_cases", {"PYTHONPATH": str(ROOT / "src")})]
@@ -121,7 +132,10 @@ def main() -> None:
     if COLD_BUILD.key in cases and not arguments.without_cold_build:
         print("building all kernels in an empty cache", file=sys.stderr, flush=True)
         medians[COLD_BUILD.key] = {OURS: engines[0].time_cold_build()}
-    print(table(engines, medians))
+    figures = table(engines, medians)
+    print(figures)
+    if arguments.page:
+        put_between_marks(arguments.page, figures)
     if arguments.json:
         arguments.json.parent.mkdir(parents=True, exist_ok=True)
         machine = {
