@@ -9,6 +9,7 @@ from tests.physics.aba_reference import rotation
 from tests.physics.robots import joint_coordinates, let_go, random_rotation
 
 from carom import Body, World
+from carom.algorithms import mass_matrix
 from carom.description import JointType, Pose
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.codes import (
@@ -121,6 +122,27 @@ def test_without_impulses_the_motor_is_off():
     body.set_joint_state(0, None, [0.0, 0.0, 2.0])
     body.world.step(10)
     assert_allclose(joint_coordinates(body)[1], [0.0, 0.0, 2.0], atol=1e-12)
+
+
+def test_one_sweep_counts_the_responses_of_both_links_as_if_they_were_strangers():
+    """As in Bullet; the sweeps converge all the same, only by smaller steps."""
+    arm = LinkSpec("arm", mass=1.0, inertia=(0.5, 0.5, 0.5), joint_type=JointType.REVOLUTE)
+    link = LinkSpec("ball", parent=0, mass=1.0, inertia=(0.1, 0.2, 0.3), joint_type=JointType.SPHERICAL)
+    world = World()
+    world.parameters.solver_iterations = 1
+    world.apply_parameters()
+    body = world.load(BodySpec("arm", LinkSpec("base"), [arm, link], fixed_base=True))
+    let_go(body)
+    world.motor[7:10, MOTOR_MAX_IMPULSE], world.motor[7:10, MOTOR_KP] = 1e6, 0.0
+    body.set_joint_state(1, None, [1.0, 0.0, 0.0])
+    # Rates of the arm about x, then of the ball about its axes; both links turn with the arm.
+    response = np.linalg.inv(mass_matrix(body, [0.0, 0.0, 0.0, 0.0, 1.0]))
+    turning_arm, turning_ball = np.array([1.0, 0.0, 0.0, 0.0]), np.array([1.0, 1.0, 0.0, 0.0])
+    strangers = turning_arm @ response @ turning_arm + turning_ball @ response @ turning_ball
+    world.step()
+    assert_allclose(world.motor_impulse[7:10], [-1.0 / strangers, 0.0, 0.0], rtol=1e-12, atol=1e-15)
+    expected = np.array([0.0, 1.0, 0.0, 0.0]) - response[:, 1] / strangers
+    assert_allclose(joint_coordinates(body)[1], expected, rtol=1e-12, atol=1e-15)
 
 
 def limited_ball() -> Body:
