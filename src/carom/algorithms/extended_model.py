@@ -8,11 +8,12 @@ axes such that a hinge turns about z and a slider moves along x.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import cos, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.extended_nodes import ROOT_COORDINATES, Node, extended_nodes, skew
+from carom.algorithms.extended_nodes import ROOT_COORDINATES, Node, extended_nodes
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.model.codes import JointCode
@@ -26,137 +27,122 @@ _SUBSPACES = {
     JointCode.SPHERICAL: np.vstack([np.eye(3, 4), np.zeros((3, 4))]),
     JointCode.FIXED: np.zeros((6, 0)),
 }
+_NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class ExtendedModel:
-    """A tree of nodes.
+    """A tree of nodes at given coordinates.
 
     Attributes:
         nodes: Links and the joints that carry them, parents first; the first is the root.
         size: Number of coordinates.
     """
 
-    def __init__(self, nodes: Sequence[Node]) -> None:
-        self.nodes = nodes
-        self.size = nodes[-1].first + nodes[-1].count
-
-    def mass_matrix(self, position: np.ndarray) -> np.ndarray:
-        """Mass matrix by the composite rigid body algorithm.
+    def __init__(self, nodes: Sequence[Node], position: np.ndarray) -> None:
+        """Places the nodes.
 
         Args:
+            nodes: As `extended_nodes` makes them.
             position: Coordinates; quaternions (x, y, z, w).
+        """
+        self.nodes = nodes
+        self.size = nodes[-1].first + nodes[-1].count
+        self._inertias = np.array([node.inertia for node in nodes])
+        self._transforms = _motion_transforms(nodes, position)
+        self._to_root = np.array(rotation_matrix(tuple(position[3:7].tolist()))).T
+        self._jacobians = self._make_jacobians()
+
+    def mass_matrix(self) -> np.ndarray:
+        """Mass matrix.
 
         Returns:
             (size, size); zeros for what does not move, the fourth coordinate of quaternions.
         """
-        transforms = [self._transform(node, position) for node in self.nodes]
-        subspaces = [self._subspace(node, position) for node in self.nodes]
-        composite = [node.inertia.copy() for node in self.nodes]
-        matrix = np.zeros((self.size, self.size))
-        for index in range(len(self.nodes) - 1, -1, -1):
-            node = self.nodes[index]
-            if node.parent >= 0:
-                x = transforms[index]
-                composite[node.parent] += x.T @ composite[index] @ x
-            own = slice(node.first, node.first + node.count)
-            force = composite[index] @ subspaces[index]
-            matrix[own, own] = subspaces[index].T @ force
-            while node.parent >= 0:
-                force = transforms[index].T @ force
-                index, node = node.parent, self.nodes[node.parent]
-                above = slice(node.first, node.first + node.count)
-                matrix[above, own] = subspaces[index].T @ force
-                matrix[own, above] = matrix[above, own].T
-        return matrix
+        momenta = self._inertias @ self._jacobians
+        return self._jacobians.reshape(-1, self.size).T @ momenta.reshape(-1, self.size)
 
-    def bias_forces(self, position: np.ndarray, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
-        """Forces of inertia and gravity at zero acceleration, by recursive Newton-Euler.
+    def bias_forces(self, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
+        """Forces of inertia and gravity at zero acceleration.
 
         Args:
-            position: Coordinates; quaternions (x, y, z, w).
-            rate: Their rates: of the base its linear and angular velocity in world axes and a zero; of a
-                spherical joint its angular velocity and a zero.
+            rate: Rates of the coordinates: of the base its linear and angular velocity in world axes and a
+                zero; of a spherical joint its angular velocity and a zero.
             gravity: [m/s²].
 
         Returns:
             (size,).
         """
-        count = len(self.nodes)
-        velocities, accelerations = np.zeros((count, 6)), np.zeros((count, 6))
-        forces = np.zeros((count, 6))
-        transforms = [self._transform(node, position) for node in self.nodes]
-        subspaces = [self._subspace(node, position) for node in self.nodes]
-        for index, node in enumerate(self.nodes):
-            own = rate[node.first : node.first + node.count]
-            joint_velocity = subspaces[index] @ own
-            velocity, acceleration = joint_velocity, np.zeros(6)
-            if node.parent >= 0:
-                velocity = transforms[index] @ velocities[node.parent] + joint_velocity
-                acceleration = transforms[index] @ accelerations[node.parent]
-            else:
-                rotation = _matrix(position[3:7])
-                acceleration[3:] = rotation.T @ (-np.asarray(gravity))
-                # The rate of the root's motion subspace, with the world's angular velocity where the
-                # body's belongs: so does PyBullet.
-                acceleration[3:] -= np.cross(rate[3:6], rotation.T @ rate[:3])
-            acceleration = acceleration + _cross_motion(velocity, joint_velocity)
-            momentum = node.inertia @ velocity
-            velocities[index], accelerations[index] = velocity, acceleration
-            forces[index] = node.inertia @ acceleration + _cross_force(velocity, momentum)
-        result = np.zeros(self.size)
-        for index in range(count - 1, -1, -1):
-            node = self.nodes[index]
-            result[node.first : node.first + node.count] = subspaces[index].T @ forces[index]
-            if node.parent >= 0:
-                forces[node.parent] += transforms[index].T @ forces[index]
-        return result
+        velocities = self._jacobians @ rate
+        joint_velocities = velocities.copy()
+        for index, node in enumerate(self.nodes[1:], start=1):
+            joint_velocities[index] -= self._transforms[index] @ velocities[node.parent]
+        accelerations = _cross_motion(velocities, joint_velocities)
+        # The rate of the root's motion subspace, with the world's angular velocity where the body's belongs:
+        # so does PyBullet.
+        accelerations[0, 3:] -= self._to_root @ gravity + np.cross(rate[3:6], self._to_root @ rate[:3])
+        for index, node in enumerate(self.nodes[1:], start=1):
+            accelerations[index] += self._transforms[index] @ accelerations[node.parent]
+        motions = np.stack([velocities, accelerations], axis=2)
+        momenta, forces = np.moveaxis(self._inertias @ motions, 2, 0)
+        forces = forces + _cross_force(velocities, momenta)
+        return self._jacobians.reshape(-1, self.size).T @ forces.ravel()
 
-    def _transform(self, node: Node, position: np.ndarray) -> np.ndarray:
-        """Motion transform from the parent's joint frame to the node's, (6, 6)."""
-        rotation, origin = node.rotation, node.origin
-        own = position[node.first : node.first + node.count]
-        if node.parent < 0:
-            rotation, origin = _matrix(own[3:7]), own[:3]
-        elif node.kind == JointCode.REVOLUTE:
-            c, s = np.cos(own[0]), np.sin(own[0])
-            rotation = rotation @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        elif node.kind == JointCode.PRISMATIC:
-            origin = origin + rotation[:, 0] * own[0]
+    def _make_jacobians(self) -> np.ndarray:
+        """Velocity of each node, in its axes, by rate: (nodes, 6, size)."""
+        jacobians = np.zeros((len(self.nodes), 6, self.size))
+        jacobians[0, 3:, :3] = jacobians[0, :3, 3:6] = self._to_root
+        for index, node in enumerate(self.nodes[1:], start=1):
+            np.matmul(self._transforms[index], jacobians[node.parent], out=jacobians[index])
+            jacobians[index, :, node.first : node.first + node.count] = _SUBSPACES[node.kind]
+        return jacobians
+
+
+def _motion_transforms(nodes: Sequence[Node], position: np.ndarray) -> np.ndarray:
+    """What takes motions from the joint frame of the parent to that of the node, (nodes, 6, 6)."""
+    turns, slides = [_NO_TURN], np.zeros(len(nodes))
+    for index, node in enumerate(nodes[1:], start=1):
+        own = position[node.first : node.first + node.count].tolist()
+        turn = _NO_TURN
+        if node.kind == JointCode.REVOLUTE:
+            c, s = cos(own[0]), sin(own[0])
+            turn = ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
         elif node.kind == JointCode.SPHERICAL:
-            rotation = rotation @ _matrix(own)
-        return _motion_transform(rotation, origin)
-
-    def _subspace(self, node: Node, position: np.ndarray) -> np.ndarray:
-        if node.parent >= 0:
-            return _SUBSPACES[node.kind]
-        to_body = _matrix(position[3:7]).T
-        subspace = np.zeros((6, ROOT_COORDINATES))
-        subspace[3:, :3] = to_body
-        subspace[:3, 3:6] = to_body
-        return subspace
-
-
-def _matrix(quaternion: np.ndarray) -> np.ndarray:
-    x, y, z, w = quaternion.tolist()
-    return np.array(rotation_matrix((x, y, z, w)))
+            turn = rotation_matrix((own[0], own[1], own[2], own[3]))
+        elif node.kind == JointCode.PRISMATIC:
+            slides[index] = own[0]
+        turns.append(turn)
+    placements = np.array([node.rotation for node in nodes])
+    origins = np.array([node.origin for node in nodes]) + placements[:, :, 0] * slides[:, None]
+    back = np.swapaxes(placements @ np.array(turns), 1, 2)
+    transforms = np.zeros((len(nodes), 6, 6))
+    transforms[:, :3, :3] = transforms[:, 3:, 3:] = back
+    transforms[:, 3:, :3] = -back @ _skew(origins)
+    return transforms
 
 
-def _motion_transform(rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
-    """Takes motions to a frame that is turned and displaced."""
-    transform = np.zeros((6, 6))
-    transform[:3, :3] = transform[3:, 3:] = rotation.T
-    transform[3:, :3] = -rotation.T @ skew(origin)
-    return transform
+def _skew(v: np.ndarray) -> np.ndarray:
+    """Matrices of the vector product from the left, (..., 3, 3)."""
+    matrices = np.zeros((*v.shape, 3))
+    matrices[..., 2, 1], matrices[..., 0, 2], matrices[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
+    return matrices - np.swapaxes(matrices, -1, -2)
 
 
 def _cross_motion(v: np.ndarray, m: np.ndarray) -> np.ndarray:
-    angular, linear = v[:3], v[3:]
-    return np.concatenate([np.cross(angular, m[:3]), np.cross(linear, m[:3]) + np.cross(angular, m[3:])])
+    """Spatial vector product of motions, (nodes, 6)."""
+    angular, linear = v[:, :3], v[:, 3:]
+    result = np.empty_like(v)
+    result[:, :3] = np.cross(angular, m[:, :3])
+    result[:, 3:] = np.cross(linear, m[:, :3]) + np.cross(angular, m[:, 3:])
+    return result
 
 
 def _cross_force(v: np.ndarray, f: np.ndarray) -> np.ndarray:
-    angular, linear = v[:3], v[3:]
-    return np.concatenate([np.cross(angular, f[:3]) + np.cross(linear, f[3:]), np.cross(angular, f[3:])])
+    """Spatial vector product of motions and forces, (nodes, 6)."""
+    angular, linear = v[:, :3], v[:, 3:]
+    result = np.empty_like(v)
+    result[:, :3] = np.cross(angular, f[:, :3]) + np.cross(linear, f[:, 3:])
+    result[:, 3:] = np.cross(angular, f[:, 3:])
+    return result
 
 
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
@@ -174,8 +160,8 @@ def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    model = ExtendedModel(extended_nodes(body, as_pybullet=True))
-    matrix = model.mass_matrix(_with_base(body, positions, _base_pose(body)))
+    position = _with_base(body, positions, _base_pose(body))
+    matrix = ExtendedModel(extended_nodes(body, as_pybullet=True), position).mass_matrix()
     diagonal = np.diag_indices_from(matrix)
     matrix[diagonal] = np.where(matrix[diagonal] == 0.0, 1.0, matrix[diagonal])
     return matrix
@@ -197,13 +183,12 @@ def extended_bias_forces(body: Body, positions: Sequence[float], velocities: Seq
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    model = ExtendedModel(extended_nodes(body, as_pybullet=True))
+    position = _with_base(body, positions, _base_pose(body))
     u = body.first_velocity
     angular, linear = body.world.velocity[u : u + 3], body.world.velocity[u + 3 : u + 6]
     rate = _with_base(body, velocities, np.concatenate([linear, angular, [0.0]]))
-    return model.bias_forces(
-        _with_base(body, positions, _base_pose(body)), rate, body.world.parameters.gravity
-    )
+    model = ExtendedModel(extended_nodes(body, as_pybullet=True), position)
+    return model.bias_forces(rate, body.world.parameters.gravity)
 
 
 def _base_pose(body: Body) -> np.ndarray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import asin, atan2, cos, pi, sin, sqrt
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -61,6 +62,11 @@ class Node:
     inertia: np.ndarray
 
 
+# Nodes of bodies, with and without the peculiarities, and the masses and inertias they were made with.
+_remembered: WeakKeyDictionary[Body, dict[bool, tuple[list[tuple[float, Vector3]], list[Node]]]]
+_remembered = WeakKeyDictionary()
+
+
 @dataclass(frozen=True, slots=True)
 class _Frame:
     """The joint frame of a link: turned against its inertial frame, which is `com` away in joint axes."""
@@ -83,6 +89,15 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
+    links = [body.dynamics(link) for link in range(BASE, body.joint_count)]
+    masses = [(link.mass, link.inertia) for link in links]
+    remembered = _remembered.setdefault(body, {})
+    if as_pybullet not in remembered or remembered[as_pybullet][0] != masses:
+        remembered[as_pybullet] = (masses, _make_nodes(body, as_pybullet))
+    return remembered[as_pybullet][1]
+
+
+def _make_nodes(body: Body, as_pybullet: bool) -> list[Node]:
     if JointCode.PLANAR in body.joint_types:
         raise ValueError("planar joints have no extended coordinates")
     first_link = 0 if as_pybullet and _base_is_left_out(body) else BASE
@@ -105,12 +120,6 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
         )
         first += count
     return nodes
-
-
-def skew(v: np.ndarray) -> np.ndarray:
-    """The matrix of the vector product from the left."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _base_is_left_out(body: Body) -> bool:
@@ -151,7 +160,7 @@ def _inertia(body: Body, link: int, frame: _Frame, as_pybullet: bool) -> np.ndar
         implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         moments = _moments(dynamics.mass, spec.collisions, implicit)
     turn = _rotation_by_angles(conjugate(frame.turn))
-    offset = skew(np.array(frame.com))
+    offset = _skew(np.array(frame.com))
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = turn @ np.diag(moments) @ turn.T + dynamics.mass * offset @ offset.T
     inertia[:3, 3:] = dynamics.mass * offset
@@ -187,6 +196,12 @@ def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
         0.4 * radius * radius + 0.375 * radius * length + 0.5 * length * length
     )
     return (across, (0.5 * cylinder + 0.8 * half_ball) * radius * radius, across)
+
+
+def _skew(v: np.ndarray) -> np.ndarray:
+    """The matrix of the vector product from the left."""
+    x, y, z = v
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _shortest_turn(start: Vector3, end: Vector3, opposite: Quaternion) -> Quaternion:

@@ -78,13 +78,14 @@ def stable_pd_torques(body: Body, targets: Mapping[int, JointTarget], time_step:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    model = ExtendedModel(extended_nodes(body, as_pybullet=not body.fixed_base))
-    coordinates = _coordinates(body, targets, model.size)
+    nodes = extended_nodes(body, as_pybullet=not body.fixed_base)
+    coordinates = _coordinates(body, targets, nodes[-1].first + nodes[-1].count)
+    model = ExtendedModel(nodes, coordinates.position)
     error = _expected_errors(body, coordinates, time_step)
     rate_error = coordinates.target_rate - coordinates.rate
     torque = coordinates.kp * error + coordinates.kd * rate_error
-    bias = model.bias_forces(coordinates.position, coordinates.rate, body.world.parameters.gravity)
-    matrix = model.mass_matrix(coordinates.position)
+    bias = model.bias_forces(coordinates.rate, body.world.parameters.gravity)
+    matrix = model.mass_matrix()
     matrix[np.diag_indices_from(matrix)] += time_step * coordinates.kd
     moving = matrix.diagonal() > 0.0
     if body.fixed_base:
