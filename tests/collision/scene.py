@@ -12,13 +12,14 @@ import warp as wp
 from carom.collision.capacity import scratch_capacity
 from carom.collision.closest import closest_points_kernel, place_shapes_kernel
 from carom.collision.collide import collide_kernel
+from carom.collision.rays import prepare_rays_kernel, rays_kernel
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.model.arrays import ArrayTable
 from carom.model.codes import ShapeKind
 from carom.model.contact_structs import Contacts, Pairs, Shapes
-from carom.model.real import NUMPY_REAL, Vector8
+from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
 from carom.model.structs import Model, Settings, State
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
@@ -61,7 +62,9 @@ def plane(normal=(0, 0, 1), **options):
 
 
 def hull(points, **options):
-    return Shape(ShapeKind.HULL, (0, 0, 0), polyhedron=convex_hull(np.asarray(points, dtype=float)), **options)
+    return Shape(
+        ShapeKind.HULL, (0, 0, 0), polyhedron=convex_hull(np.asarray(points, dtype=float)), **options
+    )
 
 
 def triangles(vertices, faces, **options):
@@ -86,9 +89,7 @@ def height_field(heights, spacing=(1.0, 1.0), **options):
     points = np.stack([*np.meshgrid(x, y), heights], axis=-1).reshape(-1, 3)
     nothing = np.empty(0, dtype=np.int32)
     grid = Polyhedron(points, np.empty((0, 4)), nothing, nothing.copy(), nothing.copy())
-    return Shape(
-        ShapeKind.HEIGHTFIELD, (0, 0, 0), polyhedron=grid, columns=columns, static=True, **options
-    )
+    return Shape(ShapeKind.HEIGHTFIELD, (0, 0, 0), polyhedron=grid, columns=columns, static=True, **options)
 
 
 class Scene:
@@ -209,6 +210,38 @@ class Scene:
             inputs=[structs["shapes"], structs["pairs"], first, second, NUMPY_REAL(reach), found],
         )
         return found.numpy()[0]
+
+    def rays(self, starts, ends, mask: int = -1, hit_number: int = 0, separation: float = 0.0):
+        """Shape (-1 for none), fraction and normal of each ray's hit."""
+        structs = self.structs()
+        wp.launch(
+            prepare_rays_kernel,
+            dim=1,
+            inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
+        )
+        starts, ends = (wp.array(np.reshape(points, (-1, 3)), dtype=Vector3) for points in (starts, ends))
+        count = len(starts)
+        shape = wp.zeros(count, dtype=wp.int32)
+        fraction = wp.zeros(count, dtype=real)
+        normal = wp.zeros(count, dtype=Vector3)
+        wp.launch(
+            rays_kernel,
+            dim=count,
+            inputs=[
+                structs["shapes"],
+                structs["pairs"],
+                0,
+                starts,
+                ends,
+                mask,
+                hit_number,
+                NUMPY_REAL(separation),
+                shape,
+                fraction,
+                normal,
+            ],
+        )
+        return shape.numpy(), fraction.numpy(), normal.numpy()
 
     @property
     def pairs(self) -> list[tuple[int, int]]:

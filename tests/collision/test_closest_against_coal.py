@@ -51,7 +51,9 @@ def coal_distance(first: Shape, second: Shape) -> float:
     poses = []
     for shape in (first, second):
         x, y, z, w = shape.orientation
-        poses.append(coal.Transform3s(coal.Quaternion(w, x, y, z).toRotationMatrix(), np.array(shape.position)))
+        poses.append(
+            coal.Transform3s(coal.Quaternion(w, x, y, z).toRotationMatrix(), np.array(shape.position))
+        )
     return coal.distance(as_coal(first), poses[0], as_coal(second), poses[1], request, result)
 
 

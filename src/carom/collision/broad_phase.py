@@ -9,9 +9,8 @@ import warp as wp
 
 from carom.collision.bounds import boxes_meet, place_shapes
 from carom.collision.filters import may_touch
-from carom.collision.hierarchy import BOUNDED, LEAVES, PAIRS, build_hierarchy, leaf_start, next_node
+from carom.collision.hierarchy import BOUNDED, LEAVES, PAIRS, PLANES, build_hierarchy, leaf_start, next_node
 from carom.collision.reach import bounds_reach
-from carom.model.codes import PLANE
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Settings, State
@@ -98,13 +97,13 @@ def plane_pairs(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, 
     normal = pairs.shape_frame[world, plane] * shapes.shape_size[plane]
     along = wp.abs(normal)
     height = wp.dot(normal, pairs.shape_position[world, plane])
-    for b in range(settings.shape_count):
-        if shapes.shape_kind[b] != PLANE:
-            lower = pairs.shape_lower[world, b]
-            upper = pairs.shape_upper[world, b]
-            nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
-            if lower[0] <= upper[0] and nearest <= bounds_reach(shapes, plane, b):
-                add_pair(shapes, model, settings, pairs, world, plane, b)
+    for place in range(pairs.count_pairs[world, BOUNDED]):
+        b = pairs.shape_order[world, place]
+        lower = pairs.shape_lower[world, b]
+        upper = pairs.shape_upper[world, b]
+        nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
+        if nearest <= bounds_reach(shapes, plane, b):
+            add_pair(shapes, model, settings, pairs, world, plane, b)
 
 
 @func
@@ -143,11 +142,10 @@ def find_pairs(shapes: Shapes, model: Model, state: State, settings: Settings, p
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, PAIRS] = 0
-    for shape in range(settings.shape_count):
-        if shapes.shape_kind[shape] == PLANE:
-            plane_pairs(shapes, model, settings, pairs, world, shape)
     leaf_count = pairs.count_pairs[world, LEAVES]
     count = pairs.count_pairs[world, BOUNDED]
+    for place in range(count, count + pairs.count_pairs[world, PLANES]):
+        plane_pairs(shapes, model, settings, pairs, world, pairs.shape_order[world, place])
     for leaf in range(leaf_count):
         for place in range(leaf_start(leaf, leaf_count, count), leaf_start(leaf + 1, leaf_count, count)):
             walk_from(shapes, model, settings, pairs, world, place, leaf)

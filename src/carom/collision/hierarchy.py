@@ -19,7 +19,7 @@ LEAF_SIZE = 4
 # As few shapes as this are not worth sorting: they make one leaf.
 ONE_LEAF = 32
 # Columns of `Pairs.count_pairs`.
-PAIRS, LEAVES, BOUNDED = 0, 1, 2
+PAIRS, LEAVES, BOUNDED, PLANES = 0, 1, 2, 3
 # Cells of the curve along each axis.
 CURVE_CELLS = real(1024.0)
 # The curve covers this many mean deviations on each side of the mean, ...
@@ -52,15 +52,22 @@ def spread_bits(value: Int32) -> Int32:
 
 
 @func
-def gather_bounded(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32) -> Int32:
-    """List the shapes that have finite, non-empty bounds; returns their number."""
+def gather_shapes(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32):
+    """List the shapes that have finite bounds, and after them the planes; those with empty bounds are left out."""
     count = Int32(0)
+    planes = Int32(0)
     for shape in range(settings.shape_count):
-        lower = pairs.shape_lower[world, shape]
-        if shapes.shape_kind[shape] != PLANE and lower[0] <= pairs.shape_upper[world, shape][0]:
-            pairs.shape_order[world, count] = shape
-            count += 1
-    return count
+        if pairs.shape_lower[world, shape][0] <= pairs.shape_upper[world, shape][0]:
+            if shapes.shape_kind[shape] == PLANE:
+                pairs.shape_sorted[world, planes] = shape
+                planes += 1
+            else:
+                pairs.shape_order[world, count] = shape
+                count += 1
+    for i in range(planes):
+        pairs.shape_order[world, count + i] = pairs.shape_sorted[world, i]
+    pairs.count_pairs[world, BOUNDED] = count
+    pairs.count_pairs[world, PLANES] = planes
 
 
 @func
@@ -165,13 +172,13 @@ def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32, count: Int32):
 @func
 def build_hierarchy(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32):
     """Sort the bounded shapes and bound groups of neighbours, groups of groups, and so on."""
-    count = gather_bounded(shapes, settings, pairs, world)
+    gather_shapes(shapes, settings, pairs, world)
+    count = pairs.count_pairs[world, BOUNDED]
     leaf_count = Int32(1)
     if count > ONE_LEAF:
         while leaf_count * LEAF_SIZE < count:
             leaf_count *= 2
     pairs.count_pairs[world, LEAVES] = leaf_count
-    pairs.count_pairs[world, BOUNDED] = count
     if leaf_count > 1:
         write_codes(pairs, world, count)
         sort_by_code(pairs, world, count)

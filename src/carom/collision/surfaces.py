@@ -75,9 +75,7 @@ def touch_surface(
     count = Int32(0)
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
-        triangle = triangle_core(
-            pairs, world, b, triangle_corners(shapes, region, b, cursor), radius
-        )
+        triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         found = touch_convex(shapes, pairs, world, a, b, core, triangle, reach, count)
         normal = triangle_normal(triangle)
         for row in range(count, found):
@@ -106,9 +104,7 @@ def nearest_on_surface(
     best_point = core.position
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
-        triangle = triangle_core(
-            pairs, world, b, triangle_corners(shapes, region, b, cursor), radius
-        )
+        triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         distance, normal, _on_a, on_b = nearest_or_deepest(
             shapes, pairs, world, core, triangle, wp.min(least, reach) + rounding
         )

@@ -84,7 +84,7 @@ class Pairs:
     shape_lower: Vector3Rows  # bounds in world axes, without any threshold
     shape_upper: Vector3Rows
     shape_code: IntRows  # place along a space-filling curve
-    shape_order: IntRows  # shapes sorted by it
+    shape_order: IntRows  # shapes sorted by it, then the planes
     shape_sorted: IntRows  # the same halfway through a sort
     shape_pair_end: IntRows  # end of the pairs whose first shape it is
 
@@ -119,7 +119,7 @@ class Pairs:
     previous_impulse: Vector4Rows
     previous_age: IntRows
 
-    # Its first entries: pairs found, leaves of the hierarchy, shapes in it.
+    # Its first entries: pairs found, leaves of the hierarchy, shapes in it, planes.
     count_pairs: IntRows
 
 
