@@ -57,18 +57,26 @@ class Stepper:
         fault: `State.fault_tree` of the world.
         substeps: Greatest number of substeps.
         device: Warp device name.
+        touching: Some shapes could touch.
     """
 
     def __init__(
-        self, structs: dict[str, Any], touch: TouchArrays, fault: memoryview, substeps: int, device: str
+        self,
+        structs: dict[str, Any],
+        touch: TouchArrays,
+        fault: memoryview,
+        substeps: int,
+        device: str,
+        *,
+        touching: bool,
     ) -> None:
         self._launch = launch(step_kernel, structs, device, **{_SUBSTEPS: 1, _BEGINS: 1, _ENDS: 1})
         self._index = argument_indices(step_kernel)
         self._touch = touch
         self._fault = fault
-        self._touching = touch.shapes.shape_count > 1
-        self.detection = Detection(structs, touch, device) if self._touching else None
-        if not self._touching:
+        self._touching = touching
+        self.detection = Detection(structs, touch, device) if touching else None
+        if not touching:
             touch.forget_contacts()
         self._substeps = substeps
 

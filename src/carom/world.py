@@ -18,6 +18,7 @@ from carom.errors import SimulationError
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
+from carom.model.flags import LoadFlags
 from carom.model.launch import Launch
 from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
@@ -171,7 +172,6 @@ class World:
         from carom.formats.search import AssetSearch
         from carom.formats.urdf import read_urdf
         from carom.model.assemble import assemble
-        from carom.model.flags import LoadFlags
 
         robot = read_urdf(Path(path), scale=scale, search=AssetSearch())
         return self.load(
@@ -299,8 +299,25 @@ class World:
         model, state, scratch = self._structs
         structs = {"settings": self._settings(), "model": model, "state": state, "scratch": scratch}
         structs |= self.touch.structs()
-        self._stepper = Stepper(structs, self.touch, self._fault, self.parameters.substeps, _DEVICE)
+        self._stepper = Stepper(
+            structs, self.touch, self._fault, self.parameters.substeps, _DEVICE, touching=self._can_touch()
+        )
         return self._stepper
+
+    def _can_touch(self) -> bool:
+        """Whether two shapes could ever touch: of two bodies that are not both fixed, or of one body."""
+        moving = fixed = 0
+        for body in self.bodies.values():
+            links = [body.spec.base, *body.spec.links]
+            if not any(link.collisions for link in links):
+                continue
+            if body.spec.flags & LoadFlags.ANY_SELF_COLLISION:
+                return True
+            if any(moving_links(body)):
+                moving += 1
+            else:
+                fixed += 1
+        return moving > 1 or (moving == 1 and fixed > 0)
 
     def _step_with_care(self) -> None:
         """One step in substeps, and again with longer arrays as long as something does not fit."""

@@ -26,13 +26,6 @@ FIXED_GROUP, FIXED_MASK = 2, -1 ^ 2
 BREAKING_FRACTION = 0.02
 """Distance at which a contact is given up, relative to the reach of the smaller shape."""
 
-_SELF_COLLISION_FLAGS = (
-    LoadFlags.USE_SELF_COLLISION
-    | LoadFlags.USE_SELF_COLLISION_EXCLUDE_PARENT
-    | LoadFlags.USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
-    | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
-)
-
 # Which axis the values of a field count on; they move when rows of that axis are deleted.
 _INDEX_FIELDS = {
     "shape_link": "link",
@@ -166,7 +159,7 @@ class ShapeArrays:
                 if collision.mask is not None:
                     numpy["link_mask"][first + j] = _as_int32(collision.mask)
         whole = slice(first, first + len(links))
-        numpy["link_self_collision"][whole] = spec.flags & _SELF_COLLISION_FLAGS
+        numpy["link_self_collision"][whole] = spec.flags & LoadFlags.ANY_SELF_COLLISION
         numpy["link_first_shape"][whole] = body.first["shape"]
         numpy["link_shape_count"][whole] = 0
 
