@@ -83,8 +83,8 @@ DEFAULT_ROWS, DEFAULT_COUNT = range(4, 12), 58
 
 
 def test_without_matrices_the_camera_is_pybullets(cube):
-    for arguments in ({}, {"viewMatrix": VIEW}, {"projectionMatrix": PROJECTION}):
-        segmentation = p.getCameraImage(20, 16, **arguments)[4]
+    for view, projection in ((None, None), (VIEW, None), (None, PROJECTION)):
+        segmentation = p.getCameraImage(20, 16, view, projection)[4]
         rows = np.nonzero((segmentation == cube).any(axis=1))[0]
         assert rows.tolist() == list(DEFAULT_ROWS)
         assert np.sum(segmentation == cube) == DEFAULT_COUNT
