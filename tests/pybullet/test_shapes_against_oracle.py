@@ -1,0 +1,78 @@
+"""Shapes and bodies made by scripts, against the recorded answers of PyBullet."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from record_shapes import plain
+from shape_cases import CASES, CORNER_CASES, MESHES, REFUSED, call
+
+import pybullet as p
+
+ANSWERS = json.loads(Path(__file__).with_name("shapes.json").read_text(encoding="utf-8"))
+
+ABSOLUTE = 1e-12
+"""Below this, a figure is rounding."""
+
+CELL = 1.0 / 10216
+"""PyBullet moves the corners of hulls by up to a cell of this size across their bounds."""
+
+
+@pytest.fixture(autouse=True)
+def _world() -> None:
+    p.connect(p.DIRECT)
+    p.setAdditionalSearchPath(str(MESHES))
+
+
+def differences(ours: Any, theirs: Any, where: str = "") -> list[str]:
+    """Every place where two nested answers differ by more than 1e-9."""
+    if isinstance(ours, dict) and isinstance(theirs, dict) and ours.keys() == theirs.keys():
+        return [line for key in ours for line in differences(ours[key], theirs[key], f"{where}.{key}")]
+    if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
+        return [
+            line
+            for i, (a, b) in enumerate(zip(ours, theirs, strict=True))
+            for line in differences(a, b, f"{where}[{i}]")
+        ]
+    if isinstance(ours, (int, float)) and isinstance(theirs, (int, float)):
+        is_same = math.isclose(ours, theirs, rel_tol=1e-9, abs_tol=ABSOLUTE)
+    else:
+        is_same = ours == theirs
+    return [] if is_same else [f"{where}: {ours!r}, PyBullet has {theirs!r}"]
+
+
+def test_every_case_is_recorded() -> None:
+    assert set(ANSWERS["cases"]) == set(CASES)
+    assert set(ANSWERS["corners"]) == set(CORNER_CASES)
+    assert set(ANSWERS["refused"]) == set(REFUSED)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_answers_are_those_of_pybullet(name: str) -> None:
+    assert differences(plain(CASES[name](p)), ANSWERS["cases"][name]) == []
+
+
+@pytest.mark.parametrize("name", CORNER_CASES)
+def test_corners_of_hulls_are_those_of_pybullet(name: str) -> None:
+    ours, theirs = np.array(CORNER_CASES[name](p)), np.array(ANSWERS["corners"][name])
+    assert ours.shape == theirs.shape
+    if not len(ours):
+        return
+    tolerance = 2.0 * CELL * float(np.ptp(theirs, axis=0).max()) + ABSOLUTE
+    distances = np.abs(ours[:, None] - theirs[None]).max(axis=2)
+    assert distances.min(axis=0).max() <= tolerance
+    assert distances.min(axis=1).max() <= tolerance
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_pybullet_refuses_is_refused_with_its_words(name: str) -> None:
+    with pytest.raises(p.error) as raised:
+        call(p, *REFUSED[name])
+    assert ANSWERS["refused"][name] is not None
+    assert str(raised.value).startswith(ANSWERS["refused"][name])
+    assert str(raised.value) != ANSWERS["refused"][name], "the particulars follow"
