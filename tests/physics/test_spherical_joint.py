@@ -138,7 +138,7 @@ def test_one_sweep_counts_the_responses_of_both_links_as_if_they_were_strangers(
     # Rates of the arm about x, then of the ball about its axes; both links turn with the arm.
     response = np.linalg.inv(mass_matrix(body, [0.0, 0.0, 0.0, 0.0, 1.0]))
     turning_arm, turning_ball = np.array([1.0, 0.0, 0.0, 0.0]), np.array([1.0, 1.0, 0.0, 0.0])
-    strangers = turning_arm @ response @ turning_arm + turning_ball @ response @ turning_ball
+    strangers = float(turning_arm @ response @ turning_arm + turning_ball @ response @ turning_ball)
     world.step()
     assert_allclose(world.motor_impulse[7:10], [-1.0 / strangers, 0.0, 0.0], rtol=1e-12, atol=1e-15)
     expected = np.array([0.0, 1.0, 0.0, 0.0]) - response[:, 1] / strangers
