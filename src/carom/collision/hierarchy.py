@@ -53,7 +53,7 @@ def spread_bits(value: Int32) -> Int32:
 
 @func
 def gather_shapes(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32):
-    """List the shapes that have finite bounds, and after them the planes; those with empty bounds are left out."""
+    """List the shapes that have finite bounds, and after them the planes."""
     count = Int32(0)
     planes = Int32(0)
     for shape in range(settings.shape_count):

@@ -27,7 +27,7 @@ from carom.model.real import (
 # Corners of the polytope at most; it has twice as many faces.
 MOST_CORNERS = 64
 # A face this near to the boundary is on it [m].
-PRECISION = real(1.0e-9)
+PRECISION = real(1.0e-7)
 # A face whose plane a new corner is this much above cannot stay [m]; less than the above.
 VISIBLE = real(1.0e-10)
 # A set of differences thinner than this has no inside [m].

@@ -11,24 +11,29 @@ from carom.collision.triangles import Region, cell_at, triangle_corners
 from carom.model.contact_structs import Shapes
 from carom.model.real import Int32, Matrix3, Vector3, func, real
 
+# Stands for one over zero.
+HUGE = real(1.0e30)
 # Rays hit this share of a triangle's size beside it, lest they slip between two.
 EDGE_TOLERANCE = real(1.0e-9)
 
 
 @func
-def box_entry(start: Vector3, way: Vector3, lower: Vector3, upper: Vector3, last: real) -> real:
-    """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if not until `last`."""
-    enter = real(0.0)
-    leave = last
+def inverse_way(way: Vector3) -> Vector3:
+    """One over each component of a ray's way; a huge number for zero."""
+    result = Vector3(HUGE, HUGE, HUGE)
     for axis in range(3):
-        if way[axis] == 0.0:
-            if start[axis] < lower[axis] or start[axis] > upper[axis]:
-                leave = real(-1.0)
-        else:
-            one = (lower[axis] - start[axis]) / way[axis]
-            other = (upper[axis] - start[axis]) / way[axis]
-            enter = wp.max(enter, wp.min(one, other))
-            leave = wp.min(leave, wp.max(one, other))
+        if wp.abs(way[axis]) * HUGE > 1.0:
+            result[axis] = 1.0 / way[axis]
+    return result
+
+
+@func
+def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, last: real) -> real:
+    """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if not until `last`."""
+    one = wp.cw_mul(lower - start, inverse)
+    other = wp.cw_mul(upper - start, inverse)
+    enter = wp.max(wp.max(wp.min(one, other)), 0.0)
+    leave = wp.min(wp.min(wp.max(one, other)), last)
     if enter <= leave:
         return enter
     return MISS
@@ -79,10 +84,11 @@ def ray_mesh(
     best = real(MISS)
     best_normal = Vector3(0.0, 0.0, 0.0)
     limit = last
+    inverse = inverse_way(way)
     node = Int32(1)
     while node > 0:
         row = shapes.shape_first_node[surface] + node
-        if box_entry(start, way, shapes.node_lower[row], shapes.node_upper[row], limit) < MISS:
+        if box_entry(start, inverse, shapes.node_lower[row], shapes.node_upper[row], limit) < MISS:
             if node < leaf_count:
                 node = 2 * node
                 continue
@@ -115,12 +121,12 @@ def ray_field(
     inclusive: bool,
     last: real,
 ):
-    """The first triangle of a height field that is hit, as `ray_mesh`, walking from cell to cell under the ray."""
+    """As `ray_mesh` for a height field: walks from cell to cell under the ray."""
     center = shapes.shape_center[surface]
     size = shapes.shape_size[surface]
     best = real(MISS)
     best_normal = Vector3(0.0, 0.0, 0.0)
-    now = box_entry(start, way, center - size, center + size, last)
+    now = box_entry(start, inverse_way(way), center - size, center + size, last)
     columns = shapes.shape_columns[surface] - 1
     rows = shapes.shape_vertex_count[surface] // shapes.shape_columns[surface] - 1
     # Places and speeds in cells.

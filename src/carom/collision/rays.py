@@ -13,7 +13,7 @@ from carom.collision.ray_solids import (
     ray_hull,
     ray_plane,
 )
-from carom.collision.ray_surfaces import box_entry, comes_after, ray_field, ray_mesh
+from carom.collision.ray_surfaces import box_entry, comes_after, inverse_way, ray_field, ray_mesh
 from carom.model.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Ints, Reals, Vector3, Vectors3, func, kernel, real
@@ -44,7 +44,10 @@ def ray_shape(
     inclusive: bool,
     last: real,
 ):
-    """Fraction after `after` (or equal to it, if `inclusive`) and up to `last` at which a ray hits a shape, and the normal in world axes."""
+    """Fraction at which a ray hits a shape, and the normal in world axes.
+
+    The hit comes after `after`, or is there if `inclusive`, and not after `last`.
+    """
     frame = pairs.shape_frame[world, shape]
     to_shape = wp.transpose(frame)
     origin = to_shape * (start - pairs.shape_position[world, shape])
@@ -138,6 +141,7 @@ def first_hit(
     best.fraction = real(MISS)
     leaf_count = pairs.count_pairs[world, LEAVES]
     count = pairs.count_pairs[world, BOUNDED]
+    inverse = inverse_way(way)
     # What follows the bounded shapes are the planes: they make a last leaf, which has no bounds.
     node = Int32(1)
     searching = Int32(1)
@@ -150,7 +154,7 @@ def first_hit(
         elif (
             box_entry(
                 start,
-                way,
+                inverse,
                 pairs.node_lower[world, node],
                 pairs.node_upper[world, node],
                 wp.min(best.fraction, 1.0),
@@ -164,7 +168,10 @@ def first_hit(
             end = leaf_start(node - leaf_count + 1, leaf_count, count)
         for place in range(first, end):
             shape = pairs.shape_order[world, place]
-            best = consider(shapes, pairs, world, shape, start, way, mask, before, separation, best)
+            lower = pairs.shape_lower[world, shape]
+            upper = pairs.shape_upper[world, shape]
+            if box_entry(start, inverse, lower, upper, wp.min(best.fraction, 1.0)) < MISS:
+                best = consider(shapes, pairs, world, shape, start, way, mask, before, separation, best)
         if node > 0:
             node = next_node(node)
     return best
