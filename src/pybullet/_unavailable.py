@@ -28,7 +28,6 @@ __all__ = [
     "loadBullet",
     "loadMJCF",
     "loadPlugin",
-    "loadSDF",
     "loadSoftBody",
     "rayTest",
     "rayTestBatch",
@@ -92,7 +91,6 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
 
 syncUserData = _later("syncUserData", "bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None")
 submitProfileTiming = _later("submitProfileTiming", "eventName=None, physicsClientId=0")
-loadSDF = _later("loadSDF", "sdfFileName, useMaximalCoordinates=-1, globalScaling=-1, physicsClientId=0")
 loadMJCF = _later("loadMJCF", "mjcfFileName, flags=-1, useMultiBody=-1, physicsClientId=0")
 loadBullet = _later("loadBullet", "bulletFileName, physicsClientId=0")
 saveBullet = _later("saveBullet", "bulletFileName, physicsClientId=0")

@@ -26,10 +26,7 @@ def read_collada(data: bytes, file: Path) -> list[MeshPart]:
     Raises:
         DescriptionError: It is not COLLADA, is broken, or its scene shows no triangles.
     """
-    root = next((element for element in parse_xml(data, file) if element.tag == "COLLADA"), None)
-    if root is None:
-        raise DescriptionError("there is no <COLLADA> element", file=file)
-    reader = _ColladaReader(root, file)
+    reader = collada_reader(data, file)
     parts = [reader.part(identifier, placement) for identifier, placement in reader.scene()]
     parts = [part for part in parts if len(part.triangles)]
     if not parts:
@@ -37,7 +34,22 @@ def read_collada(data: bytes, file: Path) -> list[MeshPart]:
     return parts
 
 
-class _ColladaReader:
+def collada_reader(data: bytes, file: Path) -> ColladaReader:
+    """A reader of the content of a DAE file; DescriptionError if it is not COLLADA or broken."""
+    root = next((element for element in parse_xml(data, file) if element.tag == "COLLADA"), None)
+    if root is None:
+        raise DescriptionError("there is no <COLLADA> element", file=file)
+    return ColladaReader(root, file)
+
+
+class ColladaReader:
+    """The parts of a COLLADA document that make up its scene.
+
+    Args:
+        root: The `<COLLADA>` element.
+        file: Named in errors.
+    """
+
     def __init__(self, root: Element, file: Path) -> None:
         self.root = root
         self.file = file
@@ -49,6 +61,7 @@ class _ColladaReader:
         self._triangles: dict[str, tuple[NDArray[np.float64], NDArray[np.int64]]] = {}
 
     def error(self, element: Element, reason: str) -> DescriptionError:
+        """An error at an element."""
         return DescriptionError(reason, file=self.file, line=element.line, element=f"<{element.tag}>")
 
     def scene(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
@@ -74,7 +87,7 @@ class _ColladaReader:
         unit = None if asset is None else asset.first("unit")
         if unit is None or "meter" not in unit.attributes:
             return 1.0
-        return float(np.float32(self._numbers(unit, unit.attributes["meter"], 1)[0]))
+        return float(np.float32(self.numbers(unit, unit.attributes["meter"], 1)[0]))
 
     def _nodes(self, node: Element, parent: NDArray[np.float64]) -> Iterator[tuple[str, NDArray[np.float64]]]:
         placement = parent @ self._local_transform(node)
@@ -90,15 +103,15 @@ class _ColladaReader:
         total = np.eye(4)
         for step in node.children:
             if step.tag == "matrix":
-                total = total @ self._numbers(step, step.text, 16).reshape(4, 4)
+                total = total @ self.numbers(step, step.text, 16).reshape(4, 4)
             elif step.tag == "translate":
                 translation = np.eye(4)
-                translation[:3, 3] = self._numbers(step, step.text, 3)
+                translation[:3, 3] = self.numbers(step, step.text, 3)
                 total = total @ translation
             elif step.tag == "scale":
-                total = total @ np.diag([*self._numbers(step, step.text, 3), 1.0])
+                total = total @ np.diag([*self.numbers(step, step.text, 3), 1.0])
             elif step.tag == "rotate":
-                x, y, z, degrees = self._numbers(step, step.text, 4)
+                x, y, z, degrees = self.numbers(step, step.text, 4)
                 total = total @ _rotation(np.array([x, y, z]), np.radians(degrees))
         return total
 
@@ -118,8 +131,8 @@ class _ColladaReader:
             for primitive in mesh.children:
                 if primitive.tag not in ("triangles", "polylist", "polygons"):
                     continue
-                source, offset, stride = self._position_input(mesh, primitive)
-                indices = self._corner_indices(primitive, offset, stride)
+                source, offset, stride = self.position_input(mesh, primitive)
+                indices = self.corner_indices(primitive, offset, stride)
                 if len(indices) and not 0 <= indices.min() <= indices.max() < len(source):
                     raise self.error(primitive, f"it names a vertex outside 0..{len(source) - 1}")
                 positions.append(source)
@@ -129,11 +142,11 @@ class _ColladaReader:
             return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
         return np.concatenate(positions), np.concatenate(corners)
 
-    def _position_input(self, mesh: Element, primitive: Element) -> tuple[NDArray[np.float64], int, int]:
+    def position_input(self, mesh: Element, primitive: Element) -> tuple[NDArray[np.float64], int, int]:
         """Positions (k, 3), the place of their index among those of a corner, and how many those are."""
         stride, offset, vertices_id = 1, None, ""
         for entry in primitive.all("input"):
-            here = int(self._numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
+            here = int(self.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
             stride = max(stride, here + 1)
             if entry.attributes.get("semantic") == "VERTEX":
                 offset, vertices_id = here, entry.attributes.get("source", "")[1:]
@@ -145,23 +158,26 @@ class _ColladaReader:
                 source_id = entry.attributes.get("source", "")[1:]
                 for source in mesh.all("source"):
                     if source.attributes.get("id", "") == source_id:
-                        return self._positions(source), offset, stride
+                        return self.source_rows(source, 3), offset, stride
         raise self.error(vertices, "it has no POSITION input with a source in this mesh")
 
-    def _positions(self, source: Element) -> NDArray[np.float64]:
+    def source_rows(self, source: Element, width: int) -> NDArray[np.float64]:
+        """(k, width) the first entries of each row of a source."""
         array = source.first("float_array")
         if array is None:
             raise self.error(source, "<float_array> is missing")
         technique = source.first("technique_common")
         accessor = None if technique is None else technique.first("accessor")
-        stride_text = "3" if accessor is None else accessor.attributes.get("stride", "3")
-        stride = int(self._numbers(source, stride_text, 1)[0])
-        values = self._numbers(array, array.text)
-        if stride < 3 or len(values) % stride:
-            raise self.error(array, f"{len(values)} numbers do not make positions of {stride}")
-        return values.reshape(-1, stride)[:, :3]
+        stride_text = str(width) if accessor is None else accessor.attributes.get("stride", str(width))
+        stride = int(self.numbers(source, stride_text, 1)[0])
+        values = self.numbers(array, array.text)
+        if stride < width or len(values) % stride:
+            raise self.error(
+                array, f"{len(values)} numbers do not make rows of {stride}, of at least {width}"
+            )
+        return values.reshape(-1, stride)[:, :width]
 
-    def _corner_indices(self, primitive: Element, offset: int, stride: int) -> NDArray[np.int64]:
+    def corner_indices(self, primitive: Element, offset: int, stride: int) -> NDArray[np.int64]:
         """(m, 3) position indices; polygons are cut into fans."""
         fans: list[NDArray[np.int64]] = []
         counts = primitive.first("vcount")
@@ -187,7 +203,8 @@ class _ColladaReader:
         except (ValueError, OverflowError):
             raise self.error(element, "it must hold whole numbers") from None
 
-    def _numbers(self, element: Element, text: str, count: int | None = None) -> NDArray[np.float64]:
+    def numbers(self, element: Element, text: str, count: int | None = None) -> NDArray[np.float64]:
+        """The finite numbers in a text of an element, `count` of them if that is given."""
         try:
             values = np.array(list(map(float, text.split())), dtype=np.float64)
         except ValueError:

@@ -16,8 +16,11 @@ DEFAULT_STIFFNESS = 1e4
 DEFAULT_DAMPING = 1.0
 """Contact damping [N s/m] where a link states only a stiffness."""
 
-_NO_INERTIAL = Inertial(mass=1.0, tensor=(1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
-_MASSLESS = Inertial(mass=0.0)
+NO_INERTIAL = Inertial(mass=1.0, tensor=(1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
+"""Of a link that states none."""
+
+MASSLESS = Inertial(mass=0.0)
+"""Of the link that is the world."""
 
 
 def read_link(context: UrdfContext, element: Element) -> Link:
@@ -41,9 +44,9 @@ def _read_inertial(context: UrdfContext, link: Element, name: str) -> Inertial:
     element = link.first("inertial")
     if element is None:
         if name == "world":
-            return _MASSLESS
+            return MASSLESS
         context.links_without_inertial.append(name)
-        return _NO_INERTIAL
+        return NO_INERTIAL
     mass = element.first("mass")
     if mass is None:
         raise context.error(element, "<mass> is missing")

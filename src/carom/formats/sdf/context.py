@@ -1,0 +1,79 @@
+"""What every part of the SDF reader needs at hand: values stand in the text of elements."""
+
+from __future__ import annotations
+
+from carom.description import Pose
+from carom.description.pose import IDENTITY, Vector3
+from carom.description.transform import quaternion_from_rpy
+from carom.formats.urdf.context import UrdfContext, shown
+from carom.formats.xml_tree import Element
+
+
+class SdfContext(UrdfContext):
+    """State of one reading; its root is the `<sdf>` element."""
+
+    def text(self, parent: Element, tag: str) -> str | None:
+        """The text of a child, blanks around it taken off; None where there is no child."""
+        child = parent.first(tag)
+        return None if child is None else child.text.strip()
+
+    def value(self, parent: Element, tag: str, default: float | None = None) -> float:
+        """A finite number from the text of a child; without a default the child must be there."""
+        child = parent.first(tag)
+        if child is None:
+            if default is None:
+                raise self.error(parent, f"<{tag}> is missing")
+            return default
+        return self.parse_number(child, tag, child.text.strip())
+
+    def non_negative_value(self, parent: Element, tag: str, default: float | None = None) -> float:
+        """As `value`, for a number that may not be below zero."""
+        value = self.value(parent, tag, default)
+        if value < 0.0:
+            raise self.error(parent, f"{tag}={value:g} must not be negative")
+        return value
+
+    def values(self, element: Element) -> list[float]:
+        """All numbers in the text of an element."""
+        return [self.parse_number(element, element.tag, word) for word in element.text.split()]
+
+    def triple(self, parent: Element, tag: str) -> Vector3 | None:
+        """The first three numbers in the text of a child; None where there is no child.
+
+        Raises:
+            DescriptionError: There are fewer than three.
+        """
+        child = parent.first(tag)
+        if child is None:
+            return None
+        numbers = self.values(child)
+        if len(numbers) < 3:
+            raise self.error(child, f"{shown(child.text.strip())} needs three numbers")
+        return (numbers[0], numbers[1], numbers[2])
+
+    def pose(self, parent: Element) -> Pose:
+        """The `<pose>` of an element, or its `<origin>` as URDF has it; scaled.
+
+        As in PyBullet angles are the last three numbers, which are the position itself where there
+        are no more.
+        """
+        if parent.first("origin") is not None:
+            return self.origin(parent)
+        element = parent.first("pose")
+        if element is None:
+            return IDENTITY
+        numbers = self.values(element)
+        if len(numbers) < 3:
+            self.warn(element, f"{shown(element.text.strip())} needs six numbers; read as zeros")
+            return IDENTITY
+        if len(numbers) != 6:
+            self.warn(
+                element,
+                f"{len(numbers)} numbers instead of six; the last three are read as angles, as in PyBullet",
+            )
+        if element.attributes.get("relative_to"):
+            self.warn(element, "relative_to is not supported; the pose is taken in the enclosing frame")
+        scale = self.scale
+        x, y, z = numbers[:3]
+        roll, pitch, yaw = numbers[-3:]
+        return Pose((x * scale, y * scale, z * scale), quaternion_from_rpy(roll, pitch, yaw))

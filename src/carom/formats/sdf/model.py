@@ -1,0 +1,125 @@
+"""`<model>`: links and joints become robots, one for each tree of links."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from carom.description import Joint, Link, Pose, Robot
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose
+from carom.errors import DescriptionError
+from carom.formats.placed import PlacedRobot
+from carom.formats.sdf.context import SdfContext
+from carom.formats.sdf.joint import WORLD, read_sdf_joint
+from carom.formats.sdf.link import read_sdf_link
+from carom.formats.urdf.context import shown
+from carom.formats.urdf.link import MASSLESS
+from carom.formats.urdf.tree import find_root
+from carom.formats.xml_tree import Element
+
+_IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
+
+
+def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
+    """The robots of a `<model>`: one, or as many as it has links that hang on nothing.
+
+    Raises:
+        DescriptionError: Name or links are missing, or something inside is wrong.
+    """
+    name = context.required(element, "name")
+    for child in element.children:
+        if child.tag in _IGNORED:
+            context.warn(child, f"{_IGNORED[child.tag]} ignored")
+    links, poses = _read_links(context, element)
+    joint_elements = list(element.all("joint"))
+    indices = {link.name: index for index, link in enumerate(links)}
+    if WORLD not in indices and any(context.text(joint, "parent") == WORLD for joint in joint_elements):
+        # The world itself carries a joint.
+        indices[WORLD] = len(links)
+        links.append(Link(WORLD, inertial=MASSLESS))
+        poses.append(IDENTITY)
+    joints = [read_sdf_joint(context, joint, indices, poses) for joint in joint_elements]
+    _refuse_duplicates(context, joint_elements)
+    place, static = context.pose(element), _is_static(context, element)
+    carried = {joint.child for joint in joints}
+    roots = [index for index in range(len(links)) if index not in carried]
+    if len(roots) <= 1:
+        root = find_root(context, links, joints, joint_elements)
+        # As in PyBullet the model's pose is that of its root, whose own pose in the model is lost.
+        return [PlacedRobot(_robot(context, name, links, joints, root), place, static)]
+    return [
+        PlacedRobot(
+            _part(context, name, links, joints, root, joint_elements), compose(place, poses[root]), static
+        )
+        for root in roots
+    ]
+
+
+def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[Pose]]:
+    links: list[Link] = []
+    poses: list[Pose] = []
+    lines: dict[str, int] = {}
+    for element in model.all("link"):
+        link = read_sdf_link(context, element)
+        if link.name in lines:
+            raise context.error(
+                element, f"the name {shown(link.name)} is taken already, on line {lines[link.name]}"
+            )
+        lines[link.name] = element.line
+        links.append(link)
+        poses.append(context.pose(element))
+    if not links:
+        raise context.error(model, "there are no links")
+    return links, poses
+
+
+def _refuse_duplicates(context: SdfContext, joints: list[Element]) -> None:
+    lines: dict[str, int] = {}
+    for element in joints:
+        name = element.attributes["name"]
+        if name in lines:
+            raise context.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
+        lines[name] = element.line
+
+
+def _is_static(context: SdfContext, model: Element) -> bool:
+    """Whether a model does not move: as in PyBullet only if it says 1."""
+    element = model.first("static")
+    if element is None:
+        return False
+    try:
+        return int(context.value(model, "static")) == 1
+    except DescriptionError:
+        context.warn(element, f"{shown(element.text.strip())} is read as 0, as in PyBullet; write 1")
+        return False
+
+
+def _part(
+    context: SdfContext,
+    name: str,
+    links: list[Link],
+    joints: list[Joint],
+    root: int,
+    joint_elements: list[Element],
+) -> Robot:
+    """The tree of links that one root carries."""
+    kept = {root}
+    # Each round adds the links one joint farther out.
+    while True:
+        more = {joint.child for joint in joints if joint.parent in kept} - kept
+        if not more:
+            break
+        kept |= more
+    number = {link: place for place, link in enumerate(sorted(kept))}
+    own = [index for index, joint in enumerate(joints) if joint.child in kept and joint.parent in kept]
+    own_joints = [
+        replace(joints[index], parent=number[joints[index].parent], child=number[joints[index].child])
+        for index in own
+    ]
+    own_links = [links[index] for index in sorted(kept)]
+    find_root(context, own_links, own_joints, [joint_elements[index] for index in own])
+    return _robot(context, name, own_links, own_joints, number[root])
+
+
+def _robot(context: SdfContext, name: str, links: list[Link], joints: list[Joint], root: int) -> Robot:
+    return Robot(name, tuple(links), tuple(joints), root=root, source=context.file)
