@@ -1,5 +1,7 @@
 """OBJ files for drawing: corners of every form, normals, materials, and clear errors."""
 
+import logging
+
 import numpy as np
 import pytest
 
@@ -108,6 +110,7 @@ def test_without_textures_the_last_material_gives_the_colour(read, tmp_path):
 
 
 def test_a_missing_material_file_is_no_error(read, caplog):
+    caplog.set_level(logging.INFO, "carom")
     mesh = read("mtllib nowhere.mtl\n" + SQUARE + "usemtl a\nf 1 2 3")
     assert mesh.material_rgba is None
     assert "nowhere.mtl" in caplog.text

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.formats.files import FileCache, FileStamp
 from carom.formats.mesh import read_mesh
+from carom.render.dae_visuals import read_dae_visual
 from carom.render.obj_visuals import read_obj_visual
 from carom.render.render_mesh import RenderMesh, flat_mesh
 
@@ -27,8 +28,11 @@ def read_mesh_visual(path: Path) -> RenderMesh:
     # All the checks of the reader that physics uses hold here as well.
     parts = read_mesh(file)
     stamp = FileStamp.of(file)
-    if file.suffix.lower() == ".obj":
+    kind = file.suffix.lower()
+    if kind == ".obj":
         mesh = read_obj_visual(file)
+    elif kind == ".dae":
+        mesh = read_dae_visual(file)
     else:
         mesh = flat_mesh(np.concatenate([part.vertices[part.triangles] for part in parts]))
     _cache.put(file, stamp, mesh)

@@ -30,11 +30,11 @@ class ObjMaterial:
 
 
 def read_materials(path: Path) -> dict[str, ObjMaterial]:
-    """The materials of an MTL file by name; none, with a warning, if the file cannot be read."""
+    """The materials of an MTL file by name; none if the file cannot be read, which is common and harmless."""
     try:
         data, _ = read_bounded(path, MAX_FILE_BYTES)
     except DescriptionError as error:
-        _log.warning("%s; the mesh goes without its materials", error)
+        _log.info("%s; the mesh goes without its materials", error)
         return {}
     materials: dict[str, ObjMaterial] = {}
     material = ObjMaterial()

@@ -178,7 +178,7 @@ class ColladaReader:
         return values.reshape(-1, stride)[:, :width]
 
     def corner_indices(self, primitive: Element, offset: int, stride: int) -> NDArray[np.int64]:
-        """(m, 3) position indices; polygons are cut into fans."""
+        """(m, 3) entries at one offset of each corner; polygons are cut into fans."""
         fans: list[NDArray[np.int64]] = []
         counts = primitive.first("vcount")
         for run in primitive.all("p"):

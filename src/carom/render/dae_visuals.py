@@ -1,0 +1,114 @@
+"""COLLADA (DAE) with everything that is seen: normals and texture coordinates.
+
+Images and colours are not read: PyBullet's software renderer does not show them either.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.formats.files import read_bounded
+from carom.formats.mesh.collada import ColladaReader, collada_reader
+from carom.formats.mesh.reader import MAX_FILE_BYTES
+from carom.formats.xml_tree import Element
+from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Corners:
+    """Triangles corner by corner.
+
+    Attributes:
+        positions: (3 m, 3).
+        normals: (3 m, 3), of any length.
+        uvs: (3 m, 2).
+    """
+
+    positions: Floats
+    normals: Floats
+    uvs: Floats
+
+
+def read_dae_visual(file: Path) -> RenderMesh:
+    """Reads a DAE file for drawing. Triangles without usable normals are flat.
+
+    Raises:
+        DescriptionError: It is not COLLADA, is broken, or its scene shows no triangles.
+    """
+    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    reader = collada_reader(data, file)
+    known: dict[str, list[_Corners]] = {}
+    placed = []
+    for identifier, placement in reader.scene():
+        if identifier not in known:
+            known[identifier] = list(_read_geometry(reader, reader.geometries[identifier]))
+        placed += [_placed(corners, placement) for corners in known[identifier]]
+    count = sum(len(corners.positions) for corners in placed)
+    return RenderMesh(
+        np.concatenate([corners.positions for corners in placed]).astype(np.float32),
+        unit_vectors(np.concatenate([corners.normals for corners in placed])).astype(np.float32),
+        np.concatenate([corners.uvs for corners in placed]).astype(np.float32),
+        np.arange(count, dtype=np.int32).reshape(-1, 3),
+    )
+
+
+def _placed(corners: _Corners, placement: Floats) -> _Corners:
+    linear = placement[:3, :3]
+    # Rows of cofactors turn normals as the inverse transpose does, and need no inverse.
+    cofactors = np.stack([np.cross(linear[i - 2], linear[i - 1]) for i in range(3)])
+    return _Corners(
+        corners.positions @ linear.T + placement[:3, 3], corners.normals @ cofactors.T, corners.uvs
+    )
+
+
+def _read_geometry(reader: ColladaReader, geometry: Element) -> list[_Corners]:
+    result = []
+    for mesh in geometry.all("mesh"):
+        for primitive in mesh.children:
+            if primitive.tag not in ("triangles", "polylist", "polygons"):
+                continue
+            source, offset, stride = reader.position_input(mesh, primitive)
+            positions = source[reader.corner_indices(primitive, offset, stride)]
+            normals = _attribute(reader, mesh, primitive, "NORMAL", 3, stride)
+            if normals is None:
+                normals = np.repeat(face_normals(positions), 3, axis=0)
+            uvs = _attribute(reader, mesh, primitive, "TEXCOORD", 2, stride)
+            if uvs is None:
+                uvs = np.full((3 * len(positions), 2), NO_TEXTURE_UV)
+            result.append(_Corners(positions.reshape(-1, 3), normals, uvs))
+    return result
+
+
+def _attribute(
+    reader: ColladaReader, mesh: Element, primitive: Element, semantic: str, width: int, stride: int
+) -> Floats | None:
+    """(3 m, width) values of an attribute at all corners; None if the mesh does not have it."""
+    offset = 0
+    owners = [primitive]
+    for entry in primitive.all("input"):
+        if entry.attributes.get("semantic") == "VERTEX":
+            name = entry.attributes.get("source", "")[1:]
+            owners += [v for v in mesh.all("vertices") if v.attributes.get("id", "") == name]
+            offset = int(reader.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
+    for owner in owners:
+        for entry in owner.all("input"):
+            if entry.attributes.get("semantic") != semantic:
+                continue
+            identifier = entry.attributes.get("source", "")[1:]
+            source = next((s for s in mesh.all("source") if s.attributes.get("id", "") == identifier), None)
+            if source is None:
+                return None
+            if owner is primitive:
+                offset = int(reader.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
+            rows = reader.source_rows(source, width)
+            indices = reader.corner_indices(primitive, offset, stride).reshape(-1)
+            if len(indices) and not 0 <= indices.min() <= indices.max() < len(rows):
+                return None
+            return rows[indices]
+    return None
