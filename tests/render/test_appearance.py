@@ -155,6 +155,14 @@ def test_a_mesh_that_has_gone_is_not_shown(world, painted_mesh, caplog):
     assert "not shown" in caplog.text
 
 
+def test_a_mesh_that_goes_after_the_first_image_stays_in_view(world, painted_mesh):
+    add_shape(world, painted_mesh)
+    assert np.any(draw(world).label == 0)
+    painted_mesh.path.unlink()
+    add_shape(world, Sphere(0.1), (0.0, -2.0, 0.0))
+    assert set(np.unique(draw(world).label)) == {-1, 0, 1}
+
+
 def test_a_mirrored_mesh_is_seen_from_outside(world, painted_mesh):
     add_shape(world, Mesh(painted_mesh.path, (-1.0, 1.0, 1.0)))
     assert np.any(draw(world).label == 0)

@@ -48,6 +48,7 @@ class ShapeLook:
     Attributes:
         geometry: The shape.
         frame: Its pose in the link frame.
+        mesh: Its triangles, in its own frame.
         rgba: Present colour. It multiplies the texture; only alpha 0 matters: such a shape is not drawn.
         specular: Present colour of its highlights.
         texture: Number of its present texture, -1 if it has none.
@@ -56,6 +57,7 @@ class ShapeLook:
 
     geometry: Geometry
     frame: Pose
+    mesh: RenderMesh
     rgba: Rgba
     specular: tuple[float, float, float] = (1.0, 1.0, 1.0)
     texture: int = NO_TEXTURE
@@ -146,11 +148,12 @@ class Appearance:
         return looks
 
     def _look(self, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags) -> ShapeLook:
-        look = ShapeLook(geometry, frame, rgba)
+        # Kept from now on: the file may go, as it may once PyBullet has loaded a body.
+        mesh = shape_mesh(geometry)
+        look = ShapeLook(geometry, frame, mesh, rgba)
         if isinstance(geometry, (Plane, Heightfield)):
             look.texture = self.textures.add_checker()
         elif isinstance(geometry, Mesh):
-            mesh = shape_mesh(geometry)
             if LoadFlags.USE_MATERIAL_COLORS_FROM_MTL in flags and mesh.material_rgba is not None:
                 opaque = LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL not in flags
                 look.rgba = (*mesh.material_rgba[:3], 1.0) if opaque else mesh.material_rgba

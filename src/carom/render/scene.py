@@ -16,7 +16,6 @@ from carom.model.body_spec import BASE
 from carom.model.real import NUMPY_REAL, Int32, Vector3, Vector4, real
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.kernels.structs import Scene, Vector2
-from carom.render.meshes import shape_mesh
 from carom.render.parallel import worker_count
 from carom.render.render_mesh import RenderMesh
 from carom.render.textures import NO_TEXTURE, Textures
@@ -132,7 +131,7 @@ class SceneArrays:
     def _add_shape(self, columns: _Columns, body: Body, link: int, shape: ShapeLook, slot: int) -> None:
         frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
         rotation = np.array(rotation_matrix(frame.orientation))
-        for piece in pieces_of(shape_mesh(shape.geometry)):
+        for piece in pieces_of(shape.mesh):
             columns.positions.append(piece.positions @ rotation.T + frame.position)
             columns.normals.append(piece.normals @ rotation.T)
             columns.uvs.append(piece.uvs)
@@ -161,13 +160,15 @@ class SceneArrays:
 
     def _take_textures(self, textures: Textures) -> None:
         self._texture_changes = textures.changes
+        images = [textures.image(number) for number in self._texture_slots]
+        # Bodies loaded from the same file share one image, though each has a texture of its own.
+        distinct = {id(image): image for image in images}
         # The lower row comes first, as texture coordinates have it.
-        images = [textures.image(number)[::-1] for number in self._texture_slots]
-        texels = [image.reshape(-1, 3) for image in images]
-        self.struct.texture_first = _array(_starts(list(map(len, texels))), Int32)
-        self.struct.texture_size = _array(
-            np.array([image.shape[1::-1] for image in images], dtype=np.int32).reshape(-1, 2), wp.vec2i
-        )
+        texels = [image[::-1].reshape(-1, 3) for image in distinct.values()]
+        starts = dict(zip(distinct, _starts(list(map(len, texels))).tolist(), strict=False))
+        self.struct.texture_first = _array(np.array([starts[id(image)] for image in images]), Int32)
+        sizes = np.array([image.shape[1::-1] for image in images], dtype=np.int32).reshape(-1, 2)
+        self.struct.texture_size = _array(sizes, wp.vec2i)
         self.struct.texel = _array(np.concatenate([np.zeros((0, 3), np.uint8), *texels]), wp.vec3ub)
 
 
