@@ -265,8 +265,9 @@ class World:
         """Advance the world by `count` time steps.
 
         Raises:
-            carom.errors.SimulationError: A velocity came out as NaN or infinite; the world is as it
-                was before that step, without the forces applied for it.
+            carom.errors.SimulationError: A velocity came out as NaN or infinite; all coordinates are as
+                they were before that step. The forces applied for it, motor impulses, sensor readings
+                and contacts are gone.
         """
         for _ in range(count):
             (self._step or self._prepare_step())()
@@ -275,8 +276,14 @@ class World:
             self.time += self.parameters.time_step
 
     def _raise_fault(self) -> None:
+        """Throw away what the failed step left besides the coordinates, and say which body it was."""
         tree = self._fault[0] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        self.joint_reaction[:] = 0.0
+        self.motor_impulse[:] = 0.0
+        self.touch.forget_contacts()
+        for other in self.bodies.values():
+            other.update_link_poses()
         raise SimulationError(
             f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
             "the world is as it was before the step"
