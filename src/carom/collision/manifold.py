@@ -27,6 +27,7 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
         pairs.previous_distance[world, row] = contacts.contact_distance[world, row]
         pairs.previous_impulse[world, row] = contacts.contact_impulse[world, row]
         pairs.previous_age[world, row] = contacts.contact_age[world, row]
+        pairs.previous_taken[world, row] = 0
     return count
 
 
@@ -84,7 +85,7 @@ def predecessor(
     nearest = Int32(-1)
     least = far * far
     for row in range(first, last):
-        if pairs.previous_age[world, row] >= 0:
+        if pairs.previous_taken[world, row] == 0:
             away = wp.min(
                 wp.length_sq(pairs.previous_local_a[world, row] - local_a),
                 wp.length_sq(pairs.previous_local_b[world, row] - local_b),
@@ -131,8 +132,7 @@ def write_contact(
         contacts.contact_direction1[world, row] = pairs.previous_direction1[world, before]
         contacts.contact_direction2[world, row] = pairs.previous_direction2[world, before]
         contacts.contact_age[world, row] = pairs.previous_age[world, before] + 1
-        # Taken: no other contact may inherit from it.
-        pairs.previous_age[world, before] = -1
+        pairs.previous_taken[world, before] = 1
     else:
         contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
         contacts.contact_direction1[world, row] = Vector3(0.0, 0.0, 0.0)

@@ -118,6 +118,7 @@ class Pairs:
     previous_distance: RealRows
     previous_impulse: Vector4Rows
     previous_age: IntRows
+    previous_taken: IntRows  # 1 once a contact has inherited from it
 
     # Its first entries: pairs found, leaves of the hierarchy, shapes in it, planes.
     count_pairs: IntRows

@@ -1,0 +1,225 @@
+"""Contact points of shapes at rest and in plain positions, and what persists from step to step."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from tests.collision.scene import Scene, box, capsule, cylinder, hull, plane, sphere
+
+CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.5
+UPRIGHT_X = (0, np.sqrt(0.5), 0, np.sqrt(0.5))
+UPRIGHT_Y = (np.sqrt(0.5), 0, 0, np.sqrt(0.5))
+
+
+def turned(angle, axis=(0, 0, 1)):
+    """Quaternion of a rotation."""
+    axis = np.asarray(axis) / np.linalg.norm(axis)
+    return (*(axis * np.sin(angle / 2)), np.cos(angle / 2))
+
+
+def sorted_rows(points):
+    return np.array(sorted(np.round(points, 9).tolist()))
+
+
+def collided(*shapes):
+    scene = Scene(shapes)
+    scene.collide()
+    return scene
+
+
+def four_corners(half, height):
+    return [[-half, -half, height], [-half, half, height], [half, -half, height], [half, half, height]]
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        box((0.5, 0.5, 0.5), position=(0, 0, 0.499)),
+        hull(CUBE, position=(0, 0, 0.499)),
+        hull(CUBE, margin=0.01, position=(0, 0, 0.509)),
+    ],
+    ids=["box", "hull", "hull with margin"],
+)
+@pytest.mark.parametrize(
+    "ground",
+    [plane(), box((5, 5, 5), position=(0, 0, -5), static=True)],
+    ids=["plane", "box"],
+)
+def test_a_cube_at_rest_has_its_four_corners_at_once(shape, ground):
+    scene = collided(ground, shape)
+    assert_allclose(sorted_rows(scene.contacts("point_a")), four_corners(0.5, 0.0), atol=1e-7)
+    assert_allclose(scene.contacts("distance"), -0.001, atol=1e-9)
+    # The ground is shape a: normals are on the cube, towards the ground.
+    assert_allclose(scene.contacts("normal"), [[0, 0, -1]] * 4, atol=1e-7)
+
+
+def test_points_are_on_the_surfaces_along_the_normal():
+    scene = collided(sphere(0.5, position=(0, 0, 0.49)), box((1, 1, 1), position=(0, 0, -1)))
+    assert_allclose(scene.contacts("normal"), [[0, 0, 1]])
+    assert_allclose(scene.contacts("point_a"), [[0, 0, -0.01]], atol=1e-12)
+    assert_allclose(scene.contacts("point_b"), [[0, 0, 0]], atol=1e-12)
+    assert_allclose(scene.contacts("local_a"), [[0, 0, -0.5]], atol=1e-12)
+    assert_allclose(scene.contacts("local_b"), [[0, 0, 1]], atol=1e-12)
+    assert scene.contacts("shapes").tolist() == [[0, 1, 0, 1]]
+
+
+def test_stacked_boxes_touch_in_the_overlap_of_their_faces():
+    scene = collided(
+        box((1, 1, 1)), box((1, 1, 1), position=(0.5, 0.25, 1.999), orientation=turned(np.pi / 2))
+    )
+    points = sorted_rows(scene.contacts("point_b")[:, :2])
+    assert_allclose(points, [[-0.5, -0.75], [-0.5, 1], [1, -0.75], [1, 1]], atol=1e-9)
+
+
+def test_a_box_turned_on_another_keeps_four_of_eight_points_that_span_the_overlap():
+    scene = collided(
+        box((0.5, 0.5, 0.5)), box((0.5, 0.5, 0.5), position=(0, 0, 0.999), orientation=turned(np.pi / 4))
+    )
+    points = scene.contacts("point_b")
+    assert len(points) == 4
+    x, y = points[:, :2].T
+    order = np.argsort(np.arctan2(y, x))
+    x, y = x[order], y[order]
+    area = 0.5 * np.abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    # An octagon of this size has an area of 0.83; half of it spans a quadrilateral of 0.59 at most.
+    assert area > 0.55
+
+
+def test_crossed_box_edges_touch_in_one_point():
+    first = box((2, 0.5, 0.5), orientation=turned(np.pi / 4, (1, 0, 0)))
+    height = 2 * np.sqrt(0.5) - 0.001
+    second = box((0.5, 2, 0.5), position=(0, 0, height), orientation=turned(np.pi / 4, (0, 1, 0)))
+    scene = collided(first, second)
+    assert_allclose(scene.contacts("distance"), [-0.001], atol=1e-9)
+    assert_allclose(scene.contacts("point_a"), [[0, 0, np.sqrt(0.5)]], atol=1e-9)
+    assert_allclose(scene.contacts("normal"), [[0, 0, -1]], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("shape", "count", "lowest"),
+    [
+        (sphere(0.5, position=(0, 0, 0.5)), 1, [[0, 0]]),
+        (capsule(0.5, 1, position=(0, 0, 0.5), orientation=UPRIGHT_X), 2, [[-1, 0], [1, 0]]),
+        (cylinder(0.5, 1, position=(0, 0, 0.5), orientation=UPRIGHT_X), 2, [[-1, 0], [1, 0]]),
+        (cylinder(0.5, 1, position=(0, 0, 1)), 4, None),
+    ],
+    ids=["ball", "capsule", "lying cylinder", "standing cylinder"],
+)
+@pytest.mark.parametrize(
+    "ground",
+    [plane(), box((5, 5, 5), position=(0, 0, -5), static=True), hull(10 * CUBE - (0, 0, 5), static=True)],
+    ids=["plane", "box", "hull"],
+)
+def test_round_shapes_at_rest(shape, count, lowest, ground):
+    scene = collided(shape, ground)
+    assert len(scene.contacts("distance")) == count
+    assert_allclose(scene.contacts("distance"), 0, atol=1e-7)
+    points = scene.contacts("point_b")[:, :2]
+    if lowest is None:
+        assert_allclose(np.linalg.norm(points, axis=1), 0.5, atol=1e-6)
+        assert_allclose(points.sum(axis=0), 0, atol=1e-6)
+    else:
+        assert_allclose(sorted_rows(points), lowest, atol=1e-6)
+    assert_allclose(scene.contacts("normal"), [[0, 0, 1]] * count, atol=1e-6)
+
+
+def test_capsules_side_by_side_touch_along_what_they_share():
+    scene = collided(capsule(0.5, 1), capsule(0.5, 1, position=(0.99, 0, 0.5)))
+    assert_allclose(sorted_rows(scene.contacts("point_a")), [[0.5, 0, -0.5], [0.5, 0, 1]], atol=1e-12)
+
+
+def test_impulses_follow_a_sliding_contact():
+    scene = Scene([plane(), box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
+    scene.collide()
+    impulses = np.arange(16.0).reshape(4, 4)
+    scene.contacts("impulse")[:] = impulses
+    before = scene.contacts("point_b").copy()
+    scene.place(1, (0.005, 0.001, 0.5))
+    scene.collide()
+    assert scene.contacts("age").tolist() == [1, 1, 1, 1]
+    for point, impulse in zip(scene.contacts("point_b"), scene.contacts("impulse"), strict=True):
+        match = np.argmin(np.linalg.norm(before - point, axis=1))
+        assert_allclose(impulse, impulses[match])
+
+
+def test_a_new_contact_starts_from_nothing():
+    scene = Scene([plane(), box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
+    scene.collide()
+    scene.contacts("impulse")[:] = 1.0
+    scene.place(1, (0, 0, 2.0))
+    scene.collide()
+    assert len(scene.contacts("age")) == 0
+    scene.place(1, (0, 0, 0.5))
+    scene.collide()
+    assert scene.contacts("age").tolist() == [0, 0, 0, 0]
+    assert_allclose(scene.contacts("impulse"), 0)
+
+
+@pytest.mark.parametrize(
+    ("shapes", "expected"),
+    [
+        ([plane(), sphere(0.5, position=(0, 0, 0.51))], 1),
+        ([plane(), sphere(0.5, position=(0, 0, 0.53))], 0),
+        ([sphere(0.5), sphere(0.5, position=(1.001, 0, 0))], 0),
+        ([sphere(0.5), sphere(0.5, position=(0.999, 0, 0))], 1),
+        ([box((0.5, 0.5, 0.5)), box((0.5, 0.5, 0.5), position=(0, 0, 1.001))], 0),
+        ([box((0.5, 0.5, 0.5)), box((0.5, 0.5, 0.5), position=(0, 0, 0.999))], 4),
+        ([capsule(0.5, 1), capsule(0.5, 1, position=(1.01, 0, 0))], 2),
+    ],
+    ids=["ball near", "ball far", "balls near", "balls touch", "boxes near", "boxes touch", "capsules near"],
+)
+def test_how_near_is_a_contact(shapes, expected):
+    assert len(collided(*shapes).contacts("distance")) == expected
+
+
+def test_boxes_that_touched_stay_in_contact_up_to_the_breaking_distance():
+    scene = Scene([box((0.5, 0.5, 0.5)), box((0.5, 0.5, 0.5), position=(0, 0, 0.999))])
+    scene.collide()
+    scene.place(1, (0, 0, 1.01))
+    scene.collide()
+    assert_allclose(scene.contacts("distance"), [0.01] * 4, atol=1e-12)
+    scene.place(1, (0, 0, 1.03))
+    scene.collide()
+    assert len(scene.contacts("distance")) == 0
+
+
+def test_parts_of_a_compound_make_contacts_only_where_their_bounds_meet():
+    scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.51))])
+    scene.numpy("shapes")["link_shape_count"][1] = 2
+    scene.collide()
+    assert len(scene.contacts("distance")) == 0
+    scene.place(1, (0, 0, 0.4999))
+    scene.collide()
+    assert len(scene.contacts("distance")) == 1
+
+
+def test_contacts_without_room_leave_the_old_ones_and_say_how_many_they_are():
+    shapes = [plane(), *(box((0.5, 0.5, 0.5), position=(2 * i, 0, 0.5)) for i in range(8))]
+    scene = Scene(shapes, contact_room=16)
+    for i in range(1, 9):
+        scene.place(i, (2 * i, 0, 0.5 if i == 3 else 5.0))
+    scene.collide()
+    scene.contacts("impulse")[:] = 7.0
+    for i in range(1, 9):
+        scene.place(i, (2 * i, 0, 0.5))
+    scene.collide()
+    counts = scene.numpy("contacts")["count_contacts"][0]
+    assert counts[:2].tolist() == [4, 32]
+    assert_allclose(scene.contacts("impulse"), 7.0)
+    assert scene.contacts("shapes")[:, 1].tolist() == [3] * 4
+
+    scene.tables["contacts"].reserve({"contact": 32})
+    scene.grow_scratch(len(shapes), 64)
+    scene.collide()
+    assert len(scene.contacts("age")) == 32
+    assert_allclose(scene.contacts("impulse")[scene.contacts("shapes")[:, 1] == 3], 7.0)
+
+
+def test_pairs_without_room_are_counted():
+    scene = Scene([plane(), *(sphere(0.5, position=(2 * i, 0, 0.5)) for i in range(30))], pair_room=16)
+    assert scene.tables["pairs"].capacity["pair"] == 16
+    scene.collide()
+    assert scene.numpy("pairs")["count_pairs"][0, 0] == 30
+    assert len(scene.contacts("age")) == 0
+    scene.grow_scratch(31, 30)
+    scene.collide()
+    assert len(scene.contacts("age")) == 30
