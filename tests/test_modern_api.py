@@ -62,7 +62,8 @@ def world():
 @pytest.fixture
 def load(world, tmp_path):
     def load(*joints: dict):
-        return world.load_urdf(robot(tmp_path, *joints), fixed_base=True)
+        apart = (10.0 * len(world.bodies), 0.0, 0.0)
+        return world.load_urdf(robot(tmp_path, *joints), apart, fixed_base=True)
 
     return load
 

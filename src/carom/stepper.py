@@ -82,8 +82,9 @@ class Stepper:
 
     @property
     def single(self) -> Callable[[], None] | None:
-        """A step of one substep as one launch, where that is all there is to it."""
-        return None if self._touching or self._substeps > 1 else self._launch.function
+        """A step of one substep as one launch, where nothing can fail to fit."""
+        coupled = self._touching or self._touch.user_count > 0
+        return None if coupled or self._substeps > 1 else self._launch.function
 
     def step(self, substeps: int) -> bool:
         """Perform a step of `substeps` substeps.
