@@ -75,8 +75,8 @@ def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np
         vertices: (n, 3) positions.
         triangles: (m, 3) indices, counter-clockwise from outside.
     """
-    positions, merged = np.unique(vertices, axis=0, return_inverse=True)
-    corners = merged.reshape(-1)[triangles]
+    positions, merged = _distinct(vertices)
+    corners = merged[triangles]
     a, b, c = (positions[corners[:, side]] for side in range(3))
     spread = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     longest = np.maximum.reduce([np.linalg.norm(b - a, axis=1), np.linalg.norm(c - a, axis=1)])
@@ -89,6 +89,17 @@ def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np
     firsts = np.arange(0, 3 * count, 3, dtype=np.int32)
     counts = np.full(count, 3, dtype=np.int32)
     return polyhedron(positions, firsts, counts, flat)
+
+
+def _distinct(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The different rows, sorted, and which of them each row is; many times as fast as np.unique."""
+    order = np.lexsort(rows.T)
+    arranged = rows[order]
+    is_first = np.ones(len(rows), dtype=bool)
+    is_first[1:] = (arranged[1:] != arranged[:-1]).any(axis=1)
+    which = np.empty(len(rows), dtype=np.int64)
+    which[order] = np.cumsum(is_first) - 1
+    return arranged[is_first], which
 
 
 _THIN = 1e-12
@@ -104,6 +115,8 @@ def _planes(
     """Best planes of polygons: normals by Newell's sum, offsets so that no corner lies outside."""
     if not len(firsts):
         return np.empty((0, 4))
+    if (counts == 3).all():
+        return _triangle_planes(vertices[corners.reshape(-1, 3)])
     following = np.arange(1, len(corners) + 1)
     following[firsts + counts - 1] = firsts
     # Sums of products of large coordinates would lose the digits of small faces.
@@ -114,3 +127,11 @@ def _planes(
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     heights = np.einsum("ij,ij->i", vertices[corners], np.repeat(normals, counts, axis=0))
     return np.column_stack([normals, np.maximum.reduceat(heights, firsts)])
+
+
+def _triangle_planes(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Planes of triangles, from corners (m, 3, 3)."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    heights = np.einsum("ijk,ik->ij", corners, normals)
+    return np.column_stack([normals, heights.max(axis=1)])
