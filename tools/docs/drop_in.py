@@ -13,6 +13,11 @@ DOCS = Path(__file__).parents[2] / "docs"
 TITLES = {
     "_connection": "Connections",
     "_loading": "Loading",
+    "_loading_scenes": "Loading scenes",
+    "_collision_shapes": "Collision shapes",
+    "_visual_shapes": "Visual shapes",
+    "_multi_body": "Bodies made of shapes",
+    "_vhacd": "Convex decomposition",
     "_engine": "Stepping and engine parameters",
     "_bodies": "Bodies",
     "_joints": "Joints",
@@ -21,6 +26,11 @@ TITLES = {
     "_links": "Links",
     "_dynamics": "Masses, friction, damping, limits",
     "_forces": "External forces",
+    "_contacts": "Contacts",
+    "_closest_points": "Nearest points and overlaps",
+    "_rays": "Rays",
+    "_collision_filters": "Collision filters",
+    "_shape_data": "What shapes a body has",
     "_constraints": "Constraints",
     "_algebra": "Inverse dynamics, Jacobians, mass matrices",
     "_inverse_kinematics": "Inverse kinematics",
@@ -40,10 +50,10 @@ NOTES = {
 
 LIMITED = {
     "connect": "`GUI` simulates without showing a window; there are no physics servers",
-    "loadURDF": "shapes give inertia, but do not collide yet",
-    "changeDynamics": "contact parameters are recorded for the day there is contact",
-    "setPhysicsEngineParameter": "parameters of contact are recorded for the day there is contact",
-    "setDefaultContactERP": "recorded for the day there is contact",
+    "changeDynamics": "`anisotropicFriction`, `frictionAnchor` and what concerns sleeping are recorded and "
+    "have no effect; nor has continuous collision detection, as on PyBullet's multibodies",
+    "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
+    "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
 }
 
 MEMBERS = """
