@@ -57,6 +57,8 @@ class Agreement:
 
 def tolerance_of(scenario: Scenario, series: str) -> float:
     """The greatest relative error promised for a series."""
+    if scenario.tolerance is not None:
+        return scenario.tolerance
     if scenario.is_single_precision(series):
         return SINGLE_PRECISION_TOLERANCE
     return INFO_TOLERANCE if scenario.kind is Kind.INFO else MOTION_TOLERANCE

@@ -35,6 +35,7 @@ class Scenario:
         single_precision: Names of series (or endings of names) that PyBullet rounds to float32.
         group: Name of the module it comes from.
         title: First line of its docstring.
+        tolerance: Greatest relative error, where the scenario's docstring says why the usual one cannot hold.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Scenario:
     single_precision: tuple[str, ...]
     group: str
     title: str
+    tolerance: float | None = None
 
     def is_single_precision(self, series: str) -> bool:
         """Whether PyBullet rounds this series to float32 before handing it out."""
@@ -63,7 +65,7 @@ ScenarioFunction = Callable[[Any], Mapping[str, Any]]
 
 
 def scenario(
-    kind: Kind = Kind.MOTION, single_precision: tuple[str, ...] = ()
+    kind: Kind = Kind.MOTION, single_precision: tuple[str, ...] = (), tolerance: float | None = None
 ) -> Callable[[ScenarioFunction], ScenarioFunction]:
     """Register a function `(pybullet) -> {series name: values}` as a scenario."""
 
@@ -74,9 +76,8 @@ def scenario(
         title = (function.__doc__ or "").strip().splitlines()
         if not title:
             raise ValueError(f"scenario {name} needs a docstring")
-        REGISTRY[name] = Scenario(
-            name, function, kind, single_precision, function.__module__.rpartition(".")[2], title[0]
-        )
+        group = function.__module__.rpartition(".")[2]
+        REGISTRY[name] = Scenario(name, function, kind, single_precision, group, title[0], tolerance)
         return function
 
     return register
