@@ -16,6 +16,7 @@ import pybullet as p
 ROOT = Path(__file__).resolve().parents[1]
 ASSETS = ROOT / "src" / "pybullet_data"
 PANDA = str(ASSETS / "franka_panda" / "panda.urdf")
+PLANE = str(ASSETS / "plane.urdf")
 KUKA = str(ASSETS / "kuka_iiwa" / "model.urdf")
 TREE = str(ROOT / "tests" / "conformance" / "robots" / "random_tree.urdf")
 MOVABLE = [0, 1, 2, 3, 4, 5, 6, 9, 10]
@@ -183,6 +184,32 @@ def inverse_kinematics(original_data: str) -> Prepared:
 def inverse_kinematics_oriented(original_data: str) -> Prepared:
     panda = _panda()
     return lambda: p.calculateInverseKinematics(panda, 11, [0.45, 0.1, 0.4], [1.0, 0.0, 0.0, 0.0])
+
+
+def _image(width: int, height: int, shadow: int = 0) -> Timed:
+    _panda()
+    p.loadURDF(PLANE)
+    view = p.computeViewMatrix([1.2, -0.8, 1.0], [0.2, 0.0, 0.4], [0.0, 0.0, 1.0])
+    projection = p.computeProjectionMatrixFOV(50, width / height, 0.01, 20)
+    return lambda: p.getCameraImage(
+        width, height, view, projection, shadow=shadow, renderer=p.ER_TINY_RENDERER
+    )
+
+
+def image_84(original_data: str) -> Prepared:
+    return _image(84, 84)
+
+
+def image_320(original_data: str) -> Prepared:
+    return _image(320, 240)
+
+
+def image_640(original_data: str) -> Prepared:
+    return _image(640, 480)
+
+
+def image_shadow(original_data: str) -> Prepared:
+    return _image(320, 240, shadow=1)
 
 
 def load_panda(original_data: str) -> Prepared:

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 from drawing import FAR, NEAR, add_collision_only, add_shape, draw, first_hit, rays
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from carom.description import Box, Cylinder, Material, Plane, Sphere
+from carom.description import Box, Cylinder, Material, Plane, Sphere, TriangleMesh
 from carom.description.transform import rotation_matrix
 from carom.render import parallel
 from carom.render.appearance import appearance_of
@@ -258,3 +258,43 @@ def test_alpha_0_hides_a_shape_and_any_other_alpha_does_not():
     world = World()
     add_shape(world, Box((1.0, 1.0, 1.0)), material=Material("air", rgba=(1.0, 1.0, 1.0, 0.0)))
     assert np.all(draw(world).label == -1)
+
+
+NUMBERS = st.floats(width=32)
+FINITE = st.floats(width=32, allow_nan=False, allow_infinity=False)
+
+
+@settings(max_examples=15, deadline=None, phases=[Phase.generate], report_multiple_bugs=False)
+@given(
+    st.lists(st.tuples(FINITE, FINITE, FINITE), min_size=3, max_size=6),
+    st.lists(st.tuples(NUMBERS, NUMBERS), min_size=6, max_size=6),
+    st.lists(st.tuples(*[st.integers(0, 2)] * 3), min_size=1, max_size=4),
+    st.lists(NUMBERS, min_size=16, max_size=16),
+)
+def test_triangles_texture_coordinates_and_projectors_of_any_numbers_do_no_harm(
+    vertices, uvs, triangles, projector
+):
+    world = World()
+    mesh = TriangleMesh(
+        np.array(vertices), np.array(triangles, dtype=np.int32), uvs=np.array(uvs[: len(vertices)])
+    )
+    body = add_shape(world, mesh)
+    floor = add_shape(world, Plane(), (0.0, 0.0, -1.0))
+    appearance = appearance_of(world)
+    texture = appearance.textures.add(np.full((3, 2, 3), 9, dtype=np.uint8))
+    for each in (body, floor):
+        appearance.change(each, -1, texture=texture, two_sided=True)
+    with np.errstate(all="ignore"):
+        image = draw(world, light=Light(shadow=True))
+        cast = renderer_of(world).draw(
+            world,
+            look_at((0.0, -5.0, 0.0), (0.0, 0.0, 0.0)),
+            parallel_projection(2.0, 1.0, 10.0),
+            16,
+            12,
+            Light(),
+            np.array(projector).reshape(4, 4),
+        )
+    for picture in (image, cast):
+        assert set(np.unique(picture.label)) <= {-1, 0, 1}
+        assert np.all((picture.depth >= 0.0) & (picture.depth <= 1.0))

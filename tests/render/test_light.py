@@ -122,3 +122,25 @@ def test_a_projector_casts_the_texture():
     red, green = image.rgba[:, :, 0] > 100, image.rgba[:, :, 1] > 100
     assert red.mean() == pytest.approx(0.5, abs=0.06)
     assert green.mean() == pytest.approx(0.5, abs=0.06)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"direction": (0.0, 0.0, 0.0)},
+        {"direction": (np.nan, 0.0, 1.0)},
+        {"colour": (np.inf, 0.0, 0.0)},
+        {"ambient": np.nan},
+        {"distance": np.nan},
+        {"distance": -1.0},
+    ],
+)
+def test_lights_that_make_no_sense_are_refused(options):
+    with pytest.raises(ValueError):
+        Light(**options)
+
+
+@pytest.mark.parametrize("distance", [0.0, 1e-9, 1e9])
+def test_lamps_anywhere_give_an_image(distance):
+    light = Light(direction=(0.0, 0.0, 1.0), distance=distance, shadow=True)
+    assert set(np.unique(draw(floor_with_box(), light=light, **ABOVE).label)) == {0, 1}

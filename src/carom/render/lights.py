@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
 from carom.description.pose import Vector3
 
@@ -21,6 +22,9 @@ class Light:
         specular: Strength of highlights.
         shadow: Things cast shadows.
         shade: What remains of the directed light in a shadow.
+
+    Raises:
+        ValueError: The direction has length 0, or a number is NaN or, but for the distance, infinite.
     """
 
     direction: Vector3 = (-50.0, 30.0, 100.0)
@@ -31,3 +35,10 @@ class Light:
     specular: float = 0.05
     shadow: bool = False
     shade: float = 0.8
+
+    def __post_init__(self) -> None:
+        numbers = (*self.direction, *self.colour, self.ambient, self.diffuse, self.specular, self.shade)
+        if not all(map(isfinite, numbers)) or not self.distance >= 0.0:
+            raise ValueError(f"every number of a light must be finite, and the distance at least 0: {self}")
+        if not any(self.direction):
+            raise ValueError("the direction towards the light has length 0")

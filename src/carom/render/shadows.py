@@ -61,7 +61,8 @@ def shadow_camera(
     """
     direction = np.array(light.direction) / np.linalg.norm(light.direction)
     if not isinf(light.distance):
-        view = look_at(light.distance * direction, np.zeros(3))
+        eye = light.distance * direction
+        view = look_at(eye, eye - direction)
         return ShadowCamera(view, projection, width, height, _LAMP_BIAS)
     centre, radius = _casters(scene, link_to_world)
     return ShadowCamera(

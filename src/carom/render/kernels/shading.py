@@ -13,6 +13,9 @@ _OPAQUE = wp.constant(wp.uint32(0xFF000000))
 def wrapped(coordinate: real, size: Int32) -> Int32:
     """Column or row of the texel at a texture coordinate; textures repeat."""
     fraction = coordinate - wp.floor(coordinate)
+    # Written so that NaN fails as well: it would be no index.
+    if not (fraction >= 0.0):
+        return 0
     return wp.min(Int32(fraction * real(size)), size - 1)
 
 
