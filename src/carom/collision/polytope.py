@@ -29,7 +29,7 @@ MOST_CORNERS = 64
 # A face this near to the boundary is on it [m].
 PRECISION = real(1.0e-7)
 # A face whose plane a new corner is this much above cannot stay [m]; less than the above.
-VISIBLE = real(1.0e-10)
+VISIBLE = real(1.0e-8)
 # A set of differences thinner than this has no inside [m].
 THIN = real(1.0e-10)
 # Distance of faces without area, which are never the nearest.
@@ -250,25 +250,34 @@ def overlap(
     add_face(points, planes, faces, world, 3, 2, 3, 0)
     face_count = Int32(4)
     nearest = nearest_face(planes, world, face_count)
+    # Any direction parts the cores if they move far enough; the one with the shortest way counts, so that
+    # the result is right even where rounding or a lack of room spoils the polytope.
+    depth = real(NEVER)
+    outward = Vector3(0.0, 0.0, 1.0)
+    corners = faces[world, nearest]
     growing = Int32(1)
     while growing == 1 and count < MOST_CORNERS:
         plane = planes[world, nearest]
         normal = Vector3(plane[0], plane[1], plane[2])
         w = add_corner(core_a, core_b, vertex_position, points, points_a, world, count, normal)
+        if wp.dot(w, normal) < depth:
+            depth = wp.dot(w, normal)
+            outward = normal
+            corners = faces[world, nearest]
         if plane_height(plane, w) <= PRECISION:
             growing = Int32(0)
         else:
             edge_count = Int32(0)
             kept = Int32(0)
             for face in range(face_count):
-                corners = faces[world, face]
+                seen = faces[world, face]
                 if plane_height(planes[world, face], w) > VISIBLE:
-                    edge_count = add_hole_edge(edges, world, edge_count, corners[0], corners[1])
-                    edge_count = add_hole_edge(edges, world, edge_count, corners[1], corners[2])
-                    edge_count = add_hole_edge(edges, world, edge_count, corners[2], corners[0])
+                    edge_count = add_hole_edge(edges, world, edge_count, seen[0], seen[1])
+                    edge_count = add_hole_edge(edges, world, edge_count, seen[1], seen[2])
+                    edge_count = add_hole_edge(edges, world, edge_count, seen[2], seen[0])
                 else:
                     planes[world, kept] = planes[world, face]
-                    faces[world, kept] = corners
+                    faces[world, kept] = seen
                     kept += 1
             if kept + edge_count > faces.shape[1]:
                 growing = Int32(0)
@@ -278,10 +287,7 @@ def overlap(
             face_count = wp.min(kept + edge_count, faces.shape[1])
             count += 1
             nearest = nearest_face(planes, world, face_count)
-    plane = planes[world, nearest]
-    corners = faces[world, nearest]
-    outward = Vector3(plane[0], plane[1], plane[2])
-    foot = outward * plane[3]
+    foot = outward * depth
     weights = triangle_weights(
         points[world, corners[0]] - foot, points[world, corners[1]] - foot, points[world, corners[2]] - foot
     )
@@ -290,4 +296,4 @@ def overlap(
         + points_a[world, corners[1]] * weights[1]
         + points_a[world, corners[2]] * weights[2]
     )
-    return plane[3], -outward, on_a, on_a - foot
+    return depth, -outward, on_a, on_a - foot
