@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from carom.errors import SimulationError
 from pybullet._arguments import integer, real
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of, clients
@@ -49,7 +50,10 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
     except (KeyError, TypeError):
         client = client_of(physicsClientId)
     with client.lock:
-        client.world.step()
+        try:
+            client.world.step()
+        except SimulationError as problem:
+            fail("stepSimulation failed:", f"{problem}.")
         return tuple(client.world.analytics()) if client.report_analytics else ()
 
 

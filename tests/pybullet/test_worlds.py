@@ -146,6 +146,15 @@ def test_negative_parameters_change_nothing(client: int) -> None:
     assert p.getPhysicsEngineParameters() == before
 
 
+def test_a_motion_that_is_no_longer_finite_is_an_error_of_pybullet(client: int) -> None:
+    body = p.createMultiBody(1.0, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1))
+    p.changeDynamics(body, -1, maxJointVelocity=1e308)
+    p.applyExternalForce(body, -1, [1e308, 0, 0], [0, 1e308, 1e308], p.LINK_FRAME)
+    with pytest.raises(p.error, match=r"body 0 .* not finite"):
+        p.stepSimulation()
+    assert p.getBasePositionAndOrientation(body) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
 def test_statistics_of_the_solver_come_when_asked_for(arm: int) -> None:
     assert p.stepSimulation() == ()
     p.setPhysicsEngineParameter(reportSolverAnalytics=1)
