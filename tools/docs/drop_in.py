@@ -27,7 +27,7 @@ TITLES = {
     "_dynamics": "Masses, friction, damping, limits",
     "_forces": "External forces",
     "_contacts": "Contacts",
-    "_closest_points": "Nearest points and overlaps",
+    "_nearby": "Nearest points and overlaps",
     "_rays": "Rays",
     "_collision_filters": "Collision filters",
     "_shape_data": "What shapes a body has",
