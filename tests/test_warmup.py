@@ -1,5 +1,10 @@
+import re
 import subprocess
 import sys
+from pathlib import Path
+
+import carom
+from carom.warmup import KERNEL_MODULES
 
 SCRIPT = """
 import warp as wp
@@ -17,6 +22,16 @@ with World() as world:
 assert all(before.values()), before
 assert loaded() == before, loaded()
 """
+
+
+def test_every_module_with_kernels_is_warmed_up():
+    source = Path(carom.__file__).parent
+    with_kernels = {
+        ".".join(("carom", *file.relative_to(source).with_suffix("").parts))
+        for file in source.rglob("*.py")
+        if re.search(r"^@kernel$", file.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert set(KERNEL_MODULES) == with_kernels
 
 
 def test_nothing_is_left_to_compile_after_the_warm_up(tmp_path):

@@ -9,6 +9,9 @@ from carom.model.launch import CompilationNotice
 KERNEL_MODULES = (
     "carom.physics.kinematics",
     "carom.physics.step",
+    "carom.collision.collide",
+    "carom.collision.closest",
+    "carom.collision.rays",
     "carom.algorithms.kernels",
     "carom.algorithms.reach.search",
     "carom.render.kernels.draw",

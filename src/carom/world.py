@@ -23,6 +23,7 @@ from carom.model.launch import Launch
 from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.queries import Queries
 from carom.stepper import Stepper
 from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
@@ -253,11 +254,13 @@ class World:
         """Make changes of `parameters` take effect."""
         self.touch.shapes.set_breaking_fraction(self.parameters.contact_breaking_threshold)
         self._step = None
+        self._queries = None
         self._query_space = None
 
     def constraints_changed(self) -> None:
         """Sort and number the constraints again before the next step."""
         self._step = None
+        self._queries = None
 
     # Time
 
@@ -306,6 +309,7 @@ class World:
         model, state, scratch = self._structs
         structs = {"settings": self._settings(), "model": model, "state": state, "scratch": scratch}
         structs |= self.touch.structs()
+        self._queries = None
         self._stepper = Stepper(
             structs, self.touch, self._fault, self.parameters.substeps, _DEVICE, touching=self._can_touch()
         )
@@ -351,6 +355,14 @@ class World:
         detection = self._make_stepper().detection
         while detection is not None and not detection.run():
             detection = self._make_stepper().detection
+
+    def queries(self) -> Queries:
+        """Rays, nearest points and overlaps for the present coordinates."""
+        if self._queries is None:
+            model, state, _ = self._structs
+            structs = {"settings": self._settings(), "model": model, "state": state, **self.touch.structs()}
+            self._queries = Queries(structs, self.link_pose, self.touch, _DEVICE)
+        return self._queries
 
     def _settings(self) -> Any:
         p = self.parameters
@@ -408,6 +420,7 @@ class World:
         """Make views and launches for the present arrays."""
         self._structs = self.arrays.structs(_DEVICE)
         self._step = None
+        self._queries: Queries | None = None
         self._pose_launch: Launch | None = None
         self._twist_launch: Launch | None = None
         self._query_space: QuerySpace | None = None

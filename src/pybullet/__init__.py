@@ -34,6 +34,8 @@ from pybullet._maths import *
 from pybullet._motors import *
 from pybullet._motors_multi_dof import *
 from pybullet._multi_body import *
+from pybullet._nearby import *
+from pybullet._rays import *
 from pybullet._shape_data import *
 from pybullet._textures import *
 from pybullet._unavailable import *

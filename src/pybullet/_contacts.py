@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from pybullet._arguments import integer
 from pybullet._builtin import exported
 from pybullet._clients import client_of
+from pybullet._link_rows import Place, places
 
 if TYPE_CHECKING:
     from carom.world import World
@@ -26,7 +25,6 @@ Vector3 = tuple[float, float, float]
 ContactPoint = tuple[
     int, int, int, int, int, Vector3, Vector3, Vector3, float, float, float, Vector3, float, Vector3
 ]
-Place = tuple[int, int]
 
 
 @exported
@@ -93,14 +91,11 @@ def _contacts(world: World) -> Iterator[tuple[Place, Place, int]]:
     count = world.touch.contact_count
     if count == 0:
         return
-    bodies = list(world.bodies.values())
-    first_links = np.array([body.first_link for body in bodies])
     links = world.touch.contacts.numpy["contact_shapes"][0, :count, 2:]
-    owners = np.searchsorted(first_links, links, side="right") - 1
-    numbers = links - first_links[owners] - 1
-    for row in range(count):
-        (owner_a, owner_b), (link_a, link_b) = owners[row], numbers[row].tolist()
-        yield (bodies[owner_a].id, link_a), (bodies[owner_b].id, link_b), row
+    owners = zip(places(world, links[:, 0]), places(world, links[:, 1]), strict=True)
+    for row, (first, second) in enumerate(owners):
+        if first is not None and second is not None:
+            yield first, second, row
 
 
 def _contact_point(world: World, row: int, first: Place, second: Place, *, swapped: bool) -> ContactPoint:

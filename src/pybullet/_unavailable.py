@@ -18,19 +18,14 @@ __all__ = [
     "addUserData",
     "createSoftBodyAnchor",
     "executePluginCommand",
-    "getClosestPoints",
     "getNumUserData",
-    "getOverlappingObjects",
     "getTetraMeshData",
     "getUserData",
     "getUserDataId",
     "getUserDataInfo",
     "loadBullet",
-    "loadMJCF",
     "loadPlugin",
     "loadSoftBody",
-    "rayTest",
-    "rayTestBatch",
     "removeState",
     "removeUserData",
     "renderImage",
@@ -91,7 +86,6 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
 
 syncUserData = _later("syncUserData", "bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None")
 submitProfileTiming = _later("submitProfileTiming", "eventName=None, physicsClientId=0")
-loadMJCF = _later("loadMJCF", "mjcfFileName, flags=-1, useMultiBody=-1, physicsClientId=0")
 loadBullet = _later("loadBullet", "bulletFileName, physicsClientId=0")
 saveBullet = _later("saveBullet", "bulletFileName, physicsClientId=0")
 saveWorld = _later("saveWorld", "worldFileName, physicsClientId=0")
@@ -120,22 +114,6 @@ stopStateLogging = _later("stopStateLogging", "loggingId, physicsClientId=0")
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
 getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
 resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")
-getClosestPoints = _later(
-    "getClosestPoints",
-    "bodyA, bodyB, distance, linkIndexA=-2, linkIndexB=-2, collisionShapeA=-1, collisionShapeB=-1, "
-    "collisionShapePositionA=None, collisionShapePositionB=None, collisionShapeOrientationA=None, "
-    "collisionShapeOrientationB=None, physicsClientId=0",
-)
-getOverlappingObjects = _later("getOverlappingObjects", "aabbMin, aabbMax, physicsClientId=0")
-rayTest = _later(
-    "rayTest",
-    "rayFromPosition, rayToPosition, collisionFilterMask=-1, reportHitNumber=-1, physicsClientId=0",
-)
-rayTestBatch = _later(
-    "rayTestBatch",
-    "rayFromPositions, rayToPositions, numThreads=1, parentObjectUniqueId=-1, parentLinkIndex=-1, "
-    "reportHitNumber=-1, collisionFilterMask=-1, fractionEpsilon=-1, physicsClientId=0",
-)
 renderImage = _later("renderImage", "*arguments")
 addUserData = _later(
     "addUserData",

@@ -1,0 +1,218 @@
+"""Geometric questions about a world as it stands: rays, nearest points, overlaps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+import warp as wp
+
+from carom.collision.closest import closest_points_kernel, place_shapes_kernel
+from carom.collision.rays import prepare_rays_kernel, rays_kernel
+from carom.model.codes import PLANE
+from carom.model.launch import Launch
+from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
+from carom.physics.kinematics import link_poses_kernel
+from carom.stepper import argument_indices, launch
+from carom.touch_arrays import TouchArrays
+
+# A distance that counts as none; column of a row of `closest_points_kernel` that tells if it is filled.
+_FAR = 1e30
+_FOUND = 7
+
+
+class RayHits(NamedTuple):
+    """What rays hit, one row each.
+
+    Attributes:
+        link: Row of the link in the world's arrays, -1 for none.
+        fraction: Where along the ray; 1 for none.
+        normal: In world axes; 0 for none.
+    """
+
+    link: np.ndarray
+    fraction: np.ndarray
+    normal: np.ndarray
+
+
+class NearestPoints(NamedTuple):
+    """The nearest points of two links.
+
+    Attributes:
+        on_a: Point on the first link, in world axes [m].
+        on_b: Point on the second link.
+        normal: On the second link, towards the first.
+        distance: Between them [m]; negative if they overlap.
+    """
+
+    on_a: np.ndarray
+    on_b: np.ndarray
+    normal: np.ndarray
+    distance: float
+
+
+class Queries:
+    """Launches of the collision queries of a world, over its present arrays.
+
+    Args:
+        structs: Warp structs by the name kernels give them.
+        link_pose: `World.link_pose`, which queries leave as it is.
+        touch: The arrays of shapes.
+        device: Warp device name.
+    """
+
+    def __init__(
+        self, structs: dict[str, Any], link_pose: np.ndarray, touch: TouchArrays, device: str
+    ) -> None:
+        self._structs = structs
+        self._device = device
+        self._link_pose = link_pose
+        self._shape_count = touch.shapes.shape_count
+        self._shapes = touch.shapes.table.numpy
+        self._pairs = touch.pairs.numpy
+        self._update_poses = launch(link_poses_kernel, structs, device)
+        self._prepare_rays = launch(prepare_rays_kernel, structs, device)
+        self._place_shapes = launch(place_shapes_kernel, structs, device)
+        self._casts: dict[int, RayCast] = {}
+
+    def cast_rays(
+        self,
+        starts: np.ndarray,
+        ends: np.ndarray,
+        *,
+        mask: int = -1,
+        hit_number: int = 0,
+        separation: float = 0.0,
+    ) -> RayHits:
+        """What rays hit.
+
+        Args:
+            starts: Their starts in world axes [m], shape (n, 3).
+            ends: Their ends, shape (n, 3).
+            mask: Collision groups that are hit.
+            hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
+            separation: Later hits on a link less than this fraction of the ray after one do not count.
+        """
+        count = len(starts)
+        cast = self._casts.get(count)
+        if cast is None:
+            self._casts.clear()
+            cast = self._casts[count] = RayCast(self._structs, count, self._device)
+        self._place(self._prepare_rays)
+        return cast.run(self._shapes, starts, ends, mask, hit_number, separation)
+
+    def nearest(self, pairs: Sequence[tuple[int, int]], reach: float) -> list[tuple[int, int, NearestPoints]]:
+        """The nearest points of all shapes of pairs of links, without those farther apart than `reach`.
+
+        Args:
+            pairs: Rows of links in the world's arrays.
+            reach: Largest distance [m].
+
+        Returns:
+            The links and the points, in the order of `pairs`, then of the shapes of each link.
+        """
+        links, first, second = self._shape_pairs(pairs)
+        if not links:
+            return []
+        memory = np.zeros((1, len(links), 8), dtype=NUMPY_REAL)
+        found: Any = wp.array(memory, dtype=cast("Any", Vector8), device=self._device, copy=False)
+        rows = [wp.array(shapes, dtype=wp.int32, device=self._device) for shapes in (first, second)]
+        structs = [self._structs["shapes"], self._structs["pairs"]]
+        self._place(self._place_shapes)
+        within = NUMPY_REAL(min(reach, _FAR))
+        Launch(closest_points_kernel, 1, [*structs, *rows, within, found], self._device)()
+        return [
+            (a, b, _points(terms)) for (a, b), terms in zip(links, memory[0], strict=True) if terms[_FOUND]
+        ]
+
+    def _shape_pairs(
+        self, pairs: Sequence[tuple[int, int]]
+    ) -> tuple[list[tuple[int, int]], list[int], list[int]]:
+        """All pairs of shapes of pairs of links: the links, the shapes of the first, of the second."""
+        links, first, second = [], [], []
+        for a, b in pairs:
+            for shape_a, shape_b in product(self._shapes_of(a), self._shapes_of(b)):
+                links.append((a, b))
+                first.append(shape_a)
+                second.append(shape_b)
+        return links, first, second
+
+    def _place(self, prepare: Launch) -> None:
+        """Run a kernel that places the shapes by poses of the links that are up to date."""
+        kept = self._link_pose.copy()
+        self._update_poses()
+        prepare()
+        self._link_pose[:] = kept
+
+    def _shapes_of(self, link: int) -> range:
+        first = int(self._shapes["link_first_shape"][link])
+        return range(first, first + int(self._shapes["link_shape_count"][link]))
+
+    def overlapping(self, lower: Sequence[float], upper: Sequence[float]) -> list[int]:
+        """Rows of the links whose bounds meet a box.
+
+        Args:
+            lower: Lowest corner of the box in world axes [m].
+            upper: Its highest corner.
+        """
+        count = self._shape_count
+        if not count:
+            return []
+        self._place(self._place_shapes)
+        endless = self._shapes["shape_kind"][:count] == PLANE
+        meets = (self._pairs["shape_lower"][0, :count] <= np.asarray(upper)).all(axis=1)
+        meets &= (self._pairs["shape_upper"][0, :count] >= np.asarray(lower)).all(axis=1)
+        return np.unique(self._shapes["shape_link"][:count][meets | endless]).tolist()
+
+
+class RayCast:
+    """A launch over a number of rays, and its memory."""
+
+    def __init__(self, structs: dict[str, Any], count: int, device: str) -> None:
+        def zeros(dtype: Any) -> Any:
+            return wp.zeros(count, dtype=dtype, device=device)
+
+        self._starts, self._ends, self._normal = zeros(Vector3), zeros(Vector3), zeros(Vector3)
+        self._shape, self._fraction = zeros(wp.int32), zeros(real)
+        arguments = [
+            structs["shapes"],
+            structs["pairs"],
+            0,
+            self._starts,
+            self._ends,
+            -1,
+            0,
+            NUMPY_REAL(0.0),
+            self._shape,
+            self._fraction,
+            self._normal,
+        ]
+        self._launch = Launch(rays_kernel, count, arguments, device)
+        self._index = argument_indices(rays_kernel)
+
+    def run(
+        self,
+        shapes: dict[str, np.ndarray],
+        starts: np.ndarray,
+        ends: np.ndarray,
+        mask: int,
+        hit_number: int,
+        separation: float,
+    ) -> RayHits:
+        """Cast the rays; the arguments are those of `Queries.cast_rays`."""
+        self._starts.numpy()[:] = starts
+        self._ends.numpy()[:] = ends
+        self._launch.replace(self._index["mask"], mask)
+        self._launch.replace(self._index["hit_number"], hit_number)
+        self._launch.replace(self._index["separation"], separation)
+        self._launch()
+        shape = self._shape.numpy()
+        link = np.where(shape >= 0, shapes["shape_link"][shape], -1)
+        return RayHits(link, self._fraction.numpy().copy(), self._normal.numpy().copy())
+
+
+def _points(terms: np.ndarray) -> NearestPoints:
+    on_b, normal, distance = terms[0:3], terms[3:6], float(terms[6])
+    return NearestPoints(on_b + distance * normal, on_b, normal, distance)

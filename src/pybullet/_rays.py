@@ -1,0 +1,166 @@
+"""Rays: what lies along a line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from carom.description.pose import Pose
+from carom.description.transform import rotation_matrix
+from pybullet._arguments import integer, real, sequence, vector3
+from pybullet._builtin import exported
+from pybullet._clients import client_of
+from pybullet._constants import MAX_RAY_INTERSECTION_BATCH_SIZE
+from pybullet._errors import fail
+from pybullet._link_rows import places
+
+if TYPE_CHECKING:
+    from carom.world import World
+
+__all__ = ["rayTest", "rayTestBatch"]
+
+Vector3 = tuple[float, float, float]
+RayHit = tuple[int, int, float, Vector3, Vector3]
+
+_MISS: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_BASE = -1
+_BAD_ITEM = "Items in the from/to positions need to be an [x,y,z] list of 3 floats/doubles"
+_NO_POSITIONS = "rayFromPositions and rayToPositions must be not None."
+_UNEQUAL = "Size of from_positions need to be equal to size of to_positions."
+_TOO_MANY = "Number of rays exceed the maximum batch size."
+
+
+@exported
+def rayTest(
+    rayFromPosition: Sequence[float],
+    rayToPosition: Sequence[float],
+    collisionFilterMask: int = -1,
+    reportHitNumber: int = -1,
+    physicsClientId: int = 0,
+) -> tuple[RayHit]:
+    """What a ray hits first.
+
+    Args:
+        rayFromPosition: Its start in the world frame [m].
+        rayToPosition: Its end.
+        collisionFilterMask: Collision groups that are hit.
+        reportHitNumber: n for the n-th hit along the ray, from 0; negative for the first.
+        physicsClientId: The connection.
+
+    Returns:
+        A tuple of one (body, link, fraction of the ray, position, normal); body -1 and fraction 1 for
+        nothing.
+
+    Raises:
+        pybullet.error: Not connected, or a position is not three finite numbers.
+    """
+    world = client_of(physicsClientId).world
+    start = vector3(rayFromPosition, _BAD_ITEM, "rayFromPosition")
+    end = vector3(rayToPosition, _BAD_ITEM, "rayToPosition")
+    mask, number = (
+        integer(collisionFilterMask, "collisionFilterMask"),
+        integer(reportHitNumber, "reportHitNumber"),
+    )
+    return (_cast(world, np.array([start]), np.array([end]), mask, number, 0.0)[0],)
+
+
+@exported
+def rayTestBatch(
+    rayFromPositions: Sequence[Sequence[float]],
+    rayToPositions: Sequence[Sequence[float]],
+    numThreads: int = 1,
+    parentObjectUniqueId: int = -1,
+    parentLinkIndex: int = -1,
+    reportHitNumber: int = -1,
+    collisionFilterMask: int = -1,
+    fractionEpsilon: float = -1.0,
+    physicsClientId: int = 0,
+) -> tuple[RayHit, ...]:
+    """What many rays hit first.
+
+    Args:
+        rayFromPositions: Their starts [m], at most `MAX_RAY_INTERSECTION_BATCH_SIZE`.
+        rayToPositions: Their ends.
+        numThreads: Accepted; the rays are cast by one thread.
+        parentObjectUniqueId: Body whose frame the positions are in; -1 for the world's.
+        parentLinkIndex: Its link, -1 for the base: positions are in that link's inertial frame.
+        reportHitNumber: n for the n-th hit along each ray, from 0; negative for the first.
+        collisionFilterMask: Collision groups that are hit.
+        fractionEpsilon: Later hits on a link less than this fraction of the ray after one do not count.
+        physicsClientId: The connection.
+
+    Returns:
+        For each ray (body, link, fraction of the ray, position, normal) as `rayTest` gives it.
+
+    Raises:
+        pybullet.error: Not connected, positions are not lists of three finite numbers, their numbers
+            differ, or there are too many.
+    """
+    world = client_of(physicsClientId).world
+    if rayFromPositions is None or rayToPositions is None:
+        fail(_NO_POSITIONS)
+    starts = _points(rayFromPositions, "rayFromPositions")
+    ends = _points(rayToPositions, "rayToPositions")
+    if len(starts) != len(ends):
+        fail(_UNEQUAL, f"They are {len(starts)} and {len(ends)}.")
+    if len(starts) > MAX_RAY_INTERSECTION_BATCH_SIZE:
+        fail(_TOO_MANY, f"{len(starts)} are more than {MAX_RAY_INTERSECTION_BATCH_SIZE}.")
+    integer(numThreads, "numThreads")
+    number = integer(reportHitNumber, "reportHitNumber")
+    mask = integer(collisionFilterMask, "collisionFilterMask")
+    epsilon = real(fractionEpsilon, "fractionEpsilon")
+    if not len(starts):
+        return ()
+    frame = _frame_of(
+        world,
+        integer(parentObjectUniqueId, "parentObjectUniqueId"),
+        integer(parentLinkIndex, "parentLinkIndex"),
+    )
+    if frame is not None:
+        rotation = np.array(rotation_matrix(frame.orientation))
+        starts = starts @ rotation.T + frame.position
+        ends = ends @ rotation.T + frame.position
+    return tuple(_cast(world, starts, ends, mask, number, max(epsilon, 0.0)))
+
+
+def _points(values: Any, name: str) -> np.ndarray:
+    """Points as rows; arrays of numbers are taken as they are."""
+    items = values if isinstance(values, np.ndarray) else sequence(values, _BAD_ITEM, name)
+    try:
+        points = np.asarray(items, dtype=float).reshape(len(items), -1)
+    except (TypeError, ValueError):
+        points = np.empty((len(items), 0))
+    if len(items) and (points.shape[1] != 3 or not np.isfinite(points).all()):
+        for number, item in enumerate(items):
+            vector3(item, _BAD_ITEM, f"{name}[{number}]")
+    return points
+
+
+def _frame_of(world: World, body_id: int, link: int) -> Pose | None:
+    """The frame rays are given in; None for that of the world, which also stands for unknown bodies."""
+    body = world.bodies.get(body_id)
+    if body is None or not _BASE <= link < body.joint_count:
+        return None
+    body.update_link_poses()
+    px, py, pz, qx, qy, qz, qw = world.link_pose[body.first_link + 1 + link].tolist()
+    return Pose((px, py, pz), (qx, qy, qz, qw))
+
+
+def _cast(
+    world: World, starts: np.ndarray, ends: np.ndarray, mask: int, number: int, separation: float
+) -> list[RayHit]:
+    hits = world.queries().cast_rays(
+        starts, ends, mask=mask, hit_number=max(number, 0), separation=separation
+    )
+    position = starts + hits.fraction[:, None] * (ends - starts)
+    rows = zip(
+        places(world, hits.link), hits.fraction.tolist(), position.tolist(), hits.normal.tolist(), strict=True
+    )
+    return [
+        _MISS
+        if place is None
+        else (*place, fraction, cast("Vector3", tuple(at)), cast("Vector3", tuple(normal)))
+        for place, fraction, at, normal in rows
+    ]

@@ -1,0 +1,197 @@
+"""Rays, nearest points and overlaps; expected values are real PyBullet's."""
+
+import math
+
+import numpy as np
+import pytest
+
+import pybullet as p
+
+MISS = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+TWO_LINKS = """<robot name="two">
+  <link name="b">
+    <inertial><origin xyz="0.1 0.2 0.3" rpy="0 0 1.5707963"/><mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.2"/></geometry></collision>
+  </link>
+  <link name="c">
+    <inertial><origin xyz="0.1 0.2 0.3" rpy="0 0 1.5707963"/><mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><origin xyz="0.1 0.2 0.3"/><geometry><box size=".2 .3 .4"/></geometry></collision>
+  </link>
+  <joint name="j" type="revolute"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/>
+    <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
+</robot>"""
+
+
+@pytest.fixture
+def things(client):
+    """A plane, a unit box 1 m up, a sphere beside it."""
+    shapes = [
+        p.createCollisionShape(p.GEOM_PLANE),
+        p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5, 0.5, 0.5]),
+        p.createCollisionShape(p.GEOM_SPHERE, radius=0.3),
+    ]
+    places = [(0, 0, 0), (0, 0, 1), (2, 0, 1)]
+    return [
+        p.createMultiBody(mass, shape, basePosition=place)
+        for mass, shape, place in zip((0, 1, 1), shapes, places, strict=True)
+    ]
+
+
+@pytest.fixture
+def turned(client, tmp_path):
+    file = tmp_path / "two.urdf"
+    file.write_text(TWO_LINKS)
+    return p.loadURDF(str(file), [0, 0, 2], [0, 0, math.sin(0.3), math.cos(0.3)], useFixedBase=True)
+
+
+def close(hit, body, fraction, position, normal):
+    assert hit[:2] == (body, -1)
+    assert hit[2] == pytest.approx(fraction, abs=1e-9)
+    assert hit[3] == pytest.approx(position, abs=1e-9)
+    assert hit[4] == pytest.approx(normal, abs=1e-6)
+
+
+def test_a_ray_reports_what_it_hits_first(things):
+    _plane, box, _sphere = things
+    (hit,) = p.rayTest([0, 0, 5], [0, 0, -5])
+    close(hit, box, 0.35, (0, 0, 1.5), (0, 0, 1))
+
+
+def test_rays_that_hit_nothing(things):
+    assert p.rayTest([9, 9, 5], [9, 9, 4]) == (MISS,)
+    assert p.rayTest([0, 0, 1], [0, 0, 5]) == (MISS,), "from within"
+    assert p.rayTest([0, 0, 5], [0, 0, 5]) == (MISS,), "without length"
+    assert p.rayTest([-5, 0, 1], [5, 0, 1], 2) == (MISS,), "by the mask"
+    assert p.rayTestBatch([], []) == ()
+
+
+def test_a_world_without_bodies_is_empty(client):
+    assert p.rayTest([0, 0, 5], [0, 0, -5]) == (MISS,)
+    assert p.getOverlappingObjects([-1, -1, -1], [1, 1, 1]) is None
+    assert p.getClosestPoints(0, 1, 5) == ()
+
+
+def test_later_hits_are_numbered_along_the_ray(things):
+    _plane, box, sphere = things
+    ray = [-5, 0, 1], [5, 0, 1]
+    close(p.rayTest(*ray, reportHitNumber=0)[0], box, 0.45, (-0.5, 0, 1), (-1, 0, 0))
+    close(p.rayTest(*ray, reportHitNumber=1)[0], sphere, 0.67, (1.7, 0, 1), (-1, 0, 0))
+    assert p.rayTest(*ray, reportHitNumber=2) == (MISS,)
+
+
+@pytest.mark.parametrize("make", [np.array, list, tuple])
+def test_a_batch_is_its_rays_one_by_one(things, make):
+    rng = np.random.default_rng(0)
+    starts, ends = rng.normal(size=(200, 3)) * 4, rng.normal([1, 0, 1], size=(200, 3))
+    batch = p.rayTestBatch(make(starts), make(ends), numThreads=0)
+    assert batch == tuple(p.rayTest(start, end)[0] for start, end in zip(starts, ends, strict=True))
+    assert {hit[0] for hit in batch} == {-1, *things}
+
+
+def test_the_largest_batch(things):
+    most = p.MAX_RAY_INTERSECTION_BATCH_SIZE
+    assert len(p.rayTestBatch([[0, 0, 5]] * most, [[0, 0, -5]] * most)) == most
+    with pytest.raises(p.error, match="Number of rays exceed the maximum batch size"):
+        p.rayTestBatch([[0, 0, 5]] * (most + 1), [[0, 0, -5]] * (most + 1))
+
+
+@pytest.mark.parametrize(
+    ("link", "position"), [(-1, (-0.6124554836, 0.1868108337)), (0, (0.2128801313, 0.7514533071))]
+)
+def test_rays_in_the_frame_of_a_link(turned, link, position):
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[50, 50, 0.01]))
+    (hit,) = p.rayTestBatch([[0.3, 0.5, 0]], [[0.3, 0.5, -10]], 1, turned, link)
+    close(hit, floor, 0.229, (*position, 0.01), (0, 0, 1))
+
+
+def test_rays_see_where_bodies_are_now(things):
+    sphere = things[2]
+    p.resetBasePositionAndOrientation(sphere, [20, 0, 0], [0, 0, 0, 1])
+    close(p.rayTest([20, 0, 5], [20, 0, -5])[0], sphere, 0.47, (20, 0, 0.3), (0, 0, 1))
+    p.removeBody(things[1])
+    close(p.rayTest([0, 0, 5], [0, 0, -5])[0], things[0], 0.5, (0, 0, 0), (0, 0, 1))
+
+
+@pytest.mark.parametrize(
+    ("call", "problem"),
+    [
+        (lambda: p.rayTest([0, 0], [1, 1, 1]), "rayFromPosition has 2 values"),
+        (lambda: p.rayTest([0, 0, 0], None), "rayToPosition is None"),
+        (lambda: p.rayTest([math.nan, 0, 0], [1, 1, 1]), "nan"),
+        (lambda: p.rayTestBatch([[0, 0, 0]], []), "Size of from_positions"),
+        (lambda: p.rayTestBatch(None, []), "must be not None"),
+        (lambda: p.rayTestBatch([[0, 0]], [[1, 1, 1]]), r"rayFromPositions\[0\] has 2"),
+        (lambda: p.rayTestBatch([[0, 0, 1], [0, math.inf, 0]], [[1, 1, 1]] * 2), r"rayFromPositions\[1\]"),
+        (lambda: p.rayTestBatch(3, [[1, 1, 1]]), "rayFromPositions is 3"),
+        (lambda: p.rayTest([0, 0, 0], [1, 1, 1], physicsClientId=7), "Not connected"),
+        (lambda: p.getOverlappingObjects([0, 0], [1, 1, 1]), "aabbMin has 2 values"),
+        (lambda: p.getOverlappingObjects([0, 0, 0], None), "aabbMax is None"),
+        (lambda: p.getClosestPoints(0, 1, math.nan), "distance"),
+        (lambda: p.getClosestPoints(0, 1, 1, collisionShapeB=0), "not available"),
+    ],
+)
+def test_bad_input_is_refused(things, call, problem):
+    with pytest.raises(p.error, match=problem):
+        call()
+
+
+def test_nearest_points_of_two_bodies(things):
+    _plane, box, sphere = things
+    (point,) = p.getClosestPoints(box, sphere, 5)
+    assert point[:5] == (0, box, sphere, -1, -1)
+    assert point[5] == pytest.approx((0.5, 0, 1))
+    assert point[6] == pytest.approx((1.7, 0, 1))
+    assert point[7] == pytest.approx((-1, 0, 0))
+    assert point[8] == pytest.approx(1.2)
+    assert point[9:] == (0.0, 0.0, (0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0))
+    (back,) = p.getClosestPoints(sphere, box, math.inf)
+    assert (back[5], back[6]) == (point[6], point[5])
+
+
+def test_no_nearest_points(things):
+    _plane, box, sphere = things
+    assert p.getClosestPoints(box, sphere, 0.1) == ()
+    assert p.getClosestPoints(box, sphere, 5, 0, -1) == ()
+    assert p.getClosestPoints(box, 99, 5) == ()
+    assert p.getClosestPoints(box, -1, 5) == ()
+
+
+def test_nearest_points_of_chosen_links(turned):
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[50, 50, 0.01]))
+    points = p.getClosestPoints(turned, floor, 9)
+    assert [(point[3], pytest.approx(point[8])) for point in points] == [(-1, 1.79), (0, 2.09)]
+    assert p.getClosestPoints(turned, floor, 9, -1) == points[:1]
+    assert p.getClosestPoints(turned, floor, 9, 0) == points[1:]
+    assert p.getClosestPoints(turned, floor, 9, -2, -1) == points
+    within = p.getClosestPoints(turned, turned, 9)
+    assert [point[3:5] for point in within] == [(-1, -1), (-1, 0), (0, -1), (0, 0)]
+    assert within[1][8] == pytest.approx(0.8063743097776517)
+
+
+def test_overlaps_with_a_box(things):
+    plane, box, sphere = things
+    assert p.getOverlappingObjects([-1, -1, 0.1], [1, 1, 3]) == ((plane, -1), (box, -1))
+    assert p.getOverlappingObjects([-9, -9, -9], [9, 9, 9]) == ((plane, -1), (box, -1), (sphere, -1))
+    assert p.getOverlappingObjects([10, 10, 10], [11, 11, 11]) == ((plane, -1),)
+    p.removeBody(plane)
+    assert p.getOverlappingObjects([10, 10, 10], [11, 11, 11]) is None
+
+
+def test_questions_between_steps_change_nothing(things):
+    def run(ask):
+        p.resetBasePositionAndOrientation(things[1], [0, 0, 1], [0, 0, 0, 1])
+        p.resetBaseVelocity(things[1], [0.3, 0, 0], [1, 2, 3])
+        p.setGravity(0, 0, -9.81)
+        p.performCollisionDetection()
+        for _ in range(200):
+            p.stepSimulation()
+            if ask:
+                p.rayTest([0, 0, 5], [0, 0, -5])
+                p.getClosestPoints(things[0], things[1], 1)
+                p.getOverlappingObjects([-1, -1, -1], [1, 1, 1])
+        return p.getBasePositionAndOrientation(things[1]), p.getBaseVelocity(things[1])
+
+    quiet = run(ask=False)
+    assert run(ask=True) == quiet
