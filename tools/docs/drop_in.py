@@ -52,6 +52,7 @@ LIMITED = {
     "connect": "`GUI` simulates without showing a window; there are no physics servers",
     "changeDynamics": "`anisotropicFriction`, `frictionAnchor` and what concerns sleeping are recorded and "
     "have no effect; nor has continuous collision detection, as on PyBullet's multibodies",
+    "getClosestPoints": "between bodies; `collisionShapeA` and `collisionShapeB` raise `pybullet.error`",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
 }
