@@ -34,6 +34,14 @@ CASES = [
     SceneCase("loadSDF", "sdf/arm.sdf"),
     SceneCase("loadSDF", "sdf/arm.sdf", {"globalScaling": 0.5}),
     SceneCase("loadSDF", "sdf/sloppy.sdf"),
+    SceneCase("loadMJCF", "mjcf/walker.xml"),
+    SceneCase("loadMJCF", "mjcf/walker.xml", {"flags": 512}),
+    SceneCase("loadMJCF", "mjcf/walker.xml", {"flags": 128}),
+    SceneCase("loadMJCF", "mjcf/walker.xml", {"flags": 2}),
+    SceneCase("loadMJCF", "mjcf/walker.xml", {"flags": 131072}),
+    SceneCase("loadMJCF", "mjcf/scene.xml"),
+    SceneCase("loadMJCF", "mjcf/scene.xml", {"flags": 2}),
+    SceneCase("loadMJCF", "mjcf/no_compiler.xml"),
 ]
 
 

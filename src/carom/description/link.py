@@ -38,13 +38,19 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """A shape that touches; `frame` is its pose in the link frame."""
+    """A shape that touches; `frame` is its pose in the link frame.
+
+    Attributes:
+        ends_frame: Frame in which the file gives the ends of a capsule or cylinder, if it does so, in the
+            link frame. PyBullet finds another inertia for such shapes.
+    """
 
     geometry: Geometry
     frame: Pose = IDENTITY
     name: str = ""
     group: int | None = None
     mask: int | None = None
+    ends_frame: Pose | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -161,6 +161,16 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
     return Bounds.between((x0, y0, z0), (x1, y1, z1)).grown(MARGIN).grown(MARGIN)
 
 
+def vertex_bounds(mesh: Mesh) -> Bounds:
+    """Bounds of the vertices of a mesh, without any margin.
+
+    Raises:
+        DescriptionError: The file cannot be used.
+    """
+    corners = [_scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
+
+
 def _scaled_corners(vertices: np.ndarray, scale: Vector3) -> tuple[Vector3, Vector3]:
     """Lowest and highest corner of scaled vertices."""
     ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)]) * np.asarray(scale)

@@ -36,7 +36,7 @@ from carom.model.bounds import MARGIN, Bounds, placed_bounds, shape_bounds
 
 _log = logging.getLogger(__name__)
 
-_TWELFTH = 0.08333333
+TWELFTH = 0.08333333
 """The twelfth PyBullet uses for capsules and hulls, so that figures agree to the last digit."""
 
 _IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
@@ -75,7 +75,7 @@ def inertia_from_shapes(
     bounds = link_bounds(
         collisions, inertial_frame, implicit_cylinder=implicit_cylinder, compound_margin=compound_margin
     )
-    return _box_moments(mass / 12.0, bounds)
+    return box_moments(mass / 12.0, bounds)
 
 
 def link_bounds(
@@ -163,16 +163,17 @@ def _shape_moments(mass: float, geometry: Geometry, implicit_cylinder: bool) -> 
     bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder)
     match geometry:
         case Box():
-            return _box_moments(mass / 12.0, bounds)
+            return box_moments(mass / 12.0, bounds)
         case Mesh(path) if path.suffix.lower() == ".obj":
-            return _box_moments(mass / 12.0, bounds)
+            return box_moments(mass / 12.0, bounds)
         case Capsule():
-            return _box_moments(mass * _TWELFTH, bounds)
+            return box_moments(mass * TWELFTH, bounds)
         case _:
-            return _box_moments(mass * _TWELFTH, bounds.grown(MARGIN))
+            return box_moments(mass * TWELFTH, bounds.grown(MARGIN))
 
 
-def _box_moments(twelfth_mass: float, bounds: Bounds) -> Vector3:
+def box_moments(twelfth_mass: float, bounds: Bounds) -> Vector3:
+    """Moments of a box about the axes of its frame, from a twelfth of its mass."""
     x, y, z = (2.0 * half for half in bounds.half)
     xx, yy, zz = x * x, y * y, z * z
     return (twelfth_mass * (yy + zz), twelfth_mass * (xx + zz), twelfth_mass * (xx + yy))

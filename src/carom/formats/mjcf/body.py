@@ -1,0 +1,271 @@
+"""`<body>`: the links and joints PyBullet makes of it.
+
+Every joint of a body gets a link without mass of its own, one after the other, and the last of them carries
+the body on a fixed joint. A body with joints at the root of a model hangs on a further link without mass,
+which is fixed in the world; one without floats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from carom.description import (
+    Collision,
+    ContactParameters,
+    Inertial,
+    Joint,
+    JointType,
+    Link,
+    Pose,
+    Robot,
+    Visual,
+)
+from carom.description.pose import IDENTITY, Vector3
+from carom.description.transform import compose, inverse
+from carom.formats.mjcf.context import MjcfContext
+from carom.formats.mjcf.defaults import Attributes, class_defaults
+from carom.formats.mjcf.frames import read_pose
+from carom.formats.mjcf.geom import read_contact, read_geom
+from carom.formats.mjcf.joint import FREE, joint_position, read_joint
+from carom.formats.placed import PlacedRobot
+from carom.formats.urdf.context import shown
+from carom.formats.xml_tree import Element
+
+_DENSITY = 1000.0
+"""Of every geom [kg/m³], as in PyBullet."""
+
+_MASSLESS = Inertial(mass=0.0)
+_NOTHING = ContactParameters()
+_UNNAMED_GEOM = "anonymous"
+_LEFT_OUT = ("light", "camera", "site", "freejoint", "composite", "flexcomp", "plugin")
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What an element is in.
+
+    Attributes:
+        child_class: Class of defaults that the bodies around it name.
+        into: Pose of the frames around it in the body, or of the body in the world where poses are global.
+    """
+
+    child_class: str | None = None
+    into: Pose = IDENTITY
+
+
+@dataclass(slots=True)
+class _Content:
+    """What a body is made of, as far as it is read."""
+
+    frame: Pose = IDENTITY
+    mass: float | None = None
+    tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    volume: float = 0.0
+    collisions: list[Collision] = field(default_factory=list)
+    visuals: list[Visual] = field(default_factory=list)
+    contact: ContactParameters = _NOTHING
+
+
+class ModelReader:
+    """Makes one robot of a body or geom of the world.
+
+    Args:
+        context: The reading it belongs to.
+        number: How many models the file had before.
+        name: Name of all robots of the file.
+    """
+
+    def __init__(self, context: MjcfContext, number: int, name: str) -> None:
+        self.context = context
+        self.number = number
+        self.name = name
+        self.links: list[Link] = []
+        self.joints: list[Joint] = []
+        self.lines: dict[str, int] = {}
+
+    def read_body(self, element: Element, scope: Scope) -> PlacedRobot:
+        """A `<body>` that hangs on nothing."""
+        pose = self._read_body(element, scope, None)
+        root = next(index for index in range(len(self.links)) if all(j.child != index for j in self.joints))
+        # PyBullet puts the centre of mass where the file has the frame.
+        place = compose(pose, inverse(self.links[root].inertial.frame)) if root == 0 else IDENTITY
+        return PlacedRobot(self._robot(root), place)
+
+    def read_world_geom(self, element: Element, scope: Scope) -> PlacedRobot:
+        """A `<geom>` of the world itself."""
+        context = self.context
+        defaults = class_defaults(context, element, scope.child_class)
+        geom = read_geom(context, element, {**defaults, **element.attributes}, scope.into)
+        name = element.attributes.get("name", _UNNAMED_GEOM)
+        link = Link(name, _MASSLESS, contact=read_contact(context, element, defaults))
+        if geom is not None:
+            link = replace(link, collisions=(geom.collision,), visuals=(geom.visual,))
+        self.links.append(link)
+        return PlacedRobot(self._robot(0))
+
+    def _read_body(self, element: Element, scope: Scope, parent: int | None) -> Pose:
+        """Reads a body and those in it, and returns where it is in its parent."""
+        context = self.context
+        body = self._add_link(element, element.attributes.get("name"))
+        if "name" not in element.attributes:
+            context.next_number()
+        child_class = element.attributes.get("childclass", scope.child_class)
+        defaults = class_defaults(context, element, scope.child_class)
+        pose = read_pose(context, element, {**defaults, **element.attributes})
+        # What is inside is given in the body's frame, or like everything in that of the world.
+        inner = Scope(child_class, inverse(pose) if context.compiler.global_frames else IDENTITY)
+        own = compose(scope.into, pose)
+        frame, carrier = own, parent
+        first_joint: Pose | None = None
+        content = _Content()
+        for child, within in _without_frames(context, element, inner):
+            attributes_of = class_defaults(context, child, within.child_class)
+            attributes = {**attributes_of, **child.attributes}
+            if child.tag == "joint":
+                kind = attributes.get("type")
+                if kind == FREE and parent is None and carrier is None:
+                    continue
+                if carrier is None:
+                    carrier = self._add_link(child, None)
+                position = _moved(within.into, joint_position(context, child, attributes))
+                place = Pose(position)
+                moving = self._add_link(child, None)
+                joint = read_joint(
+                    context,
+                    child,
+                    attributes,
+                    parent=carrier,
+                    child=moving,
+                    frame=compose(own if first_joint is None else inverse(first_joint), place),
+                    into=within.into,
+                )
+                self._add_joint(child, joint, child.attributes.get("name"), moving)
+                if first_joint is None:
+                    # As in PyBullet the body is placed by its first joint alone.
+                    first_joint = place
+                    frame = inverse(place)
+                carrier = moving
+            elif child.tag == "geom":
+                self._add_geom(child, attributes_of, within, content)
+            elif child.tag == "inertial":
+                self._read_inertial(child, within, content)
+            elif child.tag == "body":
+                self._read_body(child, within, body)
+            elif child.tag not in _LEFT_OUT:
+                context.warn(child, "left out")
+        if carrier is not None:
+            fixed = Joint("", JointType.FIXED, carrier, body, frame)
+            self._add_joint(element, fixed, None, carrier)
+        mass = _DENSITY * content.volume if content.mass is None else content.mass
+        self.links[body] = replace(
+            self.links[body],
+            inertial=Inertial(mass, content.frame, content.tensor),
+            collisions=tuple(content.collisions),
+            visuals=tuple(content.visuals),
+            contact=content.contact,
+        )
+        return own
+
+    def _add_link(self, element: Element, name: str | None) -> int:
+        """A link, its name made up where it has none."""
+        index = len(self.links)
+        name = name or f"link{self.number}_{index}"
+        if name in self.lines:
+            raise self.context.error(
+                element, f"the name {shown(name)} is taken already, on line {self.lines[name]}"
+            )
+        self.lines[name] = element.line
+        self.links.append(Link(name, _MASSLESS))
+        return index
+
+    def _add_joint(self, element: Element, joint: Joint, name: str | None, link: int) -> None:
+        if name is None:
+            number = self.context.next_number()
+            is_made_up = joint.type is JointType.FIXED and element.tag == "body"
+            name = f"jointfix_{number}_{link}" if is_made_up else f"joint{number}_{link}_{len(self.joints)}"
+        elif any(other.name == name for other in self.joints):
+            raise self.context.error(element, f"the name {shown(name)} is taken already")
+        self.joints.append(replace(joint, name=name))
+
+    def _add_geom(self, element: Element, defaults: Attributes, scope: Scope, content: _Content) -> None:
+        content.contact = _with_earlier(read_contact(self.context, element, defaults), content.contact)
+        geom = read_geom(self.context, element, {**defaults, **element.attributes}, scope.into)
+        # The last geom says where the centre of mass is, unless an inertial came before it.
+        if content.mass is None:
+            middle = (0.0, 0.0, 0.0) if geom is None or geom.middle is None else geom.middle
+            content.frame = replace(content.frame, position=middle)
+        if geom is not None:
+            content.volume += geom.volume
+            content.collisions.append(geom.collision)
+            content.visuals.append(geom.visual)
+
+    def _read_inertial(self, element: Element, scope: Scope, content: _Content) -> None:
+        context = self.context
+        attributes = element.attributes
+        pose = compose(scope.into, read_pose(context, element, attributes))
+        content.frame = Pose(
+            pose.position if "pos" in attributes else content.frame.position, pose.orientation
+        )
+        content.mass = context.non_negative(element, "mass") if "mass" in attributes else 0.0
+        if context.compiler.inertia_from_geoms:
+            return
+        if "diaginertia" in attributes:
+            x, y, z = context.triple(element, "diaginertia", attributes["diaginertia"])
+            content.tensor = (x, 0.0, 0.0, y, 0.0, z)
+        elif "fullinertia" in attributes:
+            numbers = context.singles(element, "fullinertia", attributes["fullinertia"])
+            if len(numbers) != 6:
+                raise context.error(element, "fullinertia needs six numbers")
+            xx, yy, zz, xy, xz, yz = numbers
+            content.tensor = (xx, xy, xz, yy, yz, zz)
+
+    def _robot(self, root: int) -> Robot:
+        """The robot, its links in PyBullet's order: all children of a link before any grandchild."""
+        children: dict[int, list[int]] = {}
+        for joint in self.joints:
+            children.setdefault(joint.parent, []).append(joint.child)
+        order = [root]
+        pending = [root]
+        while pending:
+            below = children.get(pending.pop(), [])
+            order += below
+            pending.extend(reversed(below))
+        place = {link: index for index, link in enumerate(order)}
+        joints = tuple(
+            replace(joint, parent=place[joint.parent], child=place[joint.child]) for joint in self.joints
+        )
+        return Robot(self.name, tuple(self.links[link] for link in order), joints, source=self.context.file)
+
+
+def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> ContactParameters:
+    """What the last geom of a body says, with the kinds of friction that only earlier ones have."""
+    return replace(
+        contact,
+        spinning_friction=earlier.spinning_friction
+        if contact.spinning_friction is None
+        else contact.spinning_friction,
+        rolling_friction=earlier.rolling_friction
+        if contact.rolling_friction is None
+        else contact.rolling_friction,
+    )
+
+
+def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
+    """The elements of a body or of the world, those in `<frame>` included, and what they are in."""
+    for child in parent.children:
+        if child.tag == "frame":
+            child_class = child.attributes.get("childclass", scope.child_class)
+            into = compose(scope.into, read_pose(context, child, child.attributes))
+            yield from _without_frames(context, child, Scope(child_class, into))
+        else:
+            yield child, scope
+
+
+def world_elements(context: MjcfContext, world: Element) -> Iterator[tuple[Element, Scope]]:
+    """The bodies, geoms and so on of a `<worldbody>`, and what they are in."""
+    return _without_frames(context, world, Scope())
+
+
+def _moved(pose: Pose, point: Vector3) -> Vector3:
+    return compose(pose, Pose(point)).position

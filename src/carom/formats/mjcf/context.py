@@ -1,0 +1,105 @@
+"""What every part of the MJCF reader needs at hand: numbers, defaults, compiler options, assets."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, field
+from math import pi
+from pathlib import Path
+
+from carom.description.pose import Vector3
+from carom.errors import DescriptionError
+from carom.formats.search import AssetSearch
+from carom.formats.urdf.context import UrdfContext, shown
+from carom.formats.xml_tree import Element
+
+_FLOAT = struct.Struct("f")
+SINGLE_PI = 3.1415927410125732
+"""π as PyBullet has it where it converts degrees of joint ranges."""
+
+
+@dataclass
+class CompilerOptions:
+    """What `<compiler>` says.
+
+    Attributes:
+        degrees: Angles are in degrees. As in PyBullet only if there is a `<compiler>`.
+        global_frames: Positions and orientations are in world axes.
+        euler_sequence: Axes of Euler angles; capitals turn about fixed axes.
+        mesh_directory: Put before the file names of meshes.
+        auto_limits: Joints with a range are limited.
+        inertia_from_geoms: Tensors in the file do not count.
+    """
+
+    degrees: bool = False
+    global_frames: bool = False
+    euler_sequence: str = "xyz"
+    mesh_directory: str = ""
+    auto_limits: bool = False
+    inertia_from_geoms: bool = True
+
+
+@dataclass
+class Assets:
+    """Meshes and materials by name."""
+
+    meshes: dict[str, Element] = field(default_factory=dict)
+    materials: dict[str, Element] = field(default_factory=dict)
+
+
+class MjcfContext(UrdfContext):
+    """State of one reading; its root is the `<mujoco>` element.
+
+    Attributes:
+        compiler: Compiler options.
+        assets: Meshes and materials.
+        classes: Attributes that each class of defaults gives to each kind of element.
+        origins: The file of an element that was included, by the identity of the element.
+        unnamed: Number of names made up so far.
+        colours: Colours of geoms count.
+        implicit: Capsules given by their ends are capsules, not PyBullet's swept spheres.
+    """
+
+    def __init__(self, file: Path, root: Element, search: AssetSearch) -> None:
+        super().__init__(file, root, 1.0, search)
+        self.compiler = CompilerOptions()
+        self.assets = Assets()
+        self.classes: dict[str, dict[str, dict[str, str]]] = {}
+        self.origins: dict[int, Path] = {}
+        self.unnamed = 0
+        self.colours = False
+        self.implicit = False
+
+    def error(self, element: Element, reason: str) -> DescriptionError:
+        """An error at an element, with the file it stands in, its line and its place in the document."""
+        error = super().error(element, reason)
+        for step in reversed(self.robot.path_to(element)):
+            if id(step) in self.origins:
+                origin = self.origins[id(step)]
+                return DescriptionError(reason, file=origin, line=error.line, element=error.element)
+        return error
+
+    def next_number(self) -> int:
+        """A number for a name that has to be made up."""
+        self.unnamed += 1
+        return self.unnamed - 1
+
+    def singles(self, element: Element, attribute: str, text: str) -> list[float]:
+        """The numbers in a text, rounded to single precision as PyBullet rounds them."""
+        return [single(self.parse_number(element, attribute, word)) for word in text.split()]
+
+    def triple(self, element: Element, attribute: str, text: str) -> Vector3:
+        """The first three numbers in a text; raises `DescriptionError` where there are fewer."""
+        numbers = self.singles(element, attribute, text)
+        if len(numbers) < 3:
+            raise self.error(element, f"{attribute}={shown(text)} needs three numbers")
+        return (numbers[0], numbers[1], numbers[2])
+
+    def angle(self, value: float) -> float:
+        """An angle of the file in radians."""
+        return value * pi / 180.0 if self.compiler.degrees else value
+
+
+def single(value: float) -> float:
+    """A number rounded to single precision."""
+    return _FLOAT.unpack(_FLOAT.pack(value))[0]

@@ -1,0 +1,277 @@
+"""`<geom>`: a shape that touches and is seen, and how much its link weighs for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, hypot, pi, sin
+from pathlib import Path
+
+import numpy as np
+
+from carom.description import (
+    Box,
+    Capsule,
+    Collision,
+    ContactParameters,
+    ConvexHull,
+    Cylinder,
+    Geometry,
+    Material,
+    Mesh,
+    Plane,
+    Pose,
+    Sphere,
+    Visual,
+)
+from carom.description.pose import Vector3
+from carom.description.transform import compose
+from carom.errors import DescriptionError
+from carom.formats.mjcf.context import MjcfContext
+from carom.formats.mjcf.defaults import Attributes
+from carom.formats.mjcf.frames import read_pose, turn_of_z
+from carom.formats.urdf.context import shown
+from carom.formats.urdf.geometry import MESH_SUFFIXES
+from carom.formats.xml_tree import Element
+
+_FRICTION = 0.5
+_CONTACT_DIMENSIONS = "3"
+_HULL_RINGS, _HULL_SECTORS = 9, 16
+
+
+@dataclass(frozen=True, slots=True)
+class Geom:
+    """One shape of a body.
+
+    Attributes:
+        collision: As it touches.
+        visual: As it is seen.
+        volume: [m³]; 0 for meshes and planes, as in PyBullet.
+        middle: Middle of the ends it is given by, which is where PyBullet puts the centre of mass;
+            None where it is not given by ends.
+    """
+
+    collision: Collision
+    visual: Visual
+    volume: float
+    middle: Vector3 | None
+
+
+def read_geom(context: MjcfContext, element: Element, attributes: Attributes, into: Pose) -> Geom | None:
+    """A `<geom>`; None, with a warning, where PyBullet too leaves it out.
+
+    Args:
+        context: The reading it belongs to.
+        element: The element.
+        attributes: Its attributes, defaults included.
+        into: Pose in the link frame of what its own pose is given in.
+
+    Raises:
+        DescriptionError: Something in it is wrong.
+    """
+    kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
+    pose = compose(into, read_pose(context, element, attributes, radians=True))
+    ends = _ends(context, element, attributes) if kind in ("capsule", "cylinder") else None
+    shape = _shape(context, element, attributes, kind, ends)
+    if shape is None:
+        return None
+    geometry, volume = shape
+    frame, given_in = pose, None
+    if ends is not None:
+        frame = compose(pose, _between(ends))
+        if kind == "cylinder" or not context.implicit:
+            given_in = pose
+    return Geom(
+        Collision(
+            geometry,
+            frame,
+            name=attributes.get("name", ""),
+            group=_bits(context, element, attributes, "contype"),
+            mask=_bits(context, element, attributes, "conaffinity"),
+            ends_frame=given_in,
+        ),
+        Visual(geometry, frame, attributes.get("name", ""), _material(context, element, attributes)),
+        volume,
+        None if ends is None else compose(into, Pose(_middle(ends))).position,
+    )
+
+
+def read_contact(context: MjcfContext, element: Element, defaults: Attributes) -> ContactParameters:
+    """How a link with this geom touches.
+
+    As in PyBullet the geom's own friction along the surface counts, but rolling and spinning have that of
+    its defaults.
+    """
+    attributes = {**defaults, **element.attributes}
+    own = context.singles(element, "friction", attributes.get("friction", ""))
+    inherited = context.singles(element, "friction", defaults.get("friction", ""))
+    text = attributes.get("condim", _CONTACT_DIMENSIONS)
+    dimensions = int(context.parse_number(element, "condim", text))
+    spinning = inherited[1] if len(inherited) > 1 else 0.0
+    rolling = inherited[2] if len(inherited) > 2 else 0.0
+    return ContactParameters(
+        lateral_friction=own[0] if own else _FRICTION,
+        spinning_friction=spinning if dimensions > 3 else None,
+        rolling_friction=rolling if dimensions > 4 else None,
+    )
+
+
+def _bits(context: MjcfContext, element: Element, attributes: Attributes, name: str) -> int:
+    value = int(context.parse_number(element, name, attributes.get(name, "1")))
+    if not -(1 << 31) <= value < 1 << 32:
+        raise context.error(element, f"{name}={value} does not fit into 32 bits")
+    return value if value < 1 << 31 else value - (1 << 32)
+
+
+def _shape(
+    context: MjcfContext,
+    element: Element,
+    attributes: Attributes,
+    kind: str,
+    ends: tuple[Vector3, Vector3] | None,
+) -> tuple[Geometry, float] | None:
+    """Shape and volume [m³]."""
+    text = attributes.get("size", "")
+    match kind:
+        case "plane":
+            return Plane(), 0.0
+        case "sphere":
+            # The one size that PyBullet does not round to single precision.
+            words = text.split()
+            radius = context.parse_number(element, "size", words[0]) if words else 1.0
+            _check_sizes(context, element, [radius])
+            return Sphere(radius), 4.0 / 3.0 * pi * radius**3
+        case "box":
+            half = context.triple(element, "size", text) if text else (1.0, 1.0, 1.0)
+            _check_sizes(context, element, half)
+            return Box(half), 8.0 * half[0] * half[1] * half[2]
+        case "ellipsoid":
+            axes = context.triple(element, "size", text)
+            _check_sizes(context, element, axes)
+            return _ellipsoid(axes), 4.0 / 3.0 * pi * axes[0] * axes[1] * axes[2]
+        case "capsule" | "cylinder":
+            return _round(context, element, text, kind, ends)
+        case "mesh":
+            mesh = _mesh(context, element, attributes)
+            return None if mesh is None else (mesh, 0.0)
+        case _:
+            context.warn(element, f"geoms of type {shown(kind)} are left out")
+            return None
+
+
+def _round(
+    context: MjcfContext, element: Element, text: str, kind: str, ends: tuple[Vector3, Vector3] | None
+) -> tuple[Geometry, float] | None:
+    sizes = context.singles(element, "size", text)
+    _check_sizes(context, element, sizes)
+    if not sizes:
+        raise context.error(element, f"a {kind} needs a size")
+    if ends is None and len(sizes) < 2:
+        context.warn(element, f"a {kind} without fromto needs two sizes; it is left out, as in PyBullet")
+        return None
+    radius = sizes[0]
+    length = 2.0 * sizes[1] if ends is None else hypot(*(b - a for a, b in zip(*ends, strict=True)))
+    volume = pi * radius * radius * length
+    if kind == "cylinder":
+        return Cylinder(radius, length), volume
+    return Capsule(radius, length), volume + 4.0 / 3.0 * pi * radius**3
+
+
+def _check_sizes(context: MjcfContext, element: Element, sizes: tuple[float, ...] | list[float]) -> None:
+    if any(size < 0.0 for size in sizes):
+        raise context.error(element, f"size={shown(element.attributes.get('size', ''))} must not be negative")
+
+
+def _ends(context: MjcfContext, element: Element, attributes: Attributes) -> tuple[Vector3, Vector3] | None:
+    text = attributes.get("fromto")
+    if text is None:
+        return None
+    numbers = context.singles(element, "fromto", text)
+    if len(numbers) < 6:
+        raise context.error(element, f"fromto={shown(text)} needs six numbers")
+    return (numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5])
+
+
+def _middle(ends: tuple[Vector3, Vector3]) -> Vector3:
+    (ax, ay, az), (bx, by, bz) = ends
+    return (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
+
+
+def _between(ends: tuple[Vector3, Vector3]) -> Pose:
+    """A frame in the middle, its z axis along the way from the first end to the second."""
+    x, y, z = (b - a for a, b in zip(*ends, strict=True))
+    length = hypot(x, y, z)
+    if length * length <= 2.220446049250313e-16:
+        return Pose(_middle(ends))
+    return Pose(_middle(ends), turn_of_z((x / length, y / length, z / length)))
+
+
+def _ellipsoid(axes: Vector3) -> ConvexHull:
+    """Points on an ellipsoid: rings of latitude and the poles."""
+    points = [(0.0, 0.0, axes[2]), (0.0, 0.0, -axes[2])]
+    for ring in range(1, _HULL_RINGS + 1):
+        height = pi * ring / (_HULL_RINGS + 1)
+        for sector in range(_HULL_SECTORS):
+            angle = 2.0 * pi * (sector + 0.5 * (ring % 2)) / _HULL_SECTORS
+            points.append(
+                (
+                    axes[0] * sin(height) * cos(angle),
+                    axes[1] * sin(height) * sin(angle),
+                    axes[2] * cos(height),
+                )
+            )
+    return ConvexHull(np.array(points))
+
+
+def _mesh(context: MjcfContext, element: Element, attributes: Attributes) -> Mesh | None:
+    name = attributes.get("mesh", "")
+    asset = context.assets.meshes.get(name)
+    if asset is None:
+        context.warn(element, f"there is no mesh {shown(name)}; the geom is left out, as in PyBullet")
+        return None
+    path = _mesh_file(context, asset)
+    if path is None:
+        context.warn(
+            element, f"the file of mesh {shown(name)} was not found; the geom is left out, as in PyBullet"
+        )
+        return None
+    scale = (1.0, 1.0, 1.0)
+    if "scale" in asset.attributes:
+        scale = context.triple(asset, "scale", asset.attributes["scale"])
+    return Mesh(path, scale)
+
+
+def _mesh_file(context: MjcfContext, asset: Element) -> Path | None:
+    name = asset.attributes.get("file", "")
+    if not name.lower().endswith(MESH_SUFFIXES):
+        raise context.error(asset, f"file={shown(name)} must end in {' or '.join(MESH_SUFFIXES)}")
+    directory = context.compiler.mesh_directory
+    candidates = [directory + name]
+    if directory and not directory.endswith("/"):
+        candidates.append(f"{directory}/{name}")
+    for candidate in candidates:
+        path = context.find_file(candidate)
+        if path is not None:
+            return path
+    return None
+
+
+def _material(context: MjcfContext, element: Element, attributes: Attributes) -> Material:
+    """White, unless colours count."""
+    white = Material(rgba=(1.0, 1.0, 1.0, 1.0), specular=(1.0, 1.0, 1.0))
+    if not context.colours:
+        return white
+    text = attributes.get("rgba")
+    if text is None:
+        asset = context.assets.materials.get(attributes.get("material", ""))
+        text = None if asset is None else asset.attributes.get("rgba")
+    if text is None:
+        return white
+    try:
+        numbers = context.singles(element, "rgba", text)
+    except DescriptionError as error:
+        context.warn(element, f"ignored: {error.reason}")
+        return white
+    if len(numbers) != 4:
+        context.warn(element, f"rgba={shown(text)} needs 4 numbers; ignored")
+        return white
+    return Material(text, rgba=(numbers[0], numbers[1], numbers[2], numbers[3]), specular=(1.0, 1.0, 1.0))

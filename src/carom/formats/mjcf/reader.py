@@ -1,0 +1,175 @@
+"""An MJCF file becomes robots, each with its place in the world."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+from carom.errors import DescriptionError
+from carom.formats.files import read_bounded
+from carom.formats.mjcf.body import ModelReader, world_elements
+from carom.formats.mjcf.context import MjcfContext
+from carom.formats.mjcf.defaults import read_defaults
+from carom.formats.placed import PlacedRobot
+from carom.formats.search import AssetSearch
+from carom.formats.urdf.context import shown
+from carom.formats.urdf.reader import MAX_FILE_BYTES
+from carom.formats.xml_tree import MAX_ELEMENTS, Element, parse_xml
+
+_log = logging.getLogger(__name__)
+
+MAX_INCLUDES = 512
+"""Most files that one file may include, directly or through others."""
+
+MAX_INCLUDE_DEPTH = 16
+"""Deepest nesting of includes."""
+
+_ROOTS = ("mujoco", "mujocoinclude")
+_READ = ("compiler", "default", "asset", "worldbody", "body")
+_SILENT = ("option", "size", "visual", "statistic")
+
+
+def read_mjcf(
+    path: Path, *, colours: bool = False, implicit: bool = False, search: AssetSearch | None = None
+) -> list[PlacedRobot]:
+    """Reads and checks an MJCF file.
+
+    What PyBullet reads is read its way: numbers in single precision, 1000 kg/m³ for every geom, links
+    without mass for joints. What it does not know is read as MuJoCo means it: classes of defaults for all
+    attributes, ball joints, ellipsoids, all kinds of orientations, `<frame>`, `<include>`, global
+    coordinates. Actuators, sensors, tendons, damping, armature and the like are left out.
+
+    Args:
+        path: The file; looked up with `AssetSearch.find`.
+        colours: The colours of geoms count; otherwise they are white.
+        implicit: Capsules given by their ends are capsules; otherwise they have the inertia that
+            PyBullet gives to swept spheres.
+        search: Where the file and what it refers to are looked for.
+
+    Returns:
+        The bodies and geoms of the world, in the order of the file.
+
+    Raises:
+        DescriptionError: The file is missing or broken.
+    """
+    search = search or AssetSearch()
+    found = search.find(path)
+    if found is None:
+        raise DescriptionError(f"no such file: {path}", file=path)
+    file = Path(found).absolute()
+    root = _read_root(file)
+    context = MjcfContext(file, root, search)
+    context.colours = colours
+    context.implicit = implicit
+    _Includes(context).expand(root, file, (file,))
+    for element in root.all("default"):
+        read_defaults(context, element)
+    for element in root.all("compiler"):
+        _read_compiler(context, element)
+    for element in root.all("asset"):
+        _read_assets(context, element)
+    ignored = sorted({child.tag for child in root.children} - {*_READ, *_SILENT})
+    if ignored:
+        _log.info("%s: <%s> left out", file, ">, <".join(ignored))
+    name = root.attributes.get("model", "")
+    robots: list[PlacedRobot] = []
+    for world in (*root.all("body"), *root.all("worldbody")):
+        for element, scope in world_elements(context, world):
+            reader = ModelReader(context, len(robots), name)
+            if element.tag == "body":
+                robots.append(reader.read_body(element, scope))
+            elif element.tag == "geom":
+                robots.append(reader.read_world_geom(element, scope))
+    return robots
+
+
+def _read_root(file: Path) -> Element:
+    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    root = next((element for element in parse_xml(data, file) if element.tag in _ROOTS), None)
+    if root is None:
+        raise DescriptionError("there is no <mujoco> element", file=file)
+    return root
+
+
+class _Includes:
+    """Puts the content of other files where they are included."""
+
+    def __init__(self, context: MjcfContext) -> None:
+        self.context = context
+        self.files = 0
+        self.elements = 0
+
+    def expand(self, parent: Element, file: Path, including: tuple[Path, ...]) -> None:
+        """Replaces every `<include>` below an element.
+
+        Args:
+            parent: The element.
+            file: The file it stands in.
+            including: That file and those by which it is included.
+        """
+        children: list[Element] = []
+        for child in parent.children:
+            if child.tag != "include":
+                self.expand(child, file, including)
+                children.append(child)
+                continue
+            other = self._file(child, file, including)
+            root = _read_root(other)
+            self.expand(root, other, (*including, other))
+            for element in root.children:
+                self.context.origins.setdefault(id(element), other)
+            self.elements += _count(root)
+            if self.elements > MAX_ELEMENTS:
+                raise self.context.error(child, f"it makes more than {MAX_ELEMENTS} elements of all includes")
+            children += root.children
+        parent.children = children
+
+    def _file(self, element: Element, file: Path, including: tuple[Path, ...]) -> Path:
+        name = self.context.required(element, "file")
+        other = self.context.search.find_referenced(name, file)
+        if other is None:
+            raise self.context.error(
+                element, f"{shown(name)} was found neither beside the file nor in a directory above it"
+            )
+        other = other.absolute()
+        if other in including:
+            raise self.context.error(element, f"{shown(name)} includes itself")
+        self.files += 1
+        if self.files > MAX_INCLUDES or len(including) > MAX_INCLUDE_DEPTH:
+            raise self.context.error(
+                element, f"more than {MAX_INCLUDES} includes, or nested deeper than {MAX_INCLUDE_DEPTH}"
+            )
+        return other
+
+
+def _count(element: Element) -> int:
+    return 1 + sum(_count(child) for child in element.children)
+
+
+def _read_compiler(context: MjcfContext, element: Element) -> None:
+    options, attributes = context.compiler, element.attributes
+    angle = attributes.get("angle", "degree")
+    if angle not in ("degree", "radian"):
+        raise context.error(element, f"angle={shown(angle)} is neither degree nor radian")
+    options.degrees = angle == "degree"
+    coordinate = attributes.get("coordinate", "local")
+    if coordinate not in ("local", "global"):
+        raise context.error(element, f"coordinate={shown(coordinate)} is neither local nor global")
+    options.global_frames = coordinate == "global"
+    sequence = attributes.get("eulerseq", options.euler_sequence)
+    if len(sequence) != 3 or set(sequence.lower()) - set("xyz"):
+        raise context.error(element, f"eulerseq={shown(sequence)} needs three of x, y, z, X, Y and Z")
+    options.euler_sequence = sequence
+    options.mesh_directory = attributes.get("meshdir", attributes.get("assetdir", options.mesh_directory))
+    options.auto_limits = attributes.get("autolimits") == "true"
+    if attributes.get("inertiafromgeom", "").startswith("f"):
+        options.inertia_from_geoms = False
+
+
+def _read_assets(context: MjcfContext, element: Element) -> None:
+    for child in element.children:
+        if child.tag == "mesh":
+            name = child.attributes.get("name") or Path(child.attributes.get("file", "")).stem
+            context.assets.meshes[name] = child
+        elif child.tag == "material":
+            context.assets.materials[child.attributes.get("name", "")] = child
