@@ -34,7 +34,8 @@ def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, 
     other = wp.cw_mul(upper - start, inverse)
     enter = wp.max(wp.max(wp.min(one, other)), 0.0)
     leave = wp.min(wp.min(wp.max(one, other)), last)
-    if enter <= leave:
+    # Empty boxes have their lower corner above their upper one.
+    if enter <= leave and lower[0] <= upper[0]:
         return enter
     return MISS
 

@@ -3,8 +3,14 @@
 import warp as wp
 
 from carom.collision.bounds import local_center, local_extents, magnitudes
-from carom.collision.candidates import candidate_distance, candidate_normal, keep_four
-from carom.collision.convex import FLAT_ON, nearest_or_deepest, touch_convex
+from carom.collision.candidates import (
+    candidate_distance,
+    candidate_normal,
+    candidate_point,
+    exchange,
+    keep_four,
+)
+from carom.collision.convex import nearest_or_deepest, touch_convex
 from carom.collision.cores import Core
 from carom.collision.triangles import (
     Region,
@@ -17,8 +23,14 @@ from carom.collision.triangles import (
 )
 from carom.model.codes import SPHERE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
-from carom.model.real import Int32, Vector3, func, real
+from carom.model.real import Int32, Vector3, Vector8Rows, func, real, shared_func
 
+# Column of a candidate's row that tells whether it is on the face of its triangle.
+FLAT = 7
+# Cosine of the angle between a contact and a face beyond which it is at an edge.
+ON_FACE = real(0.999999)
+# Height above a face up to which an edge belongs to it, beside the margin [m].
+SAME_PLANE = real(1.0e-4)
 # Room that one triangle may need among the candidates.
 ROOM = 16
 
@@ -47,13 +59,46 @@ def region_around(
 
 
 @func
-def only_edge(pairs: Pairs, world: Int32, row: Int32, normal: Vector3) -> bool:
-    """Whether a candidate is not on the face of a triangle but at its edge, and does not touch yet.
+def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vector3) -> Int32:
+    """Mark which candidates of a triangle are on its face, and drop those at its edges that do not touch yet.
 
-    Such contacts would stop what slides from one triangle of a flat surface to the next.
+    They would stop what slides from one triangle of a flat surface to the next. Returns the number of
+    all candidates that are left.
     """
-    along = wp.dot(candidate_normal(pairs.candidate_terms, world, row), normal)
-    return wp.abs(along) < FLAT_ON and candidate_distance(pairs.candidate_terms, world, row) > 0.0
+    count = first
+    for row in range(first, last):
+        along = wp.dot(candidate_normal(pairs.candidate_terms, world, row), normal)
+        flat = wp.abs(along) >= ON_FACE
+        if flat or candidate_distance(pairs.candidate_terms, world, row) <= 0.0:
+            pairs.candidate_terms[world, count] = pairs.candidate_terms[world, row]
+            pairs.candidate_terms[world, count][FLAT] = wp.where(flat, real(1.0), real(0.0))
+            count += 1
+    return count
+
+
+@shared_func
+def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickness: real) -> Int32:
+    """Drop candidates at edges that lie in a face that is touched as well; returns how many are left.
+
+    The face bears the contact; the edge, seen from a neighbour in the same plane or beyond the end of
+    the face, would only push sideways.
+    """
+    kept = Int32(0)
+    for row in range(count):
+        needed = Int32(1)
+        if candidates[world, row][FLAT] == 0.0:
+            point = candidate_point(candidates, world, row)
+            for other in range(count):
+                if candidates[world, other][FLAT] == 1.0:
+                    offset = point - candidate_point(candidates, world, other)
+                    height = wp.dot(offset, candidate_normal(candidates, world, other))
+                    if wp.abs(height) <= thickness:
+                        needed = Int32(0)
+        if needed == 1:
+            # Exchanged, not copied: the faces after this row must see all others.
+            exchange(candidates, world, kept, row)
+            kept += 1
+    return kept
 
 
 @func
@@ -72,19 +117,18 @@ def touch_surface(
     """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number."""
     region = region_around(shapes, pairs, world, a, b, reach)
     radius = surface_radius(shapes, core, b)
+    thickness = 2.0 * radius + SAME_PLANE
     count = Int32(0)
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         found = touch_convex(shapes, pairs, world, a, b, core, triangle, reach, count)
-        normal = triangle_normal(triangle)
-        for row in range(count, found):
-            if not only_edge(pairs, world, row, normal):
-                pairs.candidate_terms[world, count] = pairs.candidate_terms[world, row]
-                count += 1
+        count = mark_flat(pairs, world, count, found, triangle_normal(triangle))
         if count + ROOM > pairs.candidate_terms.shape[1]:
+            count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
             count = keep_four(pairs.candidate_terms, world, count)
         cursor = triangle_from(shapes, region, b, following_cursor(shapes, b, cursor))
+    count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
     return keep_four(pairs.candidate_terms, world, count)
 
 
