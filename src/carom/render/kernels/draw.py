@@ -1,7 +1,7 @@
 """The kernels of the renderer. Each launch is one thread that handles a chunk of triangles or some rows."""
 
 from carom.model.real import Int32, kernel
-from carom.render.kernels.shading import shade_pixel
+from carom.render.kernels.shading import shade_row
 from carom.render.kernels.structs import Picture, Scene, View
 from carom.render.kernels.visibility import fill_rows, project_chunk
 
@@ -24,5 +24,4 @@ def image_kernel(scene: Scene, view: View, light: View, picture: Picture, first_
     fill_rows(scene, view, first_row, end_row)
     lighting = picture.lighting[0]
     for row in range(first_row, end_row):
-        for column in range(view.width):
-            shade_pixel(scene, view, light, picture, lighting, row, column)
+        shade_row(scene, view, light, picture, lighting, row)
