@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import warp as wp
+from numpy.typing import ArrayLike
 
 from carom.collision.capacity import scratch_capacity
 from carom.collision.closest import closest_points_kernel, place_shapes_kernel
@@ -30,9 +31,9 @@ class Shape:
     """One shape, on a free body of its own."""
 
     kind: ShapeKind
-    size: Sequence[float]
-    position: Sequence[float] = (0.0, 0.0, 0.0)
-    orientation: Sequence[float] = IDENTITY
+    size: ArrayLike
+    position: ArrayLike = (0.0, 0.0, 0.0)
+    orientation: ArrayLike = IDENTITY
     margin: float = 0.0
     breaking: float = 0.02
     polyhedron: Polyhedron | None = None
@@ -175,9 +176,9 @@ class Scene:
             arrays["node_lower"][rows["node"]] = shape.hierarchy.lower
             arrays["node_upper"][rows["node"]] = shape.hierarchy.upper
 
-    def place(self, row: int, position: Sequence[float], orientation: Sequence[float] = IDENTITY) -> None:
+    def place(self, row: int, position: ArrayLike, orientation: ArrayLike = IDENTITY) -> None:
         """Move a shape."""
-        self.numpy("state")["link_pose"][0, row] = (*position, *orientation)
+        self.numpy("state")["link_pose"][0, row] = np.concatenate([position, orientation])
 
     def structs(self) -> dict[str, Any]:
         return {name: table.struct("cpu") for name, table in self.tables.items()}

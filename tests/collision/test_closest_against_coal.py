@@ -24,7 +24,7 @@ MAKERS = {
 
 def as_coal(shape: Shape):
     """The same shape in coal: the core, swept by a ball of the margin."""
-    a, b, c = (float(x) for x in shape.size)
+    a, b, c = np.asarray(shape.size, dtype=float).tolist()
     margin = shape.margin
     if shape.kind == ShapeKind.SPHERE:
         return coal.Sphere(a)
@@ -35,6 +35,7 @@ def as_coal(shape: Shape):
     elif shape.kind == ShapeKind.CYLINDER:
         core = coal.Cylinder(a - margin, 2 * (b - margin))
     else:
+        assert shape.polyhedron is not None
         points = coal.StdVec_Vec3s()
         for point in shape.polyhedron.vertices:
             points.append(point)
@@ -50,7 +51,7 @@ def coal_distance(first: Shape, second: Shape) -> float:
     result = coal.DistanceResult()
     poses = []
     for shape in (first, second):
-        x, y, z, w = shape.orientation
+        x, y, z, w = np.asarray(shape.orientation)
         poses.append(
             coal.Transform3s(coal.Quaternion(w, x, y, z).toRotationMatrix(), np.array(shape.position))
         )
@@ -93,5 +94,5 @@ def test_depth_of_overlapping_shapes(first, second):
     assert (found[:, 6] > expected - 1e-6).all()
     for i, _ in PAIRS:
         shape = shapes[i]
-        scene.place(i, shape.position - found[i, 3:6] * found[i, 6], shape.orientation)
+        scene.place(i, np.asarray(shape.position) - found[i, 3:6] * found[i, 6], shape.orientation)
     assert_allclose(scene.closest(PAIRS)[:, 6], 0, atol=2e-6)

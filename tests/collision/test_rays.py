@@ -113,6 +113,7 @@ def test_height_field_is_that_of_its_triangles():
     rng = np.random.default_rng(4)
     heights = rng.normal(size=(9, 13)) * 0.4
     field = height_field(heights, spacing=(0.5, 0.7))
+    assert field.polyhedron is not None
     rows, columns = heights.shape
     faces = []
     for row in range(rows - 1):
