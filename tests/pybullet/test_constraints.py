@@ -1,0 +1,183 @@
+"""Constraints made by scripts; the expected values are what PyBullet 3.2.7 answers."""
+
+from collections.abc import Callable
+from math import inf, nan
+from typing import Any
+
+import pytest
+from tests.pybullet.touching import BALL, FLOOR, PAIR, balls
+
+import pybullet as p
+
+__all__ = ["balls"]
+
+ORIGIN = [0.0, 0.0, 0.0]
+TURN = (0.0, 0.0, 0.0, 1.0)
+# Arguments of `createConstraint` that are right.
+RIGHT: dict[str, Any] = {
+    "parentBodyUniqueId": BALL,
+    "parentLinkIndex": -1,
+    "childBodyUniqueId": -1,
+    "childLinkIndex": -1,
+    "jointType": p.JOINT_POINT2POINT,
+    "jointAxis": ORIGIN,
+    "parentFramePosition": ORIGIN,
+    "childFramePosition": [0.0, 0.0, 1.0],
+}
+
+
+def make(**changes: Any) -> int:
+    return p.createConstraint(**{**RIGHT, **changes})
+
+
+def weld() -> int:
+    return make(
+        childBodyUniqueId=FLOOR,
+        jointType=p.JOINT_FIXED,
+        jointAxis=[0, 0, 1],
+        parentFramePosition=[0.1, 0, 0],
+        childFramePosition=[0, 0, 1.1],
+    )
+
+
+@pytest.mark.usefixtures("balls")
+def test_constraints_are_numbered_from_one() -> None:
+    assert p.getNumConstraints() == 0
+    assert (make(), weld()) == (1, 2)
+    assert p.getNumConstraints() == 2
+    assert [p.getConstraintUniqueId(index) for index in (0, 1, 2, -1)] == [1, 2, -1, -1]
+
+
+@pytest.mark.usefixtures("balls")
+def test_information_is_what_was_given() -> None:
+    to_world, to_floor = p.getConstraintInfo(make()), p.getConstraintInfo(weld())
+    assert to_world[:6] == (BALL, -1, -1, -1, p.JOINT_POINT2POINT, (0.0, 0.0, 0.0))
+    assert to_world[6:12] == ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), TURN, TURN, 500.0, 0.0)
+    assert to_floor[:6] == (BALL, -1, FLOOR, -1, p.JOINT_FIXED, (0.0, 0.0, 1.0))
+    assert to_floor[6:12] == ((0.1, 0.0, 0.0), (0.0, 0.0, 1.1), TURN, TURN, 500.0, 0.0)
+
+
+@pytest.mark.usefixtures("balls")
+def test_changes_are_reported() -> None:
+    constraint = make()
+    p.changeConstraint(constraint, [0, 0, 2], maxForce=12.5)
+    information = p.getConstraintInfo(constraint)
+    assert information[7] == (0.0, 0.0, 2.0)
+    assert information[10] == 12.5
+
+
+@pytest.mark.usefixtures("balls")
+def test_forces_of_two_constraints_that_fight() -> None:
+    first, second = make(), weld()
+    p.stepSimulation()
+    assert p.getConstraintState(first) == pytest.approx((-28800.0, 0.0, -84434.95285714291), rel=1e-9)
+    expected = (-28800.0, 0.0, -74057.14285714283, 0.0, -7405.714285714288, 0.0)
+    assert p.getConstraintState(second) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.usefixtures("balls")
+def test_a_removed_constraint_holds_no_longer() -> None:
+    constraint = make()
+    for _ in range(240):
+        p.stepSimulation()
+    assert p.getBasePositionAndOrientation(BALL)[0][2] == pytest.approx(1.0, abs=0.01)
+    p.removeConstraint(constraint)
+    assert p.getNumConstraints() == 0
+    for _ in range(240):
+        p.stepSimulation()
+    assert p.getBasePositionAndOrientation(BALL)[0][2] == pytest.approx(0.1, abs=1e-3)
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize("body", [FLOOR, BALL])
+def test_constraints_go_with_their_bodies(body: int) -> None:
+    constraint = weld()
+    p.removeBody(body)
+    assert p.getNumConstraints() == 0
+    with pytest.raises(p.error, match="Couldn't get user constraint info"):
+        p.getConstraintInfo(constraint)
+    p.stepSimulation()
+
+
+UNKNOWN: list[tuple[Callable[[int], Any], str | None]] = [
+    (p.getConstraintInfo, "Couldn't get user constraint info"),
+    (p.getConstraintState, r"Couldn't getConstraintState\."),
+    (p.removeConstraint, None),
+    (lambda number: p.changeConstraint(number, maxForce=1.0), None),
+]
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize(("call", "problem"), UNKNOWN)
+@pytest.mark.parametrize("number", [9, 0, -1])
+def test_a_constraint_that_does_not_exist(
+    call: Callable[[int], Any], problem: str | None, number: int
+) -> None:
+    before = p.getConstraintInfo(make())
+    if problem is None:
+        assert call(number) is None
+    else:
+        with pytest.raises(p.error, match=problem):
+            call(number)
+    assert p.getNumConstraints() == 1
+    assert p.getConstraintInfo(1) == before
+
+
+REFUSED: list[dict[str, Any]] = [
+    {"parentBodyUniqueId": 99},
+    {"parentBodyUniqueId": -1},
+    {"parentLinkIndex": 5},
+    {"parentLinkIndex": -2},
+    {"childBodyUniqueId": 99},
+    {"childBodyUniqueId": PAIR, "childLinkIndex": 1},
+    {"jointType": 77},
+    {"jointType": p.JOINT_GEAR},
+    {"jointAxis": [0.0, 0.0]},
+    {"jointAxis": [0.0, 0.0, nan]},
+    {"parentFramePosition": None},
+    {"parentFramePosition": [0.0, inf, 0.0]},
+    {"childFramePosition": "abc"},
+    {"parentFrameOrientation": [0.0, 0.0, 0.0]},
+    {"parentFrameOrientation": [0.0, 0.0, 0.0, 0.0]},
+    {"childFrameOrientation": [0.0, 0.0, nan, 1.0]},
+]
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize("wrong", REFUSED)
+def test_a_constraint_that_cannot_be(wrong: dict[str, Any]) -> None:
+    with pytest.raises(p.error, match=r"createConstraint failed\."):
+        make(**wrong)
+    assert p.getNumConstraints() == 0
+    assert make() == 1
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize("argument", [name for name in RIGHT if name.endswith(("Id", "Index", "Type"))])
+def test_what_is_no_integer_is_refused(argument: str) -> None:
+    for wrong in ("x", None, 0.5, [0]):
+        with pytest.raises(TypeError, match=argument):
+            make(**{argument: wrong})
+    assert p.getNumConstraints() == 0
+
+
+CHANGES: list[tuple[dict[str, Any], type[Exception]]] = [
+    ({"maxForce": nan}, p.error),
+    ({"maxForce": "strong"}, TypeError),
+    ({"gearRatio": inf}, p.error),
+    ({"erp": None}, TypeError),
+    ({"relativePositionTarget": nan}, p.error),
+    ({"jointChildPivot": [0.0, 1.0]}, p.error),
+    ({"jointChildPivot": [0.0, nan, 1.0]}, p.error),
+    ({"jointChildFrameOrientation": [0.0, 0.0, 0.0, 0.0]}, p.error),
+]
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize(("wrong", "kind"), CHANGES)
+def test_a_change_that_cannot_be(wrong: dict[str, Any], kind: type[Exception]) -> None:
+    constraint = make()
+    before = p.getConstraintInfo(constraint)
+    with pytest.raises(kind):
+        p.changeConstraint(constraint, **wrong)
+    assert p.getConstraintInfo(constraint) == before

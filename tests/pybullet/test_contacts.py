@@ -1,0 +1,134 @@
+"""getContactPoints and performCollisionDetection; the expected values are what PyBullet 3.2.7 answers."""
+
+from typing import Any
+
+import pytest
+from tests.pybullet.touching import BALL, FLOOR, PAIR, RADIUS, WEIGHT, balls
+
+import pybullet as p
+
+__all__ = ["balls"]
+
+ON_BALL = (FLOOR, BALL, -1, -1)
+ON_BASE = (FLOOR, PAIR, -1, -1)
+ON_LINK = (FLOOR, PAIR, -1, 0)
+
+
+def swapped(place: tuple[int, int, int, int]) -> tuple[int, int, int, int]:
+    return place[1], place[0], place[3], place[2]
+
+
+FILTERS: list[tuple[dict[str, int], list[tuple[int, int, int, int]]]] = [
+    ({}, [ON_BALL, ON_BASE, ON_LINK]),
+    ({"bodyA": FLOOR}, [ON_BALL, ON_BASE, ON_LINK]),
+    ({"bodyA": BALL}, [swapped(ON_BALL)]),
+    ({"bodyB": BALL}, [ON_BALL]),
+    ({"bodyA": FLOOR, "bodyB": BALL}, [ON_BALL]),
+    ({"bodyA": BALL, "bodyB": FLOOR}, [swapped(ON_BALL)]),
+    ({"bodyA": PAIR}, [swapped(ON_BASE), swapped(ON_LINK)]),
+    ({"bodyA": PAIR, "linkIndexA": 0}, [swapped(ON_LINK)]),
+    ({"bodyA": PAIR, "linkIndexA": -1}, [swapped(ON_BASE)]),
+    ({"linkIndexB": 0}, [ON_LINK]),
+    ({"bodyA": FLOOR, "linkIndexB": 0}, [ON_LINK]),
+    ({"bodyA": FLOOR, "bodyB": PAIR, "linkIndexA": -1, "linkIndexB": 0}, [ON_LINK]),
+    ({"bodyA": BALL, "bodyB": PAIR}, []),
+    ({"bodyA": BALL, "linkIndexA": 5}, []),
+    ({"bodyA": 99}, []),
+]
+
+
+def settle() -> None:
+    for _ in range(30):
+        p.stepSimulation()
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize(("asked", "places"), FILTERS)
+def test_contacts_are_those_asked_for(asked: dict[str, int], places: list[tuple[int, int, int, int]]) -> None:
+    settle()
+    points = p.getContactPoints(**asked)
+    assert sorted(point[1:5] for point in points) == sorted(places)
+    for point in points:
+        # The normal points to the body listed first.
+        up = -1.0 if point[1] == FLOOR else 1.0
+        assert point[7] == pytest.approx((0.0, 0.0, up), abs=1e-9)
+        assert point[9] == pytest.approx(WEIGHT, rel=1e-4)
+
+
+@pytest.mark.usefixtures("balls")
+def test_a_contact_has_pybullets_fields() -> None:
+    settle()
+    (point,) = p.getContactPoints(BALL)
+    assert len(point) == 14
+    assert point[:5] == (0, BALL, FLOOR, -1, -1)
+    assert point[5] == pytest.approx((0.0, 0.0, -1e-5), abs=1e-12)
+    assert point[6] == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+    assert point[8] == pytest.approx(-1e-5, rel=1e-6)
+    assert (point[10], point[12]) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert point[11] == pytest.approx((0.0, 1.0, 0.0), abs=1e-9)
+    assert point[13] == pytest.approx((1.0, 0.0, 0.0), abs=1e-9)
+
+
+@pytest.mark.usefixtures("balls")
+def test_swapping_bodies_swaps_points_and_turns_the_normal() -> None:
+    settle()
+    (one,), (other,) = p.getContactPoints(FLOOR, BALL), p.getContactPoints(BALL, FLOOR)
+    assert one[5] == other[6]
+    assert one[6] == other[5]
+    assert one[7] == pytest.approx([-x for x in other[7]])
+    assert one[8:11] == other[8:11]
+
+
+@pytest.mark.usefixtures("balls")
+def test_contacts_are_found_without_a_step_and_have_no_force_then() -> None:
+    assert p.getContactPoints() == ()
+    p.performCollisionDetection()
+    points = p.getContactPoints()
+    assert sorted(point[1:5] for point in points) == sorted([ON_BALL, ON_BASE, ON_LINK])
+    assert [point[9] for point in points] == [0.0, 0.0, 0.0]
+    assert p.getBasePositionAndOrientation(BALL)[0] == (0.0, 0.0, RADIUS)
+
+
+@pytest.mark.usefixtures("balls")
+def test_contacts_stay_until_they_are_found_anew() -> None:
+    settle()
+    p.resetBasePositionAndOrientation(BALL, [0, 0, 0.3], [0, 0, 0, 1])
+    assert len(p.getContactPoints(BALL)) == 1
+    p.performCollisionDetection()
+    assert p.getContactPoints(BALL) == ()
+    assert len(p.getContactPoints(PAIR)) == 2
+
+
+@pytest.mark.usefixtures("balls")
+def test_contacts_of_a_removed_body_are_gone() -> None:
+    settle()
+    p.removeBody(BALL)
+    assert p.getContactPoints(BALL) == ()
+    p.stepSimulation()
+    assert sorted(point[1:5] for point in p.getContactPoints()) == sorted([ON_BASE, ON_LINK])
+
+
+@pytest.mark.usefixtures("balls")
+def test_resetting_the_simulation_forgets_contacts() -> None:
+    settle()
+    p.resetSimulation()
+    assert p.getContactPoints() == ()
+    p.performCollisionDetection()
+    assert p.getContactPoints() == ()
+
+
+@pytest.mark.usefixtures("balls")
+@pytest.mark.parametrize("argument", ["bodyA", "bodyB", "linkIndexA", "linkIndexB"])
+def test_what_is_no_integer_is_refused(argument: str) -> None:
+    for wrong in ("x", None, 1.5, [0], object()):
+        given: dict[str, Any] = {argument: wrong}
+        with pytest.raises(TypeError, match=argument):
+            p.getContactPoints(**given)
+    with pytest.raises(OverflowError):
+        p.getContactPoints(**{argument: 2**40})
+
+
+@pytest.mark.parametrize("function", [p.getContactPoints, p.performCollisionDetection])
+def test_without_a_connection(function: Any) -> None:
+    with pytest.raises(p.error, match="Not connected"):
+        function()
