@@ -45,6 +45,7 @@ def main() -> None:
             "rays": [a + b for a, b in zip(starts, ends, strict=True)],
             "hits": [[hit[0] >= 0, round(hit[2], 7), *np.round(hit[4], 5).tolist()] for hit in hits],
         }
+        assert isinstance(body, int)
         p.removeBody(body)
     path = Path(__file__).with_name("rays.json")
     path.write_text(json.dumps({"pybullet": "3.2.7", **record}, separators=(",", ":")) + "\n")

@@ -93,6 +93,11 @@ def height_field(heights, spacing=(1.0, 1.0), **options):
     return Shape(ShapeKind.HEIGHTFIELD, (0, 0, 0), polyhedron=grid, columns=columns, static=True, **options)
 
 
+def numbers(array: Any) -> np.ndarray:
+    """A Warp array as a NumPy array."""
+    return array.numpy()
+
+
 class Scene:
     """A world of shapes, each its own link and tree."""
 
@@ -210,7 +215,7 @@ class Scene:
             dim=1,
             inputs=[structs["shapes"], structs["pairs"], first, second, NUMPY_REAL(reach), found],
         )
-        return found.numpy()[0]
+        return numbers(found)[0]
 
     def rays(self, starts, ends, mask: int = -1, hit_number: int = 0, separation: float = 0.0):
         """Shape (-1 for none), fraction and normal of each ray's hit."""
@@ -242,7 +247,7 @@ class Scene:
                 normal,
             ],
         )
-        return shape.numpy(), fraction.numpy(), normal.numpy()
+        return numbers(shape), numbers(fraction), numbers(normal)
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
