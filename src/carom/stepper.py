@@ -86,26 +86,33 @@ class Stepper:
         coupled = self._touching or self._touch.user_count > 0
         return None if coupled or self._substeps > 1 else self._launch.function
 
-    def step(self, substeps: int) -> bool:
-        """Perform a step of `substeps` substeps.
+    def step(self, substeps: int, done: int = 0) -> int:
+        """Perform a step of `substeps` substeps, or the rest of one.
+
+        Args:
+            substeps: How many there are.
+            done: How many have been performed already.
 
         Returns:
-            False if rows or contacts did not fit: then nothing has happened, but for longer arrays.
+            How many have now been performed: all, at least 1, or fewer if rows or contacts did not fit. Then the
+            arrays have been replaced by longer ones, and another stepper can go on from there.
         """
+        rounds = max(1, substeps)
         if self.detection is None:
             self._launch.replace(self._index[_SUBSTEPS], substeps)
             self._launch()
-            return self._fits()
-        for substep in range(max(1, substeps)):
+            return rounds if self._fits() else 0
+        for substep in range(done, rounds):
             if not self.detection.run():
-                return False
+                return substep
             self._launch.replace(self._index[_SUBSTEPS], min(1, substeps))
             self._launch.replace(self._index[_BEGINS], int(substep == 0))
             self._launch.replace(self._index[_ENDS], int(substep >= substeps - 1))
             self._launch()
             if self._fault[0]:
-                return self._fits()
-        return True
+                # Whatever went wrong, the coordinates are those of the start of the step.
+                return rounds if self._fits() else 0
+        return rounds
 
     def _fits(self) -> bool:
         if self._fault[0] == OVERFLOW:

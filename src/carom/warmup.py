@@ -31,5 +31,4 @@ def warmup(device: str = "cpu") -> None:
     # A launch on CPU uses blocks of one thread, and a module is compiled for its block size.
     block_size = 1 if target.is_cpu else None
     with CompilationNotice():
-        for module in modules:
-            module.load(target, block_size)
+        wp.force_load(target, modules, block_size)

@@ -333,8 +333,9 @@ class World:
     def _step_with_care(self) -> None:
         """One step in substeps, and again with longer arrays as long as something does not fit."""
         substeps = self._substeps_due()
-        while not self._stepper.step(substeps):
-            self._make_stepper()
+        done = self._stepper.step(substeps)
+        while done < max(1, substeps):
+            done = self._make_stepper().step(substeps, done)
 
     def _substeps_due(self) -> int:
         """Substeps of the next step.
