@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,14 @@ def test_single_precision_fields_have_their_own_tolerance() -> None:
     (single,) = compare(_scenario(Kind.INFO, ("frame",)), golden, measured)
     assert not strict.holds
     assert single.holds
+
+
+def test_a_scenario_may_have_a_tolerance_of_its_own() -> None:
+    loose = replace(_scenario(), tolerance=1e-3)
+    (agreement,) = compare(loose, {"x": np.ones(2)}, {"x": np.array([1.0, 1.0005])})
+    assert agreement.holds
+    (agreement,) = compare(loose, {"x": np.ones(2)}, {"x": np.array([1.0, 1.0015])})
+    assert not agreement.holds
 
 
 def test_archive_gives_back_what_was_written(tmp_path: Path) -> None:

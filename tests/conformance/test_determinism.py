@@ -14,7 +14,13 @@ from . import golden
 from .catalogue import select
 from .scenario import Series
 
-NAMES = ["three_robots", "robot_removed_midway", "floating_tree_tumbles", "limits_hit_at_speed"]
+NAMES = [
+    "three_robots",
+    "robot_removed_midway",
+    "floating_tree_tumbles",
+    "limits_hit_at_speed",
+    "three_boxes_stacked",
+]
 ROOT = Path(__file__).resolve().parents[2]
 
 
