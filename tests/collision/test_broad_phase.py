@@ -47,7 +47,7 @@ def test_bodies_that_fell_far_away_or_are_nowhere_do_not_disturb_the_others():
     positions[6::31] = np.inf
     scene = Scene([plane(), *(sphere(0.5, position=p) for p in positions)], pair_room=4000)
     scene.collide()
-    finite = np.isfinite(positions).all(axis=1).tolist()
+    finite: list[bool] = [bool(np.isfinite(position).all()) for position in positions]
     expected = [
         (a, b) for a, b in brute_force_pairs(scene, 201, 0.02) if a > 0 and finite[a - 1] and finite[b - 1]
     ]
