@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth, impulses, place
+from tests.physics.contact_scenes import GRAVITY, HALF, add_ball, add_box, add_floor, earth, impulses, place
 from tests.physics.robots import coordinates
 
 from carom import Body, World
@@ -50,6 +50,23 @@ def test_contacts_beyond_the_room_there_was_change_nothing(substeps: int) -> Non
     for ours, theirs in zip(few, many, strict=True):
         for values, expected in zip(coordinates(ours), coordinates(theirs), strict=True):
             np.testing.assert_array_equal(values, expected)
+
+
+def test_a_body_elsewhere_does_not_notice_that_contacts_outgrow_the_arrays() -> None:
+    # All boxes reach the floor within one step, in different substeps of it.
+    substeps, steps = 8, 20
+    world = earth(substeps=substeps)
+    add_floor(world)
+    faller = add_ball(world, (0.0, 100.0, 50.0))
+    drop = 0.9 * GRAVITY / 2.0 * (5.0 / 240.0) ** 2
+    for i in range(40):
+        for j in range(5):
+            add_box(world, (0.5 * i, 0.5 * j, HALF + 0.02 + drop * (1.0 + 0.02 * i)))
+    room = world.touch.contacts.capacity["contact"]
+    world.step(steps)
+    assert world.touch.contact_count > room
+    h, n = world.parameters.substep_time, steps * substeps
+    assert place(faller)[2] == pytest.approx(50.0 - GRAVITY * h * h * n * (n + 1) / 2.0, abs=1e-9)
 
 
 def test_a_heap_comes_to_rest_above_the_floor() -> None:
