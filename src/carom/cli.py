@@ -1,4 +1,4 @@
-"""The command line: `python -m carom info robot.urdf`, `python -m carom warmup`."""
+"""The command line: `python -m carom info robot.urdf`, `convert robot.sdf robot.urdf`, `warmup`."""
 
 from __future__ import annotations
 
@@ -54,6 +54,12 @@ def _parser() -> argparse.ArgumentParser:
     info.add_argument("--merge-fixed-links", action="store_true", help="merge links that cannot move")
     info.set_defaults(command=_info)
 
+    convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
+    convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
+    convert.add_argument("output", type=Path, help="URDF file to write")
+    convert.add_argument("--model", help="the one to take from a file with several, by name or number from 0")
+    convert.set_defaults(command=_convert)
+
     warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
     warmup.set_defaults(command=_warmup)
     return parser
@@ -83,6 +89,17 @@ def _info(options: argparse.Namespace) -> int:
         print(f"carom: {problem}", file=sys.stderr)
         return FAILED
     print(describe(spec))
+    return OK
+
+
+def _convert(options: argparse.Namespace) -> int:
+    from carom.formats.convert import convert
+
+    try:
+        convert(options.input, options.output, options.model)
+    except (CaromError, OSError) as problem:
+        print(f"carom: {problem}", file=sys.stderr)
+        return FAILED
     return OK
 
 

@@ -1,0 +1,231 @@
+"""A description as a URDF file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from math import asin, atan2, copysign, pi
+from pathlib import Path
+from xml.sax.saxutils import escape, quoteattr
+
+from carom.description import (
+    Box,
+    Capsule,
+    Collision,
+    ContactParameters,
+    Cylinder,
+    Geometry,
+    Inertial,
+    Joint,
+    JointType,
+    Link,
+    Material,
+    Mesh,
+    Plane,
+    Pose,
+    Robot,
+    SignedDistanceField,
+    Sphere,
+    Visual,
+)
+from carom.description.pose import IDENTITY, Quaternion, Vector3
+from carom.description.transform import rotation_matrix
+from carom.errors import DescriptionError
+
+_GIMBAL_LOCK = 1.0 - 1e-12
+_UNNAMED = "material"
+
+
+def urdf_text(robot: Robot, folder: Path) -> str:
+    """The URDF of a robot; `read_urdf` makes the same robot of it again, rounding aside.
+
+    Args:
+        robot: The robot.
+        folder: Where the file will be: meshes and textures are named as seen from there.
+
+    Raises:
+        DescriptionError: It has a shape that URDF cannot say.
+    """
+    return "\n".join(['<?xml version="1.0"?>', *_Writer(robot, folder).lines(), ""])
+
+
+class _Writer:
+    def __init__(self, robot: Robot, folder: Path) -> None:
+        self.robot = robot
+        self.folder = folder
+
+    def lines(self) -> Iterator[str]:
+        yield f"<robot name={quoteattr(self.robot.name)}>"
+        yield from _user_data(self.robot.user_data, 1)
+        for link in self.robot.links:
+            yield from self._link(link)
+        for joint in self.robot.joints:
+            yield from self._joint(joint)
+        yield "</robot>"
+
+    def _link(self, link: Link) -> Iterator[str]:
+        yield f"  <link name={quoteattr(link.name)}>"
+        yield from _inertial(link.inertial)
+        yield from _contact(link.contact)
+        for visual in link.visuals:
+            yield from self._visual(link, visual)
+        for collision in link.collisions:
+            yield from self._collision(link, collision)
+        yield from _user_data(link.user_data, 2)
+        yield "  </link>"
+
+    def _visual(self, link: Link, visual: Visual) -> Iterator[str]:
+        yield f"    <visual{_attribute('name', visual.name or None)}>"
+        yield from _origin(visual.frame, 3)
+        yield f"      <geometry>{self._geometry(link, visual.geometry)}</geometry>"
+        if visual.material is not None:
+            yield from self._material(visual.material)
+        yield from _user_data(visual.user_data, 3)
+        yield "    </visual>"
+
+    def _collision(self, link: Link, collision: Collision) -> Iterator[str]:
+        is_concave = isinstance(collision.geometry, Mesh) and collision.geometry.concave
+        attributes = (
+            ("name", collision.name or None),
+            ("group", collision.group),
+            ("mask", collision.mask),
+            ("concave", "yes" if is_concave else None),
+        )
+        yield f"    <collision{''.join(_attribute(*pair) for pair in attributes)}>"
+        yield from _origin(collision.frame, 3)
+        yield f"      <geometry>{self._geometry(link, collision.geometry)}</geometry>"
+        yield "    </collision>"
+
+    def _geometry(self, link: Link, geometry: Geometry) -> str:
+        match geometry:
+            case Box((x, y, z)):
+                return f'<box size="{_numbers((2.0 * x, 2.0 * y, 2.0 * z))}"/>'
+            case Sphere(radius):
+                return f'<sphere radius="{radius!r}"/>'
+            case Cylinder(radius, length):
+                return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
+            case Capsule(radius, length):
+                return f'<capsule radius="{radius!r}" length="{length!r}"/>'
+            case Plane(normal):
+                return f'<plane normal="{_numbers(normal)}"/>'
+            case Mesh(path, scale):
+                return f'<mesh filename={self._file(path)} scale="{_numbers(scale)}"/>'
+            case SignedDistanceField(path):
+                return f"<cdf filename={self._file(path)}/>"
+            case _:
+                raise DescriptionError(
+                    f"link {link.name!r} has a shape that URDF cannot say: {type(geometry).__name__}",
+                    file=self.robot.source,
+                )
+
+    def _material(self, material: Material) -> Iterator[str]:
+        yield f"      <material name={quoteattr(material.name or _UNNAMED)}>"
+        if material.rgba is not None:
+            yield f'        <color rgba="{_numbers(material.rgba)}"/>'
+        if material.specular is not None:
+            yield f'        <specular rgb="{_numbers(material.specular)}"/>'
+        if material.texture is not None:
+            yield f"        <texture filename={self._file(material.texture)}/>"
+        yield "      </material>"
+
+    def _file(self, path: Path) -> str:
+        """A file as seen from the folder, quoted."""
+        try:
+            name = os.path.relpath(path, self.folder)
+        except ValueError:  # another drive
+            name = os.path.abspath(path)
+        return quoteattr(Path(name).as_posix())
+
+    def _joint(self, joint: Joint) -> Iterator[str]:
+        limit = joint.limit
+        yield f'  <joint name={quoteattr(joint.name)} type="{joint.type.value}">'
+        yield from _origin(joint.frame, 2)
+        yield f"    <parent link={quoteattr(self.robot.links[joint.parent].name)}/>"
+        yield f"    <child link={quoteattr(self.robot.links[joint.child].name)}/>"
+        if joint.type not in (JointType.FIXED, JointType.FLOATING):
+            x, y, z = (component * joint.axis_length for component in joint.axis)
+            yield f'    <axis xyz="{_numbers((x, y, z))}"/>'
+            yield (
+                f'    <limit lower="{limit.lower!r}" upper="{limit.upper!r}" effort="{limit.effort!r}" '
+                f'velocity="{limit.velocity!r}" twist="{limit.twist!r}"/>'
+            )
+        if joint.damping or joint.friction:
+            yield f'    <dynamics damping="{joint.damping!r}" friction="{joint.friction!r}"/>'
+        if joint.mimic is not None:
+            yield (
+                f"    <mimic joint={quoteattr(joint.mimic.joint)} "
+                f'multiplier="{joint.mimic.multiplier!r}" offset="{joint.mimic.offset!r}"/>'
+            )
+        if joint.safety is not None:
+            safety = joint.safety
+            yield (
+                f'    <safety_controller soft_lower_limit="{safety.soft_lower!r}" '
+                f'soft_upper_limit="{safety.soft_upper!r}" '
+                f'k_position="{safety.k_position!r}" k_velocity="{safety.k_velocity!r}"/>'
+            )
+        yield "  </joint>"
+
+
+def _inertial(inertial: Inertial) -> Iterator[str]:
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    moments = " ".join(f'{name}="{value!r}"' for name, value in zip(names, inertial.tensor, strict=True))
+    yield "    <inertial>"
+    yield from _origin(inertial.frame, 3)
+    yield f'      <mass value="{inertial.mass!r}"/>'
+    yield f"      <inertia {moments}/>"
+    yield "    </inertial>"
+
+
+def _contact(contact: ContactParameters) -> Iterator[str]:
+    values = {
+        name: getattr(contact, name)
+        for name in (
+            "lateral_friction",
+            "rolling_friction",
+            "spinning_friction",
+            "restitution",
+            "stiffness",
+            "damping",
+            "inertia_scaling",
+        )
+        if getattr(contact, name) is not None
+    }
+    if not values and not contact.friction_anchor:
+        return
+    yield "    <contact>"
+    for name, value in values.items():
+        yield f'      <{name} value="{value!r}"/>'
+    if contact.friction_anchor:
+        yield "      <friction_anchor/>"
+    yield "    </contact>"
+
+
+def _user_data(pairs: dict[str, str], depth: int) -> Iterator[str]:
+    indent = "  " * depth
+    if pairs:
+        yield f"{indent}<bullet>"
+        for key, value in pairs.items():
+            yield f"{indent}  <user-data key={quoteattr(key)}>{escape(value)}</user-data>"
+        yield f"{indent}</bullet>"
+
+
+def _origin(pose: Pose, depth: int) -> Iterator[str]:
+    if pose != IDENTITY:
+        angles = roll_pitch_yaw(pose.orientation)
+        yield f'{"  " * depth}<origin xyz="{_numbers(pose.position)}" rpy="{_numbers(angles)}"/>'
+
+
+def roll_pitch_yaw(quaternion: Quaternion) -> Vector3:
+    """Angles about the fixed axes x, y and z [rad]; yaw is 0 where it and roll are the same."""
+    m = rotation_matrix(quaternion)
+    if abs(m[2][0]) > _GIMBAL_LOCK:
+        return (atan2(-m[1][2], m[1][1]), copysign(0.5 * pi, -m[2][0]), 0.0)
+    return (atan2(m[2][1], m[2][2]), asin(-m[2][0]), atan2(m[1][0], m[0][0]))
+
+
+def _attribute(name: str, value: object) -> str:
+    return "" if value is None else f" {name}={quoteattr(str(value))}"
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return " ".join(repr(float(value)) for value in values)
