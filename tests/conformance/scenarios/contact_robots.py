@@ -96,18 +96,15 @@ def arm_presses_on_a_ball(p: Any) -> dict[str, Any]:
 
 @scenario()
 def arm_sweeps_a_ball_away(p: Any) -> dict[str, Any]:
-    """An arm turns on its base and hits a ball that lies on the floor of no friction."""
-    p.setGravity(0, 0, -9.81)
-    floor = _floor(p)
-    p.changeDynamics(floor, -1, lateralFriction=0.0)
-    arm = load(p, "double_pendulum.urdf", basePosition=[0, 0, 1.2], useFixedBase=True)
+    """A swinging arm without motors hits a ball that floats in its way."""
+    arm = load(p, "double_pendulum.urdf", basePosition=[0, 0, 0.87], useFixedBase=True)
     ball = p.createMultiBody(
-        0.5, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[0.5, 0, 0.1]
+        0.5, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[-0.2, 0.05, 0.1]
     )
     joints = movable_joints(p, arm)
     for joint in joints:
         p.setJointMotorControl2(arm, joint, p.VELOCITY_CONTROL, force=0)
-    p.resetJointState(arm, joints[0], -1.0)
+    p.resetJointState(arm, joints[0], -1.0, 3.0)
 
     def observe() -> dict[str, Any]:
         return under("arm", joint_motion(p, arm, joints)) | under("ball", base_motion(p, ball))
