@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.algorithms.reach.structs import Chain, ChainSizes
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
-from carom.description.transform import compose
+from carom.description.transform import compose, conjugate, multiplied, turn_of_z
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BASE
 from carom.model.codes import DOF_COUNT, POSITION_COUNT, JointCode
@@ -58,17 +58,20 @@ class BodyChain:
                 chain["dof_coordinate"][first_dof[joint] + k] = (
                     -1 if is_angle_of_ball else first_coordinate[joint] + k
                 )
+        self._turns: list[Quaternion] = []
         node_of = {link: node for node, link in enumerate(moving)}
         column = 0
         for node, link in enumerate(moving):
-            carrier, frame = _placement(body, link, node_of, moves=True)
+            carrier, frame = self._seen(*_placement(body, link, node_of, moves=True))
+            turn = _turn_of_axis(body, link, codes[link])
+            self._turns.append(turn)
             chain["joint_kind"][node] = codes[link]
             chain["joint_parent"][node] = carrier
             chain["joint_first_coordinate"][node] = first_coordinate[link]
             chain["joint_first_dof"][node] = first_dof[link]
             chain["joint_first_column"][node] = column
             chain["joint_origin"][node] = frame.position
-            chain["joint_turn"][node] = frame.orientation
+            chain["joint_turn"][node] = multiplied(frame.orientation, turn)
             self._write_axes(body, link, node)
             low, high = _range(body, link, codes[link])
             for k in range(DOF_COUNT[codes[link]]):
@@ -76,16 +79,22 @@ class BodyChain:
                 chain["column_low"][column], chain["column_high"][column] = low, high
                 column += 1
         for end, link in enumerate(links):
-            carrier, frame = _placement(body, link, node_of, moves=False)
+            carrier, frame = self._seen(*_placement(body, link, node_of, moves=False))
             chain["end_joint"][end] = carrier
             chain["end_offset"][end] = frame.position
             chain["end_turn"][end] = frame.orientation
 
+    def _seen(self, carrier: int, frame: Pose) -> tuple[int, Pose]:
+        """A frame on a joint of the chain, seen from the frame whose z axis is that of the joint."""
+        if carrier == BASE:
+            return carrier, frame
+        return carrier, compose(Pose(orientation=conjugate(self._turns[carrier])), frame)
+
     def _write_axes(self, body: Body, link: int, node: int) -> None:
         model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
         chain = self.arrays.numpy
-        slides = body.joint_types[link] == JointCode.PRISMATIC
-        chain["joint_axis"][node] = model["link_axis" if slides else "link_unit_axis"][row]
+        chain["joint_axis"][node] = model["link_unit_axis"][row]
+        chain["joint_slide"][node] = np.linalg.norm(model["link_axis"][row])
         chain["joint_planar_axis1"][node] = model["link_planar_axis1"][row]
         chain["joint_planar_axis2"][node] = model["link_planar_axis2"][row]
 
@@ -127,6 +136,13 @@ def _placement(body: Body, link: int, node_of: dict[int, int], *, moves: bool) -
         if link in node_of:
             return node_of[link], frame
     return BASE, frame
+
+
+def _turn_of_axis(body: Body, link: int, code: JointCode) -> Quaternion:
+    """The turn that takes z to the axis of a hinge or slider, in the frame of its link."""
+    if code not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+        return _NO_TURN
+    return turn_of_z(_vector(body.world.arrays.model.numpy["link_unit_axis"][body.first_link + 1 + link]))
 
 
 def _range(body: Body, link: int, code: JointCode) -> tuple[float, float]:

@@ -136,3 +136,12 @@ def inverse(pose: Pose) -> Pose:
     q = conjugate(pose.orientation)
     x, y, z = rotate(q, pose.position)
     return Pose((-x, -y, -z), q)
+
+
+def turn_of_z(axis: Vector3) -> Quaternion:
+    """The shortest turn of the z axis to another unit vector."""
+    x, y, z = axis
+    if z < -1.0 + 1e-15:
+        return (1.0, 0.0, 0.0, 0.0)
+    s = sqrt(2.0 * (1.0 + z))
+    return (-y / s, x / s, 0.0, 0.5 * s)

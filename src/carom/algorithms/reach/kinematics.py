@@ -9,6 +9,29 @@ from carom.physics.rotation import axis_rotation
 
 
 @func
+def turned_about_z(rotation: Quaternion, angle: real) -> Quaternion:
+    """A rotation after a turn about its own z axis."""
+    s = wp.sin(0.5 * angle)
+    c = wp.cos(0.5 * angle)
+    return Quaternion(
+        rotation[0] * c + rotation[1] * s,
+        rotation[1] * c - rotation[0] * s,
+        rotation[2] * c + rotation[3] * s,
+        rotation[3] * c - rotation[2] * s,
+    )
+
+
+@func
+def z_axis(rotation: Quaternion) -> Vector3:
+    """The z axis of a frame."""
+    return Vector3(
+        2.0 * (rotation[0] * rotation[2] + rotation[3] * rotation[1]),
+        2.0 * (rotation[1] * rotation[2] - rotation[3] * rotation[0]),
+        1.0 - 2.0 * (rotation[0] * rotation[0] + rotation[1] * rotation[1]),
+    )
+
+
+@func
 def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
     """Find the frames of all joints of a chain."""
     # What the next joint most often hangs on stays at hand.
@@ -18,12 +41,11 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
         origin = chain.joint_origin[joint]
         rotation = chain.joint_turn[joint]
         kind = chain.joint_kind[joint]
-        axis = chain.joint_axis[joint]
         q = chain.joint_first_coordinate[joint]
         if kind == REVOLUTE:
-            rotation = rotation * axis_rotation(axis, coordinates[q])
+            rotation = turned_about_z(rotation, coordinates[q])
         elif kind == PRISMATIC:
-            origin += wp.quat_rotate(rotation, axis * coordinates[q])
+            origin += z_axis(rotation) * (chain.joint_slide[joint] * coordinates[q])
         elif kind == SPHERICAL:
             rotation = rotation * Quaternion(
                 coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3]
@@ -34,7 +56,7 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
                 chain.joint_planar_axis1[joint] * coordinates[q + 1]
                 + chain.joint_planar_axis2[joint] * coordinates[q + 2],
             )
-            rotation = rotation * axis_rotation(axis, coordinates[q])
+            rotation = rotation * axis_rotation(chain.joint_axis[joint], coordinates[q])
         parent = chain.joint_parent[joint]
         if parent >= 0:
             if parent != joint - 1:
@@ -125,12 +147,12 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
             kind = chain.joint_kind[joint]
             entry = chain.joint_first_column[joint] * blocks + end * stride
             rotation = search.joint_rotation[joint]
-            axis = wp.quat_rotate(rotation, chain.joint_axis[joint])
+            axis = z_axis(rotation)
             arm = position - search.joint_position[joint]
             if kind == REVOLUTE:
                 write_column(search, entry, oriented, wp.cross(axis, arm), axis)
             elif kind == PRISMATIC:
-                write_column(search, entry, oriented, axis, zero)
+                write_column(search, entry, oriented, axis * chain.joint_slide[joint], zero)
             elif kind == SPHERICAL:
                 for k in range(3):
                     unit = Vector3(0.0, 0.0, 0.0)
@@ -138,6 +160,7 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
                     axis = wp.quat_rotate(rotation, unit)
                     write_column(search, entry + k * blocks, oriented, wp.cross(axis, arm), axis)
             elif kind == PLANAR:
+                axis = wp.quat_rotate(rotation, chain.joint_axis[joint])
                 write_column(search, entry, oriented, wp.cross(axis, arm), axis)
                 angle = coordinates[chain.joint_first_coordinate[joint]]
                 unturned = rotation * axis_rotation(chain.joint_axis[joint], -angle)

@@ -44,7 +44,7 @@ def start_from_errors(search: Search, blocks: Int32):
 
 
 @func
-def row_weights(sizes: ChainSizes, search: Search, blocks: Int32, i: Int32, k: Int32) -> Matrix3:
+def weighted_product(sizes: ChainSizes, search: Search, blocks: Int32, i: Int32, k: Int32) -> Matrix3:
     """The block (i, k) of J W Jᵀ without the columns that are held."""
     total = Matrix3()
     for column in range(sizes.columns):
@@ -55,15 +55,55 @@ def row_weights(sizes: ChainSizes, search: Search, blocks: Int32, i: Int32, k: I
 
 
 @func
+def solve_for_points(sizes: ChainSizes, search: Search, damping: real):
+    """`solve_blocks` for a single block."""
+    a = wp.diag(Vector3(damping, damping, damping))
+    for column in range(sizes.columns):
+        if search.column_held[column] == 0:
+            first = search.entry_jacobian[column]
+            a += wp.outer(search.column_weight[column] * first, first)
+    search.block_solution[0] = wp.inverse(a) * search.block_solution[0]
+
+
+@func
+def solve_for_pairs(sizes: ChainSizes, search: Search, damping: real):
+    """`solve_blocks` for two blocks, in one pass over the columns."""
+    a = wp.diag(Vector3(damping, damping, damping))
+    b = Matrix3()
+    c = wp.diag(Vector3(damping, damping, damping))
+    for column in range(sizes.columns):
+        if search.column_held[column] == 0:
+            weight = search.column_weight[column]
+            first = search.entry_jacobian[2 * column]
+            second = search.entry_jacobian[2 * column + 1]
+            weighted = weight * second
+            a += wp.outer(weight * first, first)
+            b += wp.outer(weighted, first)
+            c += wp.outer(weighted, second)
+    inverse = wp.inverse(a)
+    ratio = b * inverse
+    x = search.block_solution[0]
+    y = wp.inverse(c - ratio * wp.transpose(b)) * (search.block_solution[1] - ratio * x)
+    search.block_solution[0] = inverse * (x - wp.transpose(b) * y)
+    search.block_solution[1] = y
+
+
+@func
 def solve_blocks(sizes: ChainSizes, search: Search, blocks: Int32, damping: real):
     """Replace `block_solution` by (J W Jᵀ + damping)⁻¹ times it, leaving out the columns that are held."""
+    if blocks == 1:
+        solve_for_points(sizes, search, damping)
+        return
+    if blocks == 2:
+        solve_for_pairs(sizes, search, damping)
+        return
     a = search.square_matrix
     x = search.block_solution
     # LDLᵀ by blocks; the diagonal holds the inverse pivots.
     for i in range(blocks):
-        pivot = row_weights(sizes, search, blocks, i, i) + wp.diag(Vector3(damping, damping, damping))
+        pivot = weighted_product(sizes, search, blocks, i, i) + wp.diag(Vector3(damping, damping, damping))
         for k in range(i):
-            entry = row_weights(sizes, search, blocks, i, k)
+            entry = weighted_product(sizes, search, blocks, i, k)
             for before in range(k):
                 entry -= a[i * blocks + before] * wp.transpose(a[k * blocks + before])
             a[i * blocks + k] = entry

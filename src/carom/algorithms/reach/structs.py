@@ -2,8 +2,9 @@
 
 A *chain* holds the joints between the base and the ends that are to reach their targets; what is fixed
 together is folded into constant frames, so that placing the ends costs as little as possible. It may
-branch. Frames are those of the engine: axes of inertial frames, origins at the joints. Everything is
-measured in the inertial frame of the base.
+branch. Frames have their origins at the joints; those of hinges and sliders have their z axis along that of
+the joint, others have the axes of the inertial frame. Everything is measured in the inertial frame of the
+base.
 
 A *column* is a freedom of a joint of the chain, and a column of the Jacobian. A *dof* is any freedom of
 the body's joints, a *coordinate* any of their positions; the two differ for spherical joints, which have
@@ -39,7 +40,8 @@ class Chain:
     joint_first_column: Ints
     joint_origin: Vectors3  # of the joint frame in that of the parent, at position 0
     joint_turn: Quaternions
-    joint_axis: Vectors3  # unit; of a prismatic joint motion per unit of its position
+    joint_slide: Reals  # motion of a prismatic joint per unit of its position
+    joint_axis: Vectors3  # of a planar joint's turn; those of hinges and sliders are the z axes
     joint_planar_axis1: Vectors3
     joint_planar_axis2: Vectors3
 

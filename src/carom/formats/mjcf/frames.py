@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin, sqrt
+from math import cos, hypot, sin
 
 from carom.description import Pose
 from carom.description.pose import Quaternion, Vector3
@@ -12,6 +12,7 @@ from carom.description.transform import (
     quaternion_from_matrix,
     rotation_matrix,
     transposed,
+    turn_of_z,
 )
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes
@@ -58,15 +59,6 @@ def _read_orientation(
         x, y, z = _numbers(context, element, attributes, "zaxis", 3)
         return turn_of_z(_unit(context, element, (x, y, z)))
     return _NO_TURN
-
-
-def turn_of_z(axis: Vector3) -> Quaternion:
-    """The shortest turn of the z axis to another unit vector."""
-    x, y, z = axis
-    if z < -1.0 + 1e-15:
-        return (1.0, 0.0, 0.0, 0.0)
-    s = sqrt(2.0 * (1.0 + z))
-    return (-y / s, x / s, 0.0, 0.5 * s)
 
 
 def _numbers(

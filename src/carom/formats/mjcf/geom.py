@@ -24,11 +24,11 @@ from carom.description import (
     Visual,
 )
 from carom.description.pose import Vector3
-from carom.description.transform import compose
+from carom.description.transform import compose, turn_of_z
 from carom.errors import DescriptionError
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes
-from carom.formats.mjcf.frames import read_pose, turn_of_z
+from carom.formats.mjcf.frames import read_pose
 from carom.formats.urdf.context import shown
 from carom.formats.urdf.geometry import MESH_SUFFIXES
 from carom.formats.xml_tree import Element
