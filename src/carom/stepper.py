@@ -94,8 +94,8 @@ class Stepper:
             done: How many have been performed already.
 
         Returns:
-            How many have now been performed: all, at least 1, or fewer if rows or contacts did not fit. Then the
-            arrays have been replaced by longer ones, and another stepper can go on from there.
+            How many have now been performed: all, at least 1, or fewer if rows or contacts did not
+            fit. Then the arrays have been replaced by longer ones, and another stepper can go on.
         """
         rounds = max(1, substeps)
         if self.detection is None:

@@ -59,7 +59,7 @@ def createMultiBody(
     flags: int = -1,
     batchPositions: Any = None,
     physicsClientId: int = 0,
-) -> int | tuple[int, ...]:
+) -> Any:
     """Makes a body: a base and, if there are link lists, links on joints.
 
     Links are called `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`...,

@@ -132,3 +132,29 @@ def test_what_is_no_integer_is_refused(argument: str) -> None:
 def test_without_a_connection(function: Any) -> None:
     with pytest.raises(p.error, match="Not connected"):
         function()
+
+
+@pytest.mark.parametrize("half", [0.05, 0.07, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.35])
+def test_a_box_placed_exactly_on_another_touches_it(client: int, half: float) -> None:
+    p.setGravity(0, 0, -9.81)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[1, 1, 0.5]))
+    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[half] * 3)
+    box = p.createMultiBody(1, shape, basePosition=[0, 0, 0.5 + half])
+    p.performCollisionDetection()
+    assert len(p.getContactPoints()) == 4
+    p.stepSimulation()
+    height = p.getBasePositionAndOrientation(box)[0][2]
+    assert height == pytest.approx(0.5 + half - 9.975073303e-06, abs=1e-12), "as in PyBullet"
+
+
+def test_a_spring_on_one_side_works_beside_the_damper_of_the_other(client: int) -> None:
+    p.setGravity(0, 0, -9.81)
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[1, 1, 0.5]))
+    ball = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[0, 0, 0.65])
+    p.changeDynamics(floor, -1, contactStiffness=800, contactDamping=1.0)
+    heights = []
+    for _ in range(201):
+        p.stepSimulation()
+        heights.append(p.getBasePositionAndOrientation(ball)[0][2])
+    expected = [0.6498296875, 0.5571409966095049, 0.6152327377354755, 0.5898758815424251, 0.5747081545292421]
+    assert heights[:200:40] == pytest.approx(expected, abs=1e-9)

@@ -1,12 +1,15 @@
 """Rays, nearest points and overlaps; expected values are real PyBullet's."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 import pybullet as p
 
+NOTHING: Any = None
+NUMBER: Any = 3
 MISS = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 TWO_LINKS = """<robot name="two">
   <link name="b">
@@ -118,16 +121,16 @@ def test_rays_see_where_bodies_are_now(things):
     ("call", "problem"),
     [
         (lambda: p.rayTest([0, 0], [1, 1, 1]), "rayFromPosition has 2 values"),
-        (lambda: p.rayTest([0, 0, 0], None), "rayToPosition is None"),
+        (lambda: p.rayTest([0, 0, 0], NOTHING), "rayToPosition is None"),
         (lambda: p.rayTest([math.nan, 0, 0], [1, 1, 1]), "nan"),
         (lambda: p.rayTestBatch([[0, 0, 0]], []), "Size of from_positions"),
-        (lambda: p.rayTestBatch(None, []), "must be not None"),
+        (lambda: p.rayTestBatch(NOTHING, []), "must be not None"),
         (lambda: p.rayTestBatch([[0, 0]], [[1, 1, 1]]), r"rayFromPositions\[0\] has 2"),
         (lambda: p.rayTestBatch([[0, 0, 1], [0, math.inf, 0]], [[1, 1, 1]] * 2), r"rayFromPositions\[1\]"),
-        (lambda: p.rayTestBatch(3, [[1, 1, 1]]), "rayFromPositions is 3"),
+        (lambda: p.rayTestBatch(NUMBER, [[1, 1, 1]]), "rayFromPositions is 3"),
         (lambda: p.rayTest([0, 0, 0], [1, 1, 1], physicsClientId=7), "Not connected"),
         (lambda: p.getOverlappingObjects([0, 0], [1, 1, 1]), "aabbMin has 2 values"),
-        (lambda: p.getOverlappingObjects([0, 0, 0], None), "aabbMax is None"),
+        (lambda: p.getOverlappingObjects([0, 0, 0], NOTHING), "aabbMax is None"),
         (lambda: p.getClosestPoints(0, 1, math.nan), "distance"),
         (lambda: p.getClosestPoints(0, 1, 1, collisionShapeB=0), "not available"),
     ],

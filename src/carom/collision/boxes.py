@@ -14,6 +14,8 @@ EDGE_SHARE = real(0.05)
 # ... edges also by this share of the thinnest box, as all are alike where boxes just touch.
 EDGE_SIZE_SHARE = real(1.0e-4)
 FACE_SHARE = real(1.0e-6)
+# Faces this share of the boxes apart touch: where they just do, rounding must not decide.
+TOUCHING_SHARE = real(1.0e-12)
 # Squared sine of the angle below which edges are parallel: faces tell all.
 PARALLEL = real(1.0e-8)
 
@@ -68,7 +70,7 @@ def box_axis(
             best = gaps_b[i]
             code = Int32(FACE_B)
             normal = column(frame_b, i) * toward(-t_in_b[i], 1.0)
-    if best > reach:
+    if best > reach + TOUCHING_SHARE * (wp.max(wp.abs(t)) + wp.max(half_a) + wp.max(half_b)):
         return Int32(APART), normal, best
 
     thinnest = wp.min(wp.min(half_a), wp.min(half_b))
@@ -95,7 +97,7 @@ def box_axis(
                 cross = wp.cross(column(frame_a, i), column(frame_b, j))
                 normal = cross * (toward(-along, 1.0) / wp.sqrt(length_sq))
         pair += 1
-    if best > reach:
+    if code >= EDGES and best > reach:
         return Int32(APART), normal, best
     return code, normal, best
 

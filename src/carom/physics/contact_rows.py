@@ -20,6 +20,8 @@ _UNBOUNDED = real(1e10)
 _GREATEST_FRICTION = real(10.0)
 _HALF_ROOT = real(math.sqrt(0.5))
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
+# Damping of links for which none is set, in contact with soft ones [N s/m].
+_DEFAULT_DAMPING = 0.1
 
 
 @func
@@ -33,21 +35,26 @@ def friction_direction(normal: Vector3) -> Vector3:
 
 
 @func
+def contact_damping(shapes: Shapes, link: Int32) -> real:
+    """Damping of a link's contacts [N s/m]."""
+    damping = shapes.link_contact_damping[link]
+    return wp.where(shapes.link_stiffness[link] > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
+
+
+@func
 def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) -> Vector3:
     """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
     stiffness_a = shapes.link_stiffness[a]
     stiffness_b = shapes.link_stiffness[b]
     if stiffness_a < 0.0 and stiffness_b < 0.0:
         return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
-    # Springs in series, dampers side by side; a link without a spring is rigid.
+    # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
     compliance = real(0.0)
-    damping = real(0.0)
     if stiffness_a > 0.0:
         compliance += 1.0 / stiffness_a
-        damping += shapes.link_contact_damping[a]
     if stiffness_b > 0.0:
         compliance += 1.0 / stiffness_b
-        damping += shapes.link_contact_damping[b]
+    damping = contact_damping(shapes, a) + contact_damping(shapes, b)
     stiffness = 1.0 / wp.max(compliance, _LEAST_DENOMINATOR)
     denominator = wp.max(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
     return Vector3(
