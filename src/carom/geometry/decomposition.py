@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,7 @@ def decompose(
         CaromError: CoACD is not installed.
     """
     try:
-        import coacd
+        coacd = import_module("coacd")
     except ImportError:
         raise CaromError(
             "this needs the library CoACD; install it with: pip install carom[decompose]"
