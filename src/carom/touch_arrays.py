@@ -37,10 +37,6 @@ class TouchArrays:
         """Drop all contacts; the rows of their shapes are about to move."""
         self.contacts.numpy["count_contacts"][:] = 0
 
-    def forget_impulses(self) -> None:
-        """Contacts were found anew without a step, so nothing has pushed there yet."""
-        self.contacts.numpy["contact_impulse"][:] = 0.0
-
     def grow_detection(self) -> bool:
         """Make room for pairs and contacts that did not fit; true if there were some."""
         pairs = int(self.pairs.numpy["count_pairs"][0, PAIRS])

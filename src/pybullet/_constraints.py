@@ -219,7 +219,8 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
     Returns:
         (parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis,
         parentFramePosition, childFramePosition, parentFrameOrientation, childFrameOrientation, maxForce,
-        gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world.
+        gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world, and gearAuxLink
+        is 0 also where there is none.
 
     Raises:
         pybullet.error: Not connected, or there is no such constraint.
@@ -238,7 +239,7 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
         constraint.child_frame.orientation,
         constraint.max_force,
         constraint.gear_ratio,
-        constraint.gear_auxiliary_link,
+        max(constraint.gear_auxiliary_link, 0),
         constraint.relative_position_target,
         constraint.erp,
     )

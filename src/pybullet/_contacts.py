@@ -19,6 +19,7 @@ __all__ = [
 ]
 
 _ANY_BODY = -1
+_BASE = -1
 _ANY_LINK = -2
 
 Vector3 = tuple[float, float, float]
@@ -29,7 +30,9 @@ ContactPoint = tuple[
 
 @exported
 def performCollisionDetection(physicsClientId: int = 0) -> None:
-    """Finds all contacts for the present poses without a step. Forces of the contacts are then 0.
+    """Finds all contacts for the present poses without a step.
+
+    Contacts that were there after the last step keep their forces; new ones have none.
 
     Args:
         physicsClientId: The connection.
@@ -40,7 +43,6 @@ def performCollisionDetection(physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     with client.lock:
         client.world.detect_collisions()
-        client.world.touch.forget_impulses()
 
 
 @exported
@@ -54,10 +56,11 @@ def getContactPoints(
     """The contacts that the last step, or `performCollisionDetection`, found.
 
     Args:
-        bodyA: Only contacts of this body, which is then the first of each; -1 for all.
-        bodyB: Only contacts of this body; -1 for all.
-        linkIndexA: Only contacts of this link of `bodyA`; -2 for all, -1 for the base.
-        linkIndexB: Only contacts of this link of `bodyB`; -2 for all, -1 for the base.
+        bodyA: Only contacts of this body, which is then the first of each; negative for all.
+        bodyB: Only contacts whose second body is this one; negative for all. Without `bodyA` it is the
+            engine that decides which body is the second.
+        linkIndexA: Only contacts of this link of the first body; -1 for the base, -2 and less for all.
+        linkIndexB: Only contacts of this link of the second body; -1 for the base, -2 and less for all.
         physicsClientId: The connection.
 
     Returns:
@@ -72,52 +75,59 @@ def getContactPoints(
     world = client_of(physicsClientId).world
     wanted_a = (integer(bodyA, "bodyA"), integer(linkIndexA, "linkIndexA"))
     wanted_b = (integer(bodyB, "bodyB"), integer(linkIndexB, "linkIndexB"))
-    points = []
-    for place_a, place_b, row in _contacts(world):
-        if _fits(place_a, wanted_a) and _fits(place_b, wanted_b):
-            points.append(_contact_point(world, row, place_a, place_b, swapped=False))
-        elif _fits(place_b, wanted_a) and _fits(place_a, wanted_b):
-            points.append(_contact_point(world, row, place_b, place_a, swapped=True))
-    return tuple(points)
+    chosen = list(_chosen(_sides(world), wanted_a, wanted_b))
+    if not chosen:
+        return ()
+    return tuple(_points(world, chosen))
+
+
+def _sides(world: World) -> list[tuple[Place | None, Place | None]]:
+    """Body and link of both sides of each contact."""
+    links = world.touch.contacts.numpy["contact_shapes"][0, : world.touch.contact_count, 2:]
+    return list(zip(places(world, links[:, 0]), places(world, links[:, 1]), strict=True))
+
+
+def _chosen(
+    sides: list[tuple[Place | None, Place | None]], wanted_a: Place, wanted_b: Place
+) -> Iterator[tuple[int, Place, Place, bool]]:
+    """Row and sides of each contact that is asked for, and whether they change places.
+
+    They do to put `bodyA` first; without it they stay as they are.
+    """
+    for row, (first, second) in enumerate(sides):
+        if first is None or second is None:
+            continue
+        if _fits(first, wanted_a) and _fits(second, wanted_b):
+            yield row, first, second, False
+        elif wanted_a[0] >= 0 and _fits(second, wanted_a) and _fits(first, wanted_b):
+            yield row, second, first, True
 
 
 def _fits(place: Place, wanted: Place) -> bool:
     """Whether a body and link are those asked for."""
-    return (wanted[0] in (_ANY_BODY, place[0])) and (wanted[1] in (_ANY_LINK, place[1]))
+    return (wanted[0] < 0 or wanted[0] == place[0]) and (wanted[1] < _BASE or wanted[1] == place[1])
 
 
-def _contacts(world: World) -> Iterator[tuple[Place, Place, int]]:
-    """Body and link of both sides of each contact, and its row."""
-    count = world.touch.contact_count
-    if count == 0:
-        return
-    links = world.touch.contacts.numpy["contact_shapes"][0, :count, 2:]
-    owners = zip(places(world, links[:, 0]), places(world, links[:, 1]), strict=True)
-    for row, (first, second) in enumerate(owners):
-        if first is not None and second is not None:
-            yield first, second, row
-
-
-def _contact_point(world: World, row: int, first: Place, second: Place, *, swapped: bool) -> ContactPoint:
+def _points(world: World, chosen: list[tuple[int, Place, Place, bool]]) -> Iterator[ContactPoint]:
+    rows = [row for row, _, _, _ in chosen]
     contacts = world.touch.contacts.numpy
-    on_a, on_b = contacts["contact_point_a"][0, row].tolist(), contacts["contact_point_b"][0, row].tolist()
-    normal = contacts["contact_normal"][0, row]
-    if swapped:
-        on_a, on_b, normal = on_b, on_a, -normal
-    forces = (contacts["contact_impulse"][0, row] / world.parameters.time_step).tolist()
-    return (
-        0,
-        first[0],
-        second[0],
-        first[1],
-        second[1],
-        tuple(on_a),
-        tuple(on_b),
-        tuple(normal.tolist()),
-        float(contacts["contact_distance"][0, row]),
-        forces[0],
-        forces[1],
-        tuple(contacts["contact_direction1"][0, row].tolist()),
-        forces[2],
-        tuple(contacts["contact_direction2"][0, row].tolist()),
+
+    def vectors(field: str) -> Iterator[Vector3]:
+        return map(tuple, contacts[field][0, rows].tolist())
+
+    columns = zip(
+        chosen,
+        vectors("contact_point_a"),
+        vectors("contact_point_b"),
+        vectors("contact_normal"),
+        contacts["contact_distance"][0, rows].tolist(),
+        (contacts["contact_impulse"][0, rows] / world.parameters.time_step).tolist(),
+        vectors("contact_direction1"),
+        vectors("contact_direction2"),
+        strict=True,
     )
+    for (_, first, second, swapped), on_a, on_b, normal, distance, force, along1, along2 in columns:
+        if swapped:
+            on_a, on_b, normal = on_b, on_a, (-normal[0], -normal[1], -normal[2])
+        sides = (first[0], second[0], first[1], second[1])
+        yield (0, *sides, on_a, on_b, normal, distance, force[0], force[1], along1, force[2], along2)

@@ -181,3 +181,37 @@ def test_a_change_that_cannot_be(wrong: dict[str, Any], kind: type[Exception]) -
     with pytest.raises(kind):
         p.changeConstraint(constraint, **wrong)
     assert p.getConstraintInfo(constraint) == before
+
+
+def test_the_auxiliary_link_of_a_gear_is_reported_as_0_when_there_is_none(client: int) -> None:
+    """As in PyBullet, though there it is not the motion of joint 0 that counts."""
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    arms = [
+        p.createMultiBody(
+            0,
+            basePosition=[side, 0, 0],
+            linkMasses=[1.0] * 2,
+            linkCollisionShapeIndices=[ball] * 2,
+            linkVisualShapeIndices=[-1] * 2,
+            linkPositions=[[0, 0, 0.5]] * 2,
+            linkOrientations=[[0, 0, 0, 1]] * 2,
+            linkInertialFramePositions=[[0, 0, 0]] * 2,
+            linkInertialFrameOrientations=[[0, 0, 0, 1]] * 2,
+            linkParentIndices=[0, 1],
+            linkJointTypes=[p.JOINT_REVOLUTE] * 2,
+            linkJointAxis=[[0, 0, 1]] * 2,
+        )
+        for side in (0, 3)
+    ]
+    for arm in arms:
+        p.setJointMotorControlArray(arm, [0, 1], p.VELOCITY_CONTROL, forces=[0, 0])
+    gear = p.createConstraint(arms[0], 1, arms[1], 1, p.JOINT_GEAR, [0, 0, 1], [0, 0, 0], [0, 0, 0])
+    p.changeConstraint(gear, gearRatio=-2, maxForce=1000)
+    assert p.getConstraintInfo(gear)[12] == 0
+    p.resetJointState(arms[0], 0, 0, 1.0)
+    p.resetJointState(arms[0], 1, 0, 2.0)
+    p.stepSimulation()
+    driver, driven = p.getJointState(arms[0], 1)[1], p.getJointState(arms[1], 1)[1]
+    assert driver == pytest.approx(2 * driven, abs=1e-9)
+    p.changeConstraint(gear, gearAuxLink=1)
+    assert p.getConstraintInfo(gear)[12] == 1

@@ -28,6 +28,12 @@ FILTERS: list[tuple[dict[str, int], list[tuple[int, int, int, int]]]] = [
     ({"bodyA": PAIR}, [swapped(ON_BASE), swapped(ON_LINK)]),
     ({"bodyA": PAIR, "linkIndexA": 0}, [swapped(ON_LINK)]),
     ({"bodyA": PAIR, "linkIndexA": -1}, [swapped(ON_BASE)]),
+    ({"bodyA": -7}, [ON_BALL, ON_BASE, ON_LINK]),
+    ({"bodyA": -7, "bodyB": -7}, [ON_BALL, ON_BASE, ON_LINK]),
+    ({"bodyB": FLOOR}, []),
+    ({"linkIndexA": 0}, []),
+    ({"linkIndexA": -1}, [ON_BALL, ON_BASE, ON_LINK]),
+    ({"bodyA": FLOOR, "linkIndexA": -5, "linkIndexB": -5}, [ON_BALL, ON_BASE, ON_LINK]),
     ({"linkIndexB": 0}, [ON_LINK]),
     ({"bodyA": FLOOR, "linkIndexB": 0}, [ON_LINK]),
     ({"bodyA": FLOOR, "bodyB": PAIR, "linkIndexA": -1, "linkIndexB": 0}, [ON_LINK]),
@@ -86,7 +92,23 @@ def test_contacts_are_found_without_a_step_and_have_no_force_then() -> None:
     points = p.getContactPoints()
     assert sorted(point[1:5] for point in points) == sorted([ON_BALL, ON_BASE, ON_LINK])
     assert [point[9] for point in points] == [0.0, 0.0, 0.0]
+    assert points[0][11] == pytest.approx((0.0, 1.0, 0.0), abs=1e-9)
+    assert points[0][13] == pytest.approx((1.0, 0.0, 0.0), abs=1e-9)
     assert p.getBasePositionAndOrientation(BALL)[0] == (0.0, 0.0, RADIUS)
+
+
+@pytest.mark.usefixtures("balls")
+def test_contacts_found_again_without_a_step_keep_their_forces() -> None:
+    settle()
+    before = p.getContactPoints()
+    p.performCollisionDetection()
+    assert [point[9] for point in p.getContactPoints()] == [point[9] for point in before]
+    p.resetBasePositionAndOrientation(BALL, [0, 0, 0.3], [0, 0, 0, 1])
+    p.performCollisionDetection()
+    p.resetBasePositionAndOrientation(BALL, [0, 0, RADIUS], [0, 0, 0, 1])
+    p.performCollisionDetection()
+    assert [point[9] for point in p.getContactPoints(BALL)] == [0.0]
+    assert [point[9] for point in p.getContactPoints(PAIR)] == pytest.approx([WEIGHT] * 2, rel=1e-4)
 
 
 @pytest.mark.usefixtures("balls")
@@ -158,3 +180,46 @@ def test_a_spring_on_one_side_works_beside_the_damper_of_the_other(client: int) 
         heights.append(p.getBasePositionAndOrientation(ball)[0][2])
     expected = [0.6498296875, 0.5571409966095049, 0.6152327377354755, 0.5898758815424251, 0.5747081545292421]
     assert heights[:200:40] == pytest.approx(expected, abs=1e-9)
+
+
+_SHAPES: dict[str, dict[str, Any]] = {
+    "ball": {"shapeType": p.GEOM_SPHERE, "radius": 0.1},
+    "box": {"shapeType": p.GEOM_BOX, "halfExtents": [0.1] * 3},
+    "shifted box": {
+        "shapeType": p.GEOM_BOX,
+        "halfExtents": [0.1] * 3,
+        "collisionFramePosition": [0.001, 0, 0],
+    },
+    "plane": {"shapeType": p.GEOM_PLANE},
+    "heightfield": {
+        "shapeType": p.GEOM_HEIGHTFIELD,
+        "heightfieldData": [0.0] * 100,
+        "numHeightfieldRows": 10,
+        "numHeightfieldColumns": 10,
+    },
+}
+_SURFACES = ("plane", "heightfield")
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "first"),
+    [
+        ("ball", "box", 0),
+        ("box", "ball", 0),
+        ("ball", "shifted box", 1),
+        ("shifted box", "ball", 0),
+        ("plane", "ball", 1),
+        ("plane", "shifted box", 1),
+        ("heightfield", "box", 1),
+    ],
+)
+def test_the_shapes_decide_which_body_comes_first(client: int, lower: str, upper: str, first: int) -> None:
+    gap = 0.1 if lower in _SURFACES else 0.2
+    for name, mass, height in ((lower, 0, 0.0), (upper, 1, gap - 0.0005)):
+        p.createMultiBody(mass, p.createCollisionShape(**_SHAPES[name]), basePosition=[0, 0, height])
+    p.performCollisionDetection()
+    points = p.getContactPoints()
+    assert {point[1] for point in points} == {first}
+    up = 1.0 if first == 1 else -1.0
+    assert points[0][7] == pytest.approx((0.0, 0.0, up), abs=1e-9)
+    assert points[0][11] == pytest.approx((0.0, -up, 0.0), abs=1e-9)

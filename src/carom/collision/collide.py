@@ -4,16 +4,10 @@ import warp as wp
 
 from carom.collision.broad_phase import find_pairs
 from carom.collision.hierarchy import PAIRS
-from carom.collision.manifold import (
-    THERE,
-    WANTED,
-    keep_previous,
-    return_previous,
-    skip_contacts,
-    write_contact,
-)
+from carom.collision.manifold import REPEATED, THERE, WANTED, keep_previous, skip_contacts, write_contact
 from carom.collision.narrow_phase import touch
 from carom.collision.reach import breaking_distance, contact_reach
+from carom.collision.sides import in_order_of_sides
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Int32, func, kernel
 from carom.model.structs import Model, Settings, State
@@ -32,12 +26,13 @@ def make_contacts(
         first = skip_contacts(pairs, world, first, previous_count, pair, 0)
         last = skip_contacts(pairs, world, first, previous_count, pair, 1)
         reach = contact_reach(shapes, pair[0], pair[1], last > first)
-        count = touch(shapes, pairs, world, pair[0], pair[1], reach)
+        sides = in_order_of_sides(shapes, pair)
+        count = touch(shapes, pairs, world, sides[0], sides[1], reach)
         far = breaking_distance(shapes, pair[0], pair[1])
         for candidate in range(count):
             if wanted < room:
                 write_contact(
-                    shapes, state, contacts, pairs, world, wanted, pair, candidate, first, last, far
+                    shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
                 )
             wanted += 1
         first = last
@@ -56,8 +51,8 @@ def collide(
 ):
     """Find all contacts for the present `State.link_pose`; those that persist keep their impulses.
 
-    If pairs or contacts do not fit (see `overflowed`), the contacts stay as they were, and all can be
-    repeated with more room.
+    If pairs or contacts do not fit (see `overflowed`), it has to be repeated with more room before anything
+    else is done with the contacts.
     """
     find_pairs(shapes, model, state, settings, pairs, world)
     if pairs.count_pairs[world, PAIRS] <= pairs.pair_shapes.shape[1]:
@@ -66,8 +61,10 @@ def collide(
         contacts.count_contacts[world, WANTED] = wanted
         if wanted <= contacts.contact_shapes.shape[1]:
             contacts.count_contacts[world, THERE] = wanted
+            contacts.count_contacts[world, REPEATED] = 0
         else:
-            return_previous(contacts, pairs, world, previous_count)
+            contacts.count_contacts[world, THERE] = 0
+            contacts.count_contacts[world, REPEATED] = 1
 
 
 @func

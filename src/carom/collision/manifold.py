@@ -1,5 +1,7 @@
 """Contacts that last: what a contact point knew in the last step is passed on to its successor."""
 
+import math
+
 import warp as wp
 
 from carom.collision.candidates import candidate_distance, candidate_normal, candidate_point
@@ -7,46 +9,39 @@ from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import State
 
-# Columns of `Contacts.count_contacts`: contacts there are, contacts the last collision would have made.
-THERE, WANTED = 0, 1
+# Columns of `Contacts.count_contacts`: contacts there are, contacts the last collision would have made,
+# contacts of the step before that are put aside, and whether they are so for a collision that is to be
+# repeated with more room.
+THERE, WANTED, KEPT, REPEATED = 0, 1, 2, 3
+
+_HALF_ROOT = real(math.sqrt(0.5))
+
+
+@func
+def friction_direction(normal: Vector3) -> Vector3:
+    """A unit vector perpendicular to `normal`, a function of it alone."""
+    if wp.abs(normal[2]) > _HALF_ROOT:
+        scale = 1.0 / wp.sqrt(normal[1] * normal[1] + normal[2] * normal[2])
+        return Vector3(0.0, -normal[2] * scale, normal[1] * scale)
+    scale = 1.0 / wp.sqrt(normal[0] * normal[0] + normal[1] * normal[1])
+    return Vector3(-normal[1] * scale, normal[0] * scale, 0.0)
 
 
 @func
 def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
-    """Put the contacts of the last step aside; returns their number."""
-    count = contacts.count_contacts[world, THERE]
+    """Put aside what new contacts inherit from those of the last step; returns the number of these."""
+    if contacts.count_contacts[world, REPEATED] == 0:
+        contacts.count_contacts[world, KEPT] = contacts.count_contacts[world, THERE]
+        for row in range(contacts.count_contacts[world, THERE]):
+            pairs.previous_shapes[world, row] = contacts.contact_shapes[world, row]
+            pairs.previous_local_a[world, row] = contacts.contact_local_a[world, row]
+            pairs.previous_local_b[world, row] = contacts.contact_local_b[world, row]
+            pairs.previous_impulse[world, row] = contacts.contact_impulse[world, row]
+            pairs.previous_age[world, row] = contacts.contact_age[world, row]
+    count = contacts.count_contacts[world, KEPT]
     for row in range(count):
-        pairs.previous_shapes[world, row] = contacts.contact_shapes[world, row]
-        pairs.previous_local_a[world, row] = contacts.contact_local_a[world, row]
-        pairs.previous_local_b[world, row] = contacts.contact_local_b[world, row]
-        pairs.previous_point_a[world, row] = contacts.contact_point_a[world, row]
-        pairs.previous_point_b[world, row] = contacts.contact_point_b[world, row]
-        pairs.previous_normal[world, row] = contacts.contact_normal[world, row]
-        pairs.previous_direction1[world, row] = contacts.contact_direction1[world, row]
-        pairs.previous_direction2[world, row] = contacts.contact_direction2[world, row]
-        pairs.previous_distance[world, row] = contacts.contact_distance[world, row]
-        pairs.previous_impulse[world, row] = contacts.contact_impulse[world, row]
-        pairs.previous_age[world, row] = contacts.contact_age[world, row]
         pairs.previous_taken[world, row] = 0
     return count
-
-
-@func
-def return_previous(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32):
-    """Bring the contacts of the last step back, so that the collision can be repeated with more room."""
-    for row in range(count):
-        contacts.contact_shapes[world, row] = pairs.previous_shapes[world, row]
-        contacts.contact_local_a[world, row] = pairs.previous_local_a[world, row]
-        contacts.contact_local_b[world, row] = pairs.previous_local_b[world, row]
-        contacts.contact_point_a[world, row] = pairs.previous_point_a[world, row]
-        contacts.contact_point_b[world, row] = pairs.previous_point_b[world, row]
-        contacts.contact_normal[world, row] = pairs.previous_normal[world, row]
-        contacts.contact_direction1[world, row] = pairs.previous_direction1[world, row]
-        contacts.contact_direction2[world, row] = pairs.previous_direction2[world, row]
-        contacts.contact_distance[world, row] = pairs.previous_distance[world, row]
-        contacts.contact_impulse[world, row] = pairs.previous_impulse[world, row]
-        contacts.contact_age[world, row] = pairs.previous_age[world, row]
-    contacts.count_contacts[world, THERE] = count
 
 
 @func
@@ -67,7 +62,8 @@ def skip_contacts(
     skipping = row < count
     while skipping:
         shapes = pairs.previous_shapes[world, row]
-        skipping = shapes[0] < pair[0] or (shapes[0] == pair[0] and shapes[1] < pair[1] + equal)
+        lower = wp.min(shapes[0], shapes[1])
+        skipping = lower < pair[0] or (lower == pair[0] and wp.max(shapes[0], shapes[1]) < pair[1] + equal)
         if skipping:
             row += 1
             skipping = row < count
@@ -125,16 +121,15 @@ def write_contact(
     contacts.contact_point_a[world, row] = point_a
     contacts.contact_point_b[world, row] = point_b
     contacts.contact_normal[world, row] = normal
+    direction = friction_direction(normal)
+    contacts.contact_direction1[world, row] = direction
+    contacts.contact_direction2[world, row] = wp.cross(normal, direction)
     contacts.contact_distance[world, row] = distance
     before = predecessor(pairs, world, first, last, local_a, local_b, far)
     if before >= 0:
         contacts.contact_impulse[world, row] = pairs.previous_impulse[world, before]
-        contacts.contact_direction1[world, row] = pairs.previous_direction1[world, before]
-        contacts.contact_direction2[world, row] = pairs.previous_direction2[world, before]
         contacts.contact_age[world, row] = pairs.previous_age[world, before] + 1
         pairs.previous_taken[world, before] = 1
     else:
         contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
-        contacts.contact_direction1[world, row] = Vector3(0.0, 0.0, 0.0)
-        contacts.contact_direction2[world, row] = Vector3(0.0, 0.0, 0.0)
         contacts.contact_age[world, row] = 0

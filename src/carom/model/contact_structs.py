@@ -1,7 +1,7 @@
 """What collision detection and contact response work on: `Shapes`, `Pairs`, `Contacts`.
 
 As in `structs`, a field's axis is the first word of its name. A *manifold* is a run of at most four
-contacts of the same two shapes; the first shape of a pair has the lower row.
+contacts of the same two shapes; runs are sorted by the lower, then by the higher row of the two.
 """
 
 import warp as wp
@@ -106,16 +106,10 @@ class Pairs:
     polytope_face: Index4Rows  # its corners, and 1 if it is in use
     polytope_edge: Index4Rows  # edges of the hole where a new corner goes
 
-    # The contacts of the last step.
+    # What the contacts of the last step leave to their successors.
     previous_shapes: Index4Rows
     previous_local_a: Vector3Rows
     previous_local_b: Vector3Rows
-    previous_point_a: Vector3Rows
-    previous_point_b: Vector3Rows
-    previous_normal: Vector3Rows
-    previous_direction1: Vector3Rows
-    previous_direction2: Vector3Rows
-    previous_distance: RealRows
     previous_impulse: Vector4Rows
     previous_age: IntRows
     previous_taken: IntRows  # 1 once a contact has inherited from it
@@ -139,7 +133,7 @@ class Contacts:
     contact_distance: RealRows  # negative: penetration
     contact_impulse: Vector4Rows  # normal, along direction 1, along direction 2, 0; of the last substep
     contact_age: IntRows  # substeps
-    count_contacts: IntRows  # its first entry; more than the capacity of `contact` means overflow
+    count_contacts: IntRows  # see its columns in `collision.manifold`
 
 
 @wp.struct

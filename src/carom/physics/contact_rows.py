@@ -1,7 +1,5 @@
 """Rows of contacts: normal, friction in the plane, rolling and spinning friction."""
 
-import math
-
 import warp as wp
 
 from carom.model.codes import (
@@ -18,20 +16,9 @@ from carom.physics.couplings import write_pair_jacobian, write_row
 
 _UNBOUNDED = real(1e10)
 _GREATEST_FRICTION = real(10.0)
-_HALF_ROOT = real(math.sqrt(0.5))
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
 # Damping of links for which none is set, in contact with soft ones [N s/m].
 _DEFAULT_DAMPING = 0.1
-
-
-@func
-def friction_direction(normal: Vector3) -> Vector3:
-    """A unit vector perpendicular to `normal`, a function of it alone."""
-    if wp.abs(normal[2]) > _HALF_ROOT:
-        scale = 1.0 / wp.sqrt(normal[1] * normal[1] + normal[2] * normal[2])
-        return Vector3(0.0, -normal[2] * scale, normal[1] * scale)
-    scale = 1.0 / wp.sqrt(normal[0] * normal[0] + normal[1] * normal[1])
-    return Vector3(-normal[1] * scale, normal[0] * scale, 0.0)
 
 
 @func
@@ -119,10 +106,8 @@ def add_contact_rows(
     b = pair[3]
     ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
     normal = contacts.contact_normal[world, contact]
-    direction1 = friction_direction(normal)
-    direction2 = wp.cross(normal, direction1)
-    contacts.contact_direction1[world, contact] = direction1
-    contacts.contact_direction2[world, contact] = direction2
+    direction1 = contacts.contact_direction1[world, contact]
+    direction2 = contacts.contact_direction2[world, contact]
     friction = contact_friction(shapes, a, b)
     soft = contact_stiffness(settings, shapes, a, b)
 
