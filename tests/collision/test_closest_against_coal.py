@@ -9,7 +9,7 @@ from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, sp
 
 from carom.model.codes import ShapeKind
 
-coal = pytest.importorskip("coal")
+coal = pytest.importorskip("coal", reason="it has no wheels for Windows")
 
 POINTS = np.random.default_rng(5).normal(size=(40, 3)) * (0.2, 0.3, 0.25)
 MAKERS = {

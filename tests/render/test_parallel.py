@@ -1,7 +1,6 @@
 """Sharing out tasks to threads."""
 
 import multiprocessing
-import os
 import threading
 
 import pytest
@@ -40,15 +39,24 @@ def test_an_error_of_a_task_arrives(monkeypatch, workers):
         parallel.run_all([fail] * 4)
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no forks on this system")
-def test_a_fork_draws_as_well(monkeypatch):
-    monkeypatch.setattr(parallel, "worker_count", lambda: 2)
+def visible_pixels():
     world = World()
     add_shape(world, Box((1.0, 1.0, 1.0)))
-    expected = int((draw(world).label == 0).sum())
-    context = multiprocessing.get_context("fork")
+    return int((draw(world).label == 0).sum())
+
+
+def put_visible_pixels(answers):
+    answers.put(visible_pixels())
+
+
+@pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
+def test_another_process_draws_as_well(monkeypatch, method):
+    # The threads of this process have drawn before the other one starts: a fork has to do without them.
+    monkeypatch.setattr(parallel, "worker_count", lambda: 2)
+    expected = visible_pixels()
+    context = multiprocessing.get_context(method)
     answers = context.SimpleQueue()
-    process = context.Process(target=lambda: answers.put(int((draw(world).label == 0).sum())))
+    process = context.Process(target=put_visible_pixels, args=(answers,))
     process.start()
     process.join(timeout=60)
     alive = process.is_alive()
