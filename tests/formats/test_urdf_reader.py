@@ -26,7 +26,7 @@ from carom.description import (
 )
 from carom.errors import DescriptionError
 from carom.formats import AssetSearch, read_urdf
-from carom.formats.urdf.reader import MAX_FILE_BYTES
+from carom.formats.robot.file import MAX_FILE_BYTES
 
 Read = Callable[..., Robot]
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'

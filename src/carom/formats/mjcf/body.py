@@ -29,13 +29,13 @@ from carom.formats.mjcf.frames import read_pose
 from carom.formats.mjcf.geom import read_contact, read_geom
 from carom.formats.mjcf.joint import FREE, joint_position, read_joint
 from carom.formats.placed import PlacedRobot
-from carom.formats.urdf.context import shown
+from carom.formats.robot.context import shown
+from carom.formats.robot.link import MASSLESS
 from carom.formats.xml_tree import Element
 
 _DENSITY = 1000.0
 """Of every geom [kg/m³], as in PyBullet."""
 
-_MASSLESS = Inertial(mass=0.0)
 _NOTHING = ContactParameters()
 _UNNAMED_GEOM = "anonymous"
 _LEFT_OUT = ("light", "camera", "site", "freejoint", "composite", "flexcomp", "plugin")
@@ -98,7 +98,7 @@ class ModelReader:
         defaults = class_defaults(context, element, scope.child_class)
         geom = read_geom(context, element, {**defaults, **element.attributes}, scope.into)
         name = element.attributes.get("name", _UNNAMED_GEOM)
-        link = Link(name, _MASSLESS, contact=read_contact(context, element, defaults))
+        link = Link(name, MASSLESS, contact=read_contact(context, element, defaults))
         if geom is not None:
             link = replace(link, collisions=(geom.collision,), visuals=(geom.visual,))
         self.links.append(link)
@@ -171,12 +171,8 @@ class ModelReader:
         """A link, its name made up where it has none."""
         index = len(self.links)
         name = name or f"link{self.number}_{index}"
-        if name in self.lines:
-            raise self.context.error(
-                element, f"the name {shown(name)} is taken already, on line {self.lines[name]}"
-            )
-        self.lines[name] = element.line
-        self.links.append(Link(name, _MASSLESS))
+        self.context.refuse_duplicate(element, name, self.lines)
+        self.links.append(Link(name, MASSLESS))
         return index
 
     def _add_joint(self, element: Element, joint: Joint, name: str | None, link: int) -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import UrdfContext, shown
 from carom.formats.xml_tree import Element
 
 _FLOAT = struct.Struct("f")
@@ -47,7 +47,7 @@ class Assets:
     materials: dict[str, Element] = field(default_factory=dict)
 
 
-class MjcfContext(UrdfContext):
+class MjcfContext(FileContext):
     """State of one reading; its root is the `<mujoco>` element.
 
     Attributes:
@@ -73,7 +73,7 @@ class MjcfContext(UrdfContext):
     def error(self, element: Element, reason: str) -> DescriptionError:
         """An error at an element, with the file it stands in, its line and its place in the document."""
         error = super().error(element, reason)
-        for step in reversed(self.robot.path_to(element)):
+        for step in reversed(self.root.path_to(element)):
             if id(step) in self.origins:
                 origin = self.origins[id(step)]
                 return DescriptionError(reason, file=origin, line=error.line, element=error.element)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom.formats.mjcf.context import MjcfContext
-from carom.formats.urdf.context import shown
+from carom.formats.robot.context import shown
 from carom.formats.xml_tree import Element
 
 MAIN = "main"

@@ -16,7 +16,7 @@ from carom.description.transform import (
 )
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes
-from carom.formats.urdf.context import shown
+from carom.formats.robot.context import shown
 from carom.formats.xml_tree import Element
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)

@@ -25,12 +25,11 @@ from carom.description import (
 )
 from carom.description.pose import Vector3
 from carom.description.transform import compose, turn_of_z
-from carom.errors import DescriptionError
-from carom.formats.mjcf.context import MjcfContext
+from carom.formats.mjcf.context import MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
-from carom.formats.urdf.context import shown
-from carom.formats.urdf.geometry import MESH_SUFFIXES
+from carom.formats.robot.context import shown
+from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
 from carom.formats.xml_tree import Element
 
 _FRICTION = 0.5
@@ -85,8 +84,8 @@ def read_geom(context: MjcfContext, element: Element, attributes: Attributes, in
             geometry,
             frame,
             name=attributes.get("name", ""),
-            group=_bits(context, element, attributes, "contype"),
-            mask=_bits(context, element, attributes, "conaffinity"),
+            group=context.parse_bits(element, "contype", attributes.get("contype", "1")),
+            mask=context.parse_bits(element, "conaffinity", attributes.get("conaffinity", "1")),
             ends_frame=given_in,
         ),
         Visual(geometry, frame, attributes.get("name", ""), _material(context, element, attributes)),
@@ -113,13 +112,6 @@ def read_contact(context: MjcfContext, element: Element, defaults: Attributes) -
         spinning_friction=spinning if dimensions > 3 else None,
         rolling_friction=rolling if dimensions > 4 else None,
     )
-
-
-def _bits(context: MjcfContext, element: Element, attributes: Attributes, name: str) -> int:
-    value = int(context.parse_number(element, name, attributes.get(name, "1")))
-    if not -(1 << 31) <= value < 1 << 32:
-        raise context.error(element, f"{name}={value} does not fit into 32 bits")
-    return value if value < 1 << 31 else value - (1 << 32)
 
 
 def _shape(
@@ -242,8 +234,7 @@ def _mesh(context: MjcfContext, element: Element, attributes: Attributes) -> Mes
 
 def _mesh_file(context: MjcfContext, asset: Element) -> Path | None:
     name = asset.attributes.get("file", "")
-    if not name.lower().endswith(MESH_SUFFIXES):
-        raise context.error(asset, f"file={shown(name)} must end in {' or '.join(MESH_SUFFIXES)}")
+    check_suffix(context, asset, "file", name, MESH_SUFFIXES)
     directory = context.compiler.mesh_directory
     candidates = [directory + name]
     if directory and not directory.endswith("/"):
@@ -266,12 +257,8 @@ def _material(context: MjcfContext, element: Element, attributes: Attributes) ->
         text = None if asset is None else asset.attributes.get("rgba")
     if text is None:
         return white
-    try:
-        numbers = context.singles(element, "rgba", text)
-    except DescriptionError as error:
-        context.warn(element, f"ignored: {error.reason}")
+    components = context.parse_components(element, "rgba", text, (4,))
+    if components is None:
         return white
-    if len(numbers) != 4:
-        context.warn(element, f"rgba={shown(text)} needs 4 numbers; ignored")
-        return white
-    return Material(text, rgba=(numbers[0], numbers[1], numbers[2], numbers[3]), specular=(1.0, 1.0, 1.0))
+    red, green, blue, opacity = map(single, components)
+    return Material(text, rgba=(red, green, blue, opacity), specular=(1.0, 1.0, 1.0))

@@ -9,7 +9,7 @@ from carom.description.pose import Vector3
 from carom.description.transform import rotate
 from carom.formats.mjcf.context import SINGLE_PI, MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
-from carom.formats.urdf.context import shown
+from carom.formats.robot.context import shown
 from carom.formats.xml_tree import Element
 
 FREE = "free"

@@ -5,24 +5,18 @@ from __future__ import annotations
 import logging
 from pathlib import Path
 
-from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.formats.mjcf.body import ModelReader, world_elements
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.placed import PlacedRobot
+from carom.formats.robot.context import shown
+from carom.formats.robot.file import MAX_FILE_BYTES, locate, parse_root
+from carom.formats.robot.includes import Includes
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import shown
-from carom.formats.urdf.reader import MAX_FILE_BYTES
-from carom.formats.xml_tree import MAX_ELEMENTS, Element, parse_xml
+from carom.formats.xml_tree import MAX_ELEMENTS, Element
 
 _log = logging.getLogger(__name__)
-
-MAX_INCLUDES = 512
-"""Most files that one file may include, directly or through others."""
-
-MAX_INCLUDE_DEPTH = 16
-"""Deepest nesting of includes."""
 
 _ROOTS = ("mujoco", "mujocoinclude")
 _READ = ("compiler", "default", "asset", "worldbody", "body")
@@ -53,15 +47,12 @@ def read_mjcf(
         DescriptionError: The file is missing or broken.
     """
     search = search or AssetSearch()
-    found = search.find(path)
-    if found is None:
-        raise DescriptionError(f"no such file: {path}", file=path)
-    file = Path(found).absolute()
+    file = locate(path, search)
     root = _read_root(file)
     context = MjcfContext(file, root, search)
     context.colours = colours
     context.implicit = implicit
-    _Includes(context).expand(root, file, (file,))
+    _Inclusion(context).expand(root, file, (file,))
     for element in root.all("default"):
         read_defaults(context, element)
     for element in root.all("compiler"):
@@ -85,18 +76,15 @@ def read_mjcf(
 
 def _read_root(file: Path) -> Element:
     data, _ = read_bounded(file, MAX_FILE_BYTES)
-    root = next((element for element in parse_xml(data, file) if element.tag in _ROOTS), None)
-    if root is None:
-        raise DescriptionError("there is no <mujoco> element", file=file)
-    return root
+    return parse_root(data, file, *_ROOTS)
 
 
-class _Includes:
+class _Inclusion:
     """Puts the content of other files where they are included."""
 
     def __init__(self, context: MjcfContext) -> None:
         self.context = context
-        self.files = 0
+        self.includes = Includes()
         self.elements = 0
 
     def expand(self, parent: Element, file: Path, including: tuple[Path, ...]) -> None:
@@ -126,20 +114,8 @@ class _Includes:
 
     def _file(self, element: Element, file: Path, including: tuple[Path, ...]) -> Path:
         name = self.context.required(element, "file")
-        other = self.context.search.find_referenced(name, file)
-        if other is None:
-            raise self.context.error(
-                element, f"{shown(name)} was found neither beside the file nor in a directory above it"
-            )
-        other = other.absolute()
-        if other in including:
-            raise self.context.error(element, f"{shown(name)} includes itself")
-        self.files += 1
-        if self.files > MAX_INCLUDES or len(including) > MAX_INCLUDE_DEPTH:
-            raise self.context.error(
-                element, f"more than {MAX_INCLUDES} includes, or nested deeper than {MAX_INCLUDE_DEPTH}"
-            )
-        return other
+        found = self.context.search.find_referenced(name, file)
+        return self.includes.admit(self.context, element, name, found, including)
 
 
 def _count(element: Element) -> int:

@@ -5,33 +5,34 @@ from __future__ import annotations
 from carom.description import Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
-from carom.formats.urdf.context import UrdfContext, shown
+from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_tree import Element
 
 
-class SdfContext(UrdfContext):
-    """State of one reading; its root is the `<sdf>` element."""
+class SdfContext(FileContext):
+    """State of one reading; its root is the `<sdf>` element, and values stand in the text of children."""
 
     def text(self, parent: Element, tag: str) -> str | None:
         """The text of a child, blanks around it taken off; None where there is no child."""
         child = parent.first(tag)
         return None if child is None else child.text.strip()
 
-    def value(self, parent: Element, tag: str, default: float | None = None) -> float:
+    def states(self, element: Element, key: str) -> bool:
+        """Whether an element has a child of that name."""
+        return element.first(key) is not None
+
+    def value(self, element: Element, key: str, default: float | None = None) -> float:
         """A finite number from the text of a child; without a default the child must be there."""
-        child = parent.first(tag)
+        child = element.first(key)
         if child is None:
             if default is None:
-                raise self.error(parent, f"<{tag}> is missing")
+                raise self.error(element, f"<{key}> is missing")
             return default
-        return self.parse_number(child, tag, child.text.strip())
+        return self.number(child)
 
-    def non_negative_value(self, parent: Element, tag: str, default: float | None = None) -> float:
-        """As `value`, for a number that may not be below zero."""
-        value = self.value(parent, tag, default)
-        if value < 0.0:
-            raise self.error(parent, f"{tag}={value:g} must not be negative")
-        return value
+    def number(self, element: Element) -> float:
+        """A finite number from the text of an element."""
+        return self.parse_number(element, element.tag, element.text.strip())
 
     def values(self, element: Element) -> list[float]:
         """All numbers in the text of an element."""
@@ -58,7 +59,7 @@ class SdfContext(UrdfContext):
         are no more.
         """
         if parent.first("origin") is not None:
-            return self.origin(parent)
+            return super().pose(parent)
         element = parent.first("pose")
         if element is None:
             return IDENTITY

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import hypot
 from pathlib import Path
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
+from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, read_geometry, shape_file
 from carom.formats.sdf.context import SdfContext
-from carom.formats.urdf.context import shown
-from carom.formats.urdf.geometry import FIELD_SUFFIXES, MESH_SUFFIXES
 from carom.formats.xml_tree import Element
 
 _CYLINDER_SIZE, _CAPSULE_SIZE = 0.1, 1.0
@@ -21,21 +19,12 @@ def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:
     Raises:
         DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
     """
-    geometry = owner.first("geometry")
-    if geometry is None:
-        raise context.error(owner, "<geometry> is missing")
-    if not geometry.children:
-        raise context.error(geometry, "it holds no shape")
-    shape = geometry.children[0]
-    reader = _READERS.get(shape.tag)
-    if reader is None:
-        raise context.error(shape, f"unknown shape; known are {', '.join(_READERS)}")
-    return reader(context, shape)
+    return read_geometry(context, owner, _READERS)
 
 
 def _sphere(context: SdfContext, shape: Element) -> Sphere:
     # Not scaled in PyBullet, and so not here.
-    return Sphere(context.non_negative_value(shape, "radius"))
+    return Sphere(context.non_negative(shape, "radius"))
 
 
 def _box(context: SdfContext, shape: Element) -> Box:
@@ -51,7 +40,7 @@ def _box(context: SdfContext, shape: Element) -> Box:
 def _length(context: SdfContext, shape: Element, tag: str, default: float) -> float:
     if shape.first(tag) is None:
         return default
-    return context.scale * context.non_negative_value(shape, tag)
+    return context.scale * context.non_negative(shape, tag)
 
 
 def _cylinder(context: SdfContext, shape: Element) -> Cylinder:
@@ -66,10 +55,7 @@ def _plane(context: SdfContext, shape: Element) -> Plane:
     normal = context.triple(shape, "normal")
     if normal is None or shape.first("size") is None:
         raise context.error(shape, "it needs both <normal> and <size>")
-    length = hypot(*normal)
-    if length == 0.0:
-        raise context.error(shape, "the normal has no length")
-    return Plane((normal[0] / length, normal[1] / length, normal[2] / length))
+    return plane(context, shape, normal)
 
 
 def _mesh(context: SdfContext, shape: Element) -> Mesh:
@@ -86,14 +72,7 @@ def _file(context: SdfContext, shape: Element, suffixes: tuple[str, ...]) -> Pat
     name = context.text(shape, "uri")
     if not name:
         raise context.error(shape, "<uri> is missing")
-    if not name.lower().endswith(suffixes):
-        raise context.error(shape, f"uri={shown(name)} must end in {' or '.join(suffixes)}")
-    path = context.find_file(name)
-    if path is None:
-        raise context.error(
-            shape, f"{shown(name)} was found neither beside the file nor in a directory above it"
-        )
-    return path
+    return shape_file(context, shape, "uri", name, suffixes)
 
 
 _READERS = {

@@ -9,12 +9,12 @@ from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.placed import PlacedRobot
+from carom.formats.robot.context import shown
+from carom.formats.robot.link import MASSLESS
+from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.sdf.link import read_sdf_link
-from carom.formats.urdf.context import shown
-from carom.formats.urdf.link import MASSLESS
-from carom.formats.urdf.tree import find_root
 from carom.formats.xml_tree import Element
 
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
@@ -61,11 +61,7 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
     lines: dict[str, int] = {}
     for element in model.all("link"):
         link = read_sdf_link(context, element)
-        if link.name in lines:
-            raise context.error(
-                element, f"the name {shown(link.name)} is taken already, on line {lines[link.name]}"
-            )
-        lines[link.name] = element.line
+        context.refuse_duplicate(element, link.name, lines)
         links.append(link)
         poses.append(context.pose(element))
     if not links:
@@ -76,10 +72,7 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
 def _refuse_duplicates(context: SdfContext, joints: list[Element]) -> None:
     lines: dict[str, int] = {}
     for element in joints:
-        name = element.attributes["name"]
-        if name in lines:
-            raise context.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
-        lines[name] = element.line
+        context.refuse_duplicate(element, element.attributes["name"], lines)
 
 
 def _is_static(context: SdfContext, model: Element) -> bool:

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import replace
 from pathlib import Path
 
 from carom.description.transform import compose
-from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
+from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, parse_root, warn_of_assumed_masses
+from carom.formats.robot.includes import Includes
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import MAX_MAGNITUDE, shown
-from carom.formats.urdf.reader import MAX_FILE_BYTES
-from carom.formats.xml_tree import Element, parse_xml
-
-_log = logging.getLogger(__name__)
-
-MAX_INCLUDES = 512
-"""Most files that one file may include, directly or through others."""
-
-MAX_INCLUDE_DEPTH = 16
-"""Deepest nesting of includes."""
+from carom.formats.xml_tree import Element
 
 _MODEL_FILE = "model.sdf"
 
@@ -47,13 +37,9 @@ def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = Non
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.
         ValueError: `scale` is not a positive number of sensible size.
     """
-    if not 0.0 < scale <= MAX_MAGNITUDE:
-        raise ValueError(f"scale must be positive and finite, not {scale}")
+    check_scale(scale)
     search = search or AssetSearch()
-    found = search.find(path)
-    if found is None:
-        raise DescriptionError(f"no such file: {path}", file=path)
-    return _Reading(scale, search).read(Path(found).absolute(), ())
+    return _Reading(scale, search).read(locate(path, search), ())
 
 
 class _Reading:
@@ -62,7 +48,7 @@ class _Reading:
     def __init__(self, scale: float, search: AssetSearch) -> None:
         self.scale = scale
         self.search = search
-        self.included = 0
+        self.includes = Includes()
 
     def read(self, file: Path, including: tuple[Path, ...]) -> list[PlacedRobot]:
         """The robots of a file.
@@ -72,9 +58,7 @@ class _Reading:
             including: The files by which it is included, outermost first.
         """
         data, _ = read_bounded(file, MAX_FILE_BYTES)
-        root = next((element for element in parse_xml(data, file) if element.tag == "sdf"), None)
-        if root is None:
-            raise DescriptionError("there is no <sdf> element", file=file)
+        root = parse_root(data, file, "sdf")
         context = SdfContext(file, root, self.scale, self.search)
         robots: list[PlacedRobot] = []
         for element in (root.first("world") or root).children:
@@ -82,9 +66,7 @@ class _Reading:
                 robots += read_model(context, element)
             elif element.tag == "include":
                 robots += self._include(context, element, (*including, file))
-        if context.links_without_inertial:
-            names = ", ".join(context.links_without_inertial)
-            _log.warning("%s: no <inertial>, so 1 kg is assumed, for %s", file, names)
+        warn_of_assumed_masses(context)
         return robots
 
     def _include(
@@ -93,19 +75,7 @@ class _Reading:
         uri = context.text(element, "uri")
         if not uri:
             raise context.error(element, "<uri> is missing")
-        file = _included_file(context, uri)
-        if file is None:
-            raise context.error(
-                element, f"{shown(uri)} was found neither beside the file nor in a directory above it"
-            )
-        file = file.absolute()
-        if file in including:
-            raise context.error(element, f"{shown(uri)} includes itself")
-        self.included += 1
-        if self.included > MAX_INCLUDES or len(including) > MAX_INCLUDE_DEPTH:
-            raise context.error(
-                element, f"more than {MAX_INCLUDES} includes, or nested deeper than {MAX_INCLUDE_DEPTH}"
-            )
+        file = self.includes.admit(context, element, uri, _included_file(context, uri), including)
         robots = self.read(file, including)
         name = context.text(element, "name")
         if name:

@@ -1,180 +1,22 @@
-"""What every part of the URDF reader needs at hand: file, scale, and numbers read with good errors."""
+"""What every part of the URDF reader needs at hand."""
 
 from __future__ import annotations
 
-import logging
-import re
-from math import isfinite
 from pathlib import Path
 
-from carom.description import Material, Pose
-from carom.description.pose import IDENTITY, Vector3
-from carom.description.transform import quaternion_from_rpy
-from carom.errors import DescriptionError
+from carom.description import Material
+from carom.formats.robot.context import FileContext
 from carom.formats.search import AssetSearch
 from carom.formats.xml_tree import Element
 
-_log = logging.getLogger(__name__)
-_LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
-_LONGEST_SHOWN = 60
-
-MAX_MAGNITUDE = 1e30
-"""Numbers beyond this are refused: products of a few of them would overflow."""
-
-
-class UrdfContext:
-    """State of one reading.
+class UrdfContext(FileContext):
+    """State of one reading; its root is the `<robot>` element.
 
     Attributes:
-        file: The file being read.
-        robot: Its `<robot>` element.
-        scale: Factor on every length.
-        search: Where meshes and textures are looked for.
         materials: Materials by name, as far as they are known.
-        references: What each file name in the robot file was resolved to.
-        links_without_inertial: Names of links that got the default mass.
     """
 
-    def __init__(self, file: Path, robot: Element, scale: float, search: AssetSearch) -> None:
-        self.file = file
-        self.robot = robot
-        self.scale = scale
-        self.search = search
+    def __init__(self, file: Path, root: Element, scale: float, search: AssetSearch) -> None:
+        super().__init__(file, root, scale, search)
         self.materials: dict[str, Material] = {}
-        self.references: dict[str, Path | None] = {}
-        self.links_without_inertial: list[str] = []
-
-    def error(self, element: Element, reason: str) -> DescriptionError:
-        """An error at an element, with its line and its place in the document."""
-        names = (_label(step) for step in self.robot.path_to(element) or [element])
-        return DescriptionError(reason, file=self.file, line=element.line, element=" > ".join(names))
-
-    def warn(self, element: Element, message: str) -> None:
-        """Logs something that is read otherwise than its author may have meant."""
-        _log.warning("%s:%d: %s: %s", self.file, element.line, _label(element), message)
-
-    def required(self, element: Element, attribute: str) -> str:
-        """An attribute that must be there."""
-        try:
-            return element.attributes[attribute]
-        except KeyError:
-            raise self.error(element, f"attribute {attribute!r} is missing") from None
-
-    def find_file(self, name: str) -> Path | None:
-        """The file that a name in the robot file refers to, remembered."""
-        if name not in self.references:
-            self.references[name] = self.search.find_referenced(name, self.file)
-        return self.references[name]
-
-    def number(self, element: Element, attribute: str, default: float | None = None) -> float:
-        """A finite number from an attribute; without a default the attribute must be there."""
-        text = element.attributes.get(attribute)
-        if text is None:
-            if default is None:
-                raise self.error(element, f"attribute {attribute!r} is missing")
-            return default
-        return self.parse_number(element, attribute, text)
-
-    def non_negative(self, element: Element, attribute: str) -> float:
-        """A required number that may not be below zero."""
-        value = self.number(element, attribute)
-        if value < 0.0:
-            raise self.error(element, f"{attribute}={value:g} must not be negative")
-        return value
-
-    def bit_mask(self, element: Element, attribute: str) -> int | None:
-        """32 bits from an attribute, as a signed number; None where it is not given."""
-        if attribute not in element.attributes:
-            return None
-        value = int(self.number(element, attribute))
-        if not -(1 << 31) <= value < 1 << 32:
-            raise self.error(element, f"{attribute}={value} does not fit into 32 bits")
-        return value if value < 1 << 31 else value - (1 << 32)
-
-    def parse_number(self, element: Element, attribute: str, text: str) -> float:
-        """A finite number; anything after it is left out with a warning, as PyBullet leaves it out."""
-        try:
-            value = float(text)
-        except ValueError:
-            value = self._leading_number(element, attribute, text)
-        if not isfinite(value) or abs(value) > MAX_MAGNITUDE:
-            raise self.error(element, f"{attribute}={shown(text)} is not a finite number of sensible size")
-        return value
-
-    def _leading_number(self, element: Element, attribute: str, text: str) -> float:
-        match = _LEADING_NUMBER.match(text.strip())
-        if match is None:
-            raise self.error(element, f"{attribute}={shown(text)} is not a number")
-        self.warn(element, f"{attribute}={shown(text)} is read as {match.group()}")
-        return float(match.group())
-
-    def vector(self, element: Element, attribute: str) -> Vector3 | None:
-        """Three numbers from an attribute; None where it holds fewer. More than three are ignored."""
-        words = element.attributes[attribute].split()
-        if len(words) < 3:
-            return None
-        try:
-            vector = (float(words[0]), float(words[1]), float(words[2]))
-        except ValueError:
-            x, y, z = (self._component(element, attribute, word) for word in words[:3])
-            vector = (x, y, z)
-        # One test for all three: NaN and infinity both fail it.
-        if not abs(vector[0]) + abs(vector[1]) + abs(vector[2]) <= MAX_MAGNITUDE:
-            raise self.error(
-                element, f"{attribute}={shown(element.attributes[attribute])} is not finite or out of range"
-            )
-        return vector
-
-    def _component(self, element: Element, attribute: str, word: str) -> float:
-        """One number of a vector. Robot files in use hold unexpanded xacro, which PyBullet reads as zeros."""
-        if "$" in element.attributes[attribute] and _LEADING_NUMBER.match(word) is None:
-            self.warn(element, f"{attribute}: {shown(word)} is read as 0 (unexpanded xacro?)")
-            return 0.0
-        return self.parse_number(element, attribute, word)
-
-    def vector_or_zero(self, element: Element, attribute: str) -> Vector3:
-        """Three numbers; zeros where the attribute is missing, or, with a warning, holds fewer."""
-        text = element.attributes.get(attribute)
-        if text is None:
-            return (0.0, 0.0, 0.0)
-        vector = self.vector(element, attribute)
-        if vector is None:
-            self.warn(element, f"{attribute}={shown(text)} needs three numbers; read as zeros")
-            return (0.0, 0.0, 0.0)
-        return vector
-
-    def origin(self, parent: Element) -> Pose:
-        """The pose in the `<origin>` of an element, scaled."""
-        element = parent.first("origin")
-        if element is None:
-            return IDENTITY
-        x, y, z = self.vector_or_zero(element, "xyz")
-        roll, pitch, yaw = self.vector_or_zero(element, "rpy")
-        scale = self.scale
-        position = (x * scale, y * scale, z * scale)
-        if roll == 0.0 and pitch == 0.0 and yaw == 0.0:
-            return Pose(position)
-        return Pose(position, quaternion_from_rpy(roll, pitch, yaw))
-
-    def user_data(self, owner: Element) -> dict[str, str]:
-        """Key and value pairs in `<bullet><user-data key="...">` below an element; the last one counts."""
-        pairs: dict[str, str] = {}
-        for bullet in owner.all("bullet"):
-            for entry in bullet.all("user-data"):
-                pairs[self.required(entry, "key")] = "" if entry.text.isspace() else entry.text
-        return pairs
-
-
-def shown(text: str) -> str:
-    """Text from a file as it stands in a message: quoted, and cut where it is long."""
-    return repr(_cut(text))
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
-
-
-def _label(element: Element) -> str:
-    name = element.attributes.get("name")
-    return f"<{element.tag}>" if name is None else f'<{element.tag} name="{_cut(name)}">'

@@ -2,34 +2,21 @@
 
 from __future__ import annotations
 
-from math import hypot
-from pathlib import Path
-
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
 from carom.description.pose import Vector3
-from carom.formats.urdf.context import UrdfContext, shown
+from carom.formats.robot.context import shown
+from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, read_geometry, shape_file
+from carom.formats.urdf.context import UrdfContext
 from carom.formats.xml_tree import Element
 
-MESH_SUFFIXES = (".obj", ".stl", ".dae")
-FIELD_SUFFIXES = (".cdf",)
 
-
-def read_geometry(context: UrdfContext, owner: Element) -> Geometry:
+def read_urdf_geometry(context: UrdfContext, owner: Element) -> Geometry:
     """The shape of a `<visual>` or `<collision>`.
 
     Raises:
         DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
     """
-    geometry = owner.first("geometry")
-    if geometry is None:
-        raise context.error(owner, "<geometry> is missing")
-    if not geometry.children:
-        raise context.error(geometry, "it holds no shape")
-    shape = geometry.children[0]
-    reader = _READERS.get(shape.tag)
-    if reader is None:
-        raise context.error(shape, f"unknown shape; known are {', '.join(_READERS)}")
-    return reader(context, shape)
+    return read_geometry(context, owner, _READERS)
 
 
 def _sphere(context: UrdfContext, shape: Element) -> Sphere:
@@ -62,31 +49,17 @@ def _radius_and_length(context: UrdfContext, shape: Element) -> tuple[float, flo
 
 def _plane(context: UrdfContext, shape: Element) -> Plane:
     context.required(shape, "normal")
-    x, y, z = context.vector_or_zero(shape, "normal")
-    length = hypot(x, y, z)
-    if length == 0.0:
-        raise context.error(shape, "the normal has no length")
-    return Plane((x / length, y / length, z / length))
+    return plane(context, shape, context.vector_or_zero(shape, "normal"))
 
 
 def _mesh(context: UrdfContext, shape: Element) -> Mesh:
-    return Mesh(_shape_file(context, shape, MESH_SUFFIXES), _mesh_scale(context, shape))
+    path = shape_file(context, shape, "filename", context.required(shape, "filename"), MESH_SUFFIXES)
+    return Mesh(path, _mesh_scale(context, shape))
 
 
 def _signed_distance_field(context: UrdfContext, shape: Element) -> SignedDistanceField:
-    return SignedDistanceField(_shape_file(context, shape, FIELD_SUFFIXES))
-
-
-def _shape_file(context: UrdfContext, shape: Element, suffixes: tuple[str, ...]) -> Path:
     name = context.required(shape, "filename")
-    if not name.lower().endswith(suffixes):
-        raise context.error(shape, f"filename={shown(name)} must end in {' or '.join(suffixes)}")
-    path = context.find_file(name)
-    if path is None:
-        raise context.error(
-            shape, f"{shown(name)} was found neither beside the robot file nor in a directory above it"
-        )
-    return path
+    return SignedDistanceField(shape_file(context, shape, "filename", name, FIELD_SUFFIXES))
 
 
 def _mesh_scale(context: UrdfContext, shape: Element) -> Vector3:

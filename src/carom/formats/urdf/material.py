@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description import Material
-from carom.errors import DescriptionError
-from carom.formats.urdf.context import UrdfContext, shown
+from carom.formats.robot.context import shown
+from carom.formats.urdf.context import UrdfContext
 from carom.formats.xml_tree import Element
 
 
 def read_global_materials(context: UrdfContext) -> None:
     """The materials that stand directly below `<robot>`; the first of a name counts."""
-    for element in context.robot.all("material"):
+    for element in context.root.all("material"):
         material = _read_material(context, element, element.attributes.get("name", ""))
         context.materials.setdefault(material.name, material)
 
@@ -51,19 +51,10 @@ def _read_material(context: UrdfContext, element: Element, name: str) -> Materia
 def _components(
     context: UrdfContext, element: Element | None, attribute: str, count: int
 ) -> list[float] | None:
-    """The components of a colour; None, with a warning, where they cannot be read: looks stop no robot."""
     text = "" if element is None else element.attributes.get(attribute, "")
     if element is None or not text:
         return None
-    try:
-        components = [context.parse_number(element, attribute, word) for word in text.split()]
-    except DescriptionError as error:
-        context.warn(element, f"ignored: {error.reason}")
-        return None
-    if len(components) != count:
-        context.warn(element, f"{attribute}={shown(text)} needs {count} numbers; ignored")
-        return None
-    return components
+    return context.parse_components(element, attribute, text, (count,))
 
 
 def _texture(context: UrdfContext, texture: Element) -> Path | None:

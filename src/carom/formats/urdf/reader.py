@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import replace
 from pathlib import Path
 
 from carom.description import Joint, Link, Material, Robot, Visual
-from carom.errors import DescriptionError
 from carom.formats.files import FileCache, read_bounded
+from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, parse_root, warn_of_assumed_masses
+from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import MAX_MAGNITUDE, UrdfContext, shown
+from carom.formats.urdf.context import UrdfContext
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.link import read_link
 from carom.formats.urdf.material import read_global_materials
-from carom.formats.urdf.tree import find_root
-from carom.formats.xml_tree import Element, parse_xml
-
-_log = logging.getLogger(__name__)
-
-MAX_FILE_BYTES = 16 << 20
-"""Largest robot file that is read."""
 
 
 def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
@@ -41,13 +34,9 @@ def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = No
         DescriptionError: The file is missing, broken, or does not describe one tree of links.
         ValueError: `scale` is not a positive number of sensible size.
     """
-    if not 0.0 < scale <= MAX_MAGNITUDE:
-        raise ValueError(f"scale must be positive and finite, not {scale}")
+    check_scale(scale)
     search = search or AssetSearch()
-    found = search.find(path)
-    if found is None:
-        raise DescriptionError(f"no such file: {path}", file=path)
-    file = Path(found).absolute()
+    file = locate(path, search)
     key = (file, scale, search)
     cached = _cache.get(key, file)
     if cached is not None and all(
@@ -64,9 +53,7 @@ def parse_urdf(
     data: bytes, file: Path, *, scale: float, search: AssetSearch
 ) -> tuple[Robot, dict[str, Path | None]]:
     """A robot from the content of a file, and what every file name in it was resolved to."""
-    element = next((root for root in parse_xml(data, file) if root.tag == "robot"), None)
-    if element is None:
-        raise DescriptionError("there is no <robot> element", file=file)
+    element = parse_root(data, file, "robot")
     context = UrdfContext(file, element, scale, search)
     name = context.required(element, "name")
     for tag in ("deformable", "reduced_deformable"):
@@ -76,10 +63,7 @@ def parse_urdf(
     read_global_materials(context)
     links = _read_links(context)
     joints = _read_joints(context, links)
-    if context.links_without_inertial:
-        _log.warning(
-            "%s: no <inertial>, so 1 kg is assumed, for %s", file, ", ".join(context.links_without_inertial)
-        )
+    warn_of_assumed_masses(context)
     robot = Robot(
         name,
         tuple(_with_late_materials(context, link) for link in links),
@@ -95,12 +79,12 @@ def parse_urdf(
 def _read_links(context: UrdfContext) -> list[Link]:
     links: list[Link] = []
     lines: dict[str, int] = {}
-    for element in context.robot.all("link"):
+    for element in context.root.all("link"):
         link = read_link(context, element)
-        _refuse_duplicate(context, element, link.name, lines)
+        context.refuse_duplicate(element, link.name, lines)
         links.append(link)
     if not links:
-        raise context.error(context.robot, "there are no links")
+        raise context.error(context.root, "there are no links")
     return links
 
 
@@ -108,17 +92,11 @@ def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
     link_indices = {link.name: index for index, link in enumerate(links)}
     joints: list[Joint] = []
     lines: dict[str, int] = {}
-    for element in context.robot.all("joint"):
+    for element in context.root.all("joint"):
         joint = read_joint(context, element, link_indices)
-        _refuse_duplicate(context, element, joint.name, lines)
+        context.refuse_duplicate(element, joint.name, lines)
         joints.append(joint)
     return joints
-
-
-def _refuse_duplicate(context: UrdfContext, element: Element, name: str, lines: dict[str, int]) -> None:
-    if name in lines:
-        raise context.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
-    lines[name] = element.line
 
 
 def _with_late_materials(context: UrdfContext, link: Link) -> Link:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from carom.description import Joint, Link
-from carom.formats.urdf.context import UrdfContext, shown
+from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_tree import Element
 
 _MOST_NAMES = 8
 
 
 def find_root(
-    context: UrdfContext, links: Sequence[Link], joints: Sequence[Joint], joint_elements: Sequence[Element]
+    context: FileContext, links: Sequence[Link], joints: Sequence[Joint], joint_elements: Sequence[Element]
 ) -> int:
     """Index of the root link.
 
@@ -31,13 +31,13 @@ def find_root(
     roots = [index for index, joint in enumerate(carrier) if joint is None]
     if len(roots) > 1:
         raise context.error(
-            context.robot,
+            context.root,
             f"{len(roots)} root links, where one is needed: {_listed([links[i].name for i in roots])}",
         )
     looped = set(range(len(links))) - _reachable(roots, joints, len(links))
     if looped:
         raise context.error(
-            context.robot, f"links form a loop: {_listed([links[i].name for i in sorted(looped)])}"
+            context.root, f"links form a loop: {_listed([links[i].name for i in sorted(looped)])}"
         )
     return roots[0]
 

@@ -1,0 +1,53 @@
+"""Robot files: where they are, how large they may be, and the element that holds everything."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+from carom.errors import DescriptionError
+from carom.formats.robot.context import MAX_MAGNITUDE, FileContext
+from carom.formats.search import AssetSearch
+from carom.formats.xml_tree import Element, parse_xml
+
+_log = logging.getLogger(__name__)
+
+MAX_FILE_BYTES = 16 << 20
+"""Largest robot file that is read."""
+
+
+def locate(path: Path, search: AssetSearch) -> Path:
+    """The absolute path of a file, looked up with `AssetSearch.find`.
+
+    Raises:
+        DescriptionError: There is none.
+    """
+    found = search.find(path)
+    if found is None:
+        raise DescriptionError(f"no such file: {path}", file=path)
+    return found.absolute()
+
+
+def parse_root(data: bytes, file: Path, *tags: str) -> Element:
+    """The element of a document that has one of these names.
+
+    Raises:
+        DescriptionError: There is none, or the document is broken.
+    """
+    root = next((element for element in parse_xml(data, file) if element.tag in tags), None)
+    if root is None:
+        raise DescriptionError(f"there is no <{tags[0]}> element", file=file)
+    return root
+
+
+def check_scale(scale: float) -> None:
+    """Raises `ValueError` for a factor on lengths that is not a positive number of sensible size."""
+    if not 0.0 < scale <= MAX_MAGNITUDE:
+        raise ValueError(f"scale must be positive and finite, not {scale}")
+
+
+def warn_of_assumed_masses(context: FileContext) -> None:
+    """Logs the links that state no inertia."""
+    if context.links_without_inertial:
+        names = ", ".join(context.links_without_inertial)
+        _log.warning("%s: no <inertial>, so 1 kg is assumed, for %s", context.file, names)

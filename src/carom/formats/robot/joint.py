@@ -1,0 +1,64 @@
+"""`<joint>`: type, ends, limits and dynamics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from carom.description import JointLimit, JointType
+from carom.formats.robot.context import FileContext, shown
+from carom.formats.xml_tree import Element
+
+WITHOUT_AXIS = (JointType.FIXED, JointType.FLOATING)
+_NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
+
+
+def read_joint_type(context: FileContext, element: Element, types: Mapping[str, JointType]) -> JointType:
+    """The type a `<joint>` states; raises `DescriptionError` where it is missing or unknown."""
+    name = context.required(element, "type")
+    if name not in types:
+        raise context.error(element, f"unknown joint type {shown(name)}; known are {', '.join(types)}")
+    return types[name]
+
+
+def link_index(context: FileContext, element: Element, name: str, link_indices: Mapping[str, int]) -> int:
+    """The index of a link that an element names; raises `DescriptionError` where there is none."""
+    if name not in link_indices:
+        raise context.error(element, f"there is no link {shown(name)}")
+    return link_indices[name]
+
+
+def read_limit(context: FileContext, owner: Element, kind: JointType, scale: float = 1.0) -> JointLimit:
+    """The `<limit>` below an element.
+
+    Args:
+        context: The reading it belongs to.
+        owner: The element.
+        kind: Type of the joint.
+        scale: Factor on lower and upper limit.
+
+    Raises:
+        DescriptionError: A joint of this type needs one, or something in it is no number.
+    """
+    element = owner.first("limit")
+    if element is None:
+        if kind in _NEEDS_LIMIT:
+            raise context.error(owner, f"a {kind.value} joint needs a <limit>")
+        return JointLimit()
+    # Limits left out are scaled like stated ones: it shows in what getJointInfo reports.
+    return JointLimit(
+        lower=context.value(element, "lower", 0.0) * scale,
+        upper=context.value(element, "upper", -1.0) * scale,
+        effort=context.value(element, "effort", 0.0),
+        velocity=context.value(element, "velocity", 0.0),
+        twist=context.value(element, "twist", -1.0),
+    )
+
+
+def read_dynamics(context: FileContext, owner: Element) -> tuple[float, float]:
+    """Damping and friction in the `<dynamics>` below an element."""
+    element = owner.first("dynamics")
+    if element is None:
+        return 0.0, 0.0
+    if not (context.states(element, "damping") or context.states(element, "friction")):
+        raise context.error(element, "it states neither damping nor friction")
+    return context.value(element, "damping", 0.0), context.value(element, "friction", 0.0)
