@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.pose import IDENTITY
-from pybullet._arguments import Vector, integer, real, sequence, text
+from pybullet._arguments import Vector, integer, real, text
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH
 from pybullet._errors import fail, logger
 from pybullet._shape_arguments import (
     PRIMITIVES,
-    Column,
-    each_shape,
     find_file,
     frame,
     points,
@@ -23,6 +21,7 @@ from pybullet._shape_arguments import (
     scale_of,
     triangles,
 )
+from pybullet._shape_columns import ShapeColumns
 from pybullet._shape_registry import CollisionShape
 
 if TYPE_CHECKING:
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollisionShape"]
 
 _FAILED = "createCollisionShape failed."
-_ARRAY_FAILED = "createCollisionShapeArray failed."
 
 # What PyBullet puts around meshes that are part of a compound [m].
 _MARGIN = 0.001
@@ -173,52 +171,36 @@ def createCollisionShapeArray(
         pybullet.error: Not connected, an argument is not a sequence, or no part can be made.
     """
     client = client_of(physicsClientId)
-    kinds = [
-        integer(kind, "shapeTypes")
-        for kind in sequence(shapeTypes, "expected a sequence of shape types", "shapeTypes")
-    ]
-    radius = Column(radii, "radii", "expected a sequence of radii")
-    extents = Column(halfExtents, "halfExtents", "expected a sequence of half extents")
-    length = Column(lengths, "lengths", "expected a sequence of lengths")
-    file = Column(fileNames, "fileNames", "expected a sequence of filename")
-    scale = Column(meshScales, "meshScales", "expected a sequence of mesh scale")
-    normal = Column(planeNormals, "planeNormals", "expected a sequence of plane normal")
-    bits = Column(flags, "flags", "expected a sequence of flags")
-    position = Column(
-        collisionFramePositions, "collisionFramePositions", "expected a sequence of collision frame positions"
+    columns = ShapeColumns(
+        "createCollisionShapeArray",
+        "collision",
+        kinds=shapeTypes,
+        radii=radii,
+        half_extents=halfExtents,
+        lengths=lengths,
+        file_names=fileNames,
+        mesh_scales=meshScales,
+        plane_normals=planeNormals,
+        flags=flags,
+        positions=collisionFramePositions,
+        orientations=collisionFrameOrientations,
     )
-    orientation = Column(
-        collisionFrameOrientations,
-        "collisionFrameOrientations",
-        "expected a sequence of collision frame orientations",
-    )
-    is_part = len(kinds) > 1 or position.is_given or orientation.is_given
+    is_part = len(columns.kinds) > 1 or columns.is_framed
 
     def part(index: int, kind: int) -> CollisionShape:
-        pose = frame(position.item(index), orientation.item(index), _ARRAY_FAILED, "collisionFrame")
+        pose, problem = columns.frame(index), columns.problem
         if kind in PRIMITIVES:
-            geometry = primitive(
-                kind,
-                _ARRAY_FAILED,
-                radius=radius.item(index, 0.0),
-                length=length.item(index, 0.0),
-                half_extents=extents.item(index, (1.0, 1.0, 1.0)),
-                normal=normal.item(index),
-                length_name="lengths",
-            )
-            return _placed(geometry, pose)
-        if kind != GEOM_MESH or file.item(index) is None:
-            fail(_ARRAY_FAILED, f"type {kind} cannot be made here.")
-        name, concave = text(file.item(index), "fileNames"), integer(bits.item(index, 0), "flags")
-        shape = _mesh_from_file(
-            client, name, scale.item(index), concave, pose, is_part=is_part, problem=_ARRAY_FAILED
-        )
-        _check_pieces(shape, _ARRAY_FAILED)
+            return _placed(columns.primitive(index), pose)
+        file = columns.files.item(index)
+        if kind != GEOM_MESH or file is None:
+            fail(problem, f"type {kind} cannot be made here.")
+        name, bits = text(file, "fileNames"), integer(columns.flags.item(index, 0), "flags")
+        scale = columns.scales.item(index)
+        shape = _mesh_from_file(client, name, scale, bits, pose, is_part=is_part, problem=problem)
+        _check_pieces(shape, problem)
         return shape
 
-    parts = each_shape(
-        kinds, _ARRAY_FAILED, part, lambda reason: logger.warning("createCollisionShapeArray: %s", reason)
-    )
+    parts = columns.each(part)
     return client.shapes.collisions.add(
         CollisionShape(
             tuple(collision for shape in parts for collision in shape.collisions),

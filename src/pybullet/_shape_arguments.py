@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -134,51 +133,3 @@ def triangles(values: Any, vertex_count: int, problem: str) -> NDArray[np.int32]
     if flat.min() < 0 or flat.max() >= vertex_count:
         fail(problem, f"indices names a vertex outside 0..{vertex_count - 1}.")
     return flat.reshape(-1, 3).astype(np.int32)
-
-
-class Column:
-    """One of the lists of createCollisionShapeArray or createVisualShapeArray.
-
-    Args:
-        values: The list; None if it is not given.
-        name: Of the argument.
-        problem: PyBullet's text for what is no sequence.
-    """
-
-    def __init__(self, values: Any, name: str, problem: str) -> None:
-        self.name = name
-        self.is_given = values is not None
-        self._items: Sequence[Any] = () if values is None else sequence(values, problem, name)
-
-    def item(self, index: int, default: Any = None) -> Any:
-        """An entry; the default where the list is too short or not given."""
-        return self._items[index] if index < len(self._items) else default
-
-
-def each_shape(
-    kinds: Sequence[int], problem: str, make: Callable[[int, int], Any], report: Callable[[str], None]
-) -> list[Any]:
-    """Makes every shape of an array; like PyBullet it leaves out the ones that cannot be made.
-
-    Args:
-        kinds: `GEOM_*` of each.
-        problem: PyBullet's text when there is none.
-        make: Makes a shape from its index and kind.
-        report: Takes what is wrong with one that is left out.
-
-    Raises:
-        pybullet.error: None can be made.
-    """
-    from pybullet._errors import error
-
-    made, reasons = [], []
-    for index, kind in enumerate(kinds):
-        try:
-            made.append(make(index, kind))
-        except error as reason:
-            reasons.append(f"shape {index}: {str(reason).removeprefix(problem).strip()}")
-    if not made:
-        fail(problem, "; ".join(reasons) or "shapeTypes is empty.")
-    for reason in reasons:
-        report(f"{reason} It is left out.")
-    return made

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
-from pybullet._arguments import Vector, integer, sequence, text, vector3, vector4
+from pybullet._arguments import Vector, integer, text, vector3, vector4
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import GEOM_MESH
 from pybullet._errors import error, fail, logger
 from pybullet._shape_arguments import (
     PRIMITIVES,
-    Column,
-    each_shape,
     find_file,
     frame,
     points,
@@ -21,6 +19,7 @@ from pybullet._shape_arguments import (
     scale_of,
     triangles,
 )
+from pybullet._shape_columns import Column, ShapeColumns
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["createVisualShape", "createVisualShapeArray"]
 
 _FAILED = "createVisualShape failed."
-_ARRAY_FAILED = "createVisualShapeArray failed."
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 _HIGHLIGHT = (1.0, 1.0, 1.0)
@@ -156,50 +154,37 @@ def createVisualShapeArray(
         pybullet.error: Not connected, an argument is not a sequence, or no part can be made.
     """
     client = client_of(physicsClientId)
-    kinds = [
-        integer(kind, "shapeTypes")
-        for kind in sequence(shapeTypes, "expected a sequence of shape types", "shapeTypes")
-    ]
-    radius = Column(radii, "radii", "expected a sequence of radii")
-    extents = Column(halfExtents, "halfExtents", "expected a sequence of half extents")
-    length = Column(lengths, "lengths", "expected a sequence of lengths")
-    file = Column(fileNames, "fileNames", "expected a sequence of filename")
-    scale = Column(meshScales, "meshScales", "expected a sequence of mesh scale")
-    normal = Column(planeNormals, "planeNormals", "expected a sequence of plane normal")
-    bits = Column(flags, "flags", "expected a sequence of flags")
-    colour = Column(rgbaColors, "rgbaColors", "expected a sequence of rgba color")
-    position = Column(
-        visualFramePositions, "visualFramePositions", "expected a sequence of visual frame positions"
+    columns = ShapeColumns(
+        "createVisualShapeArray",
+        "visual",
+        kinds=shapeTypes,
+        radii=radii,
+        half_extents=halfExtents,
+        lengths=lengths,
+        file_names=fileNames,
+        mesh_scales=meshScales,
+        plane_normals=planeNormals,
+        flags=flags,
+        positions=visualFramePositions,
+        orientations=visualFrameOrientations,
     )
-    orientation = Column(
-        visualFrameOrientations, "visualFrameOrientations", "expected a sequence of visual frame orientations"
-    )
+    colours = Column(rgbaColors, "rgbaColors", "rgba color")
 
     def part(index: int, kind: int) -> Visual:
-        pose = frame(position.item(index), orientation.item(index), _ARRAY_FAILED, "visualFrame")
-        integer(bits.item(index, 0), "flags")
-        rgba = colour.item(index)
-        material = None if rgba is None else Material(rgba=vector4(rgba, _ARRAY_FAILED, "rgbaColors"))
+        pose, problem = columns.frame(index), columns.problem
+        integer(columns.flags.item(index, 0), "flags")
+        rgba = colours.item(index)
+        material = None if rgba is None else Material(rgba=vector4(rgba, problem, "rgbaColors"))
+        file = columns.files.item(index)
         if kind in PRIMITIVES:
-            geometry = primitive(
-                kind,
-                _ARRAY_FAILED,
-                radius=radius.item(index, 0.0),
-                length=length.item(index, 0.0),
-                half_extents=extents.item(index, (1.0, 1.0, 1.0)),
-                normal=normal.item(index),
-                length_name="lengths",
-            )
-        elif kind == GEOM_MESH and file.item(index) is not None:
-            name = text(file.item(index), "fileNames")
-            geometry = _mesh_from_file(client, name, scale.item(index), _ARRAY_FAILED)
+            geometry = columns.primitive(index)
+        elif kind == GEOM_MESH and file is not None:
+            geometry = _mesh_from_file(client, text(file, "fileNames"), columns.scales.item(index), problem)
         else:
-            fail(_ARRAY_FAILED, f"type {kind} cannot be made here.")
+            fail(problem, f"type {kind} cannot be made here.")
         return Visual(geometry, pose, material=material)
 
-    parts = each_shape(
-        kinds, _ARRAY_FAILED, part, lambda reason: logger.warning("createVisualShapeArray: %s", reason)
-    )
+    parts = columns.each(part)
     return client.shapes.visuals.add(tuple(parts))
 
 
