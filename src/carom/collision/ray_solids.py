@@ -60,8 +60,8 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
 
 
 @func
-def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
-    """A cylinder along z; the side first, then the caps."""
+def ray_tube(start: Vector3, way: Vector3, radius: real, half_length: real):
+    """The side of a cylinder along z, from outside."""
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
     a = way[0] * way[0] + way[1] * way[1]
@@ -74,6 +74,13 @@ def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
         if at <= 1.0 and wp.abs(point[2]) <= half_length:
             fraction = at
             normal = Vector3(point[0] / radius, point[1] / radius, 0.0)
+    return fraction, normal
+
+
+@func
+def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
+    """A cylinder along z; the side first, then the caps."""
+    fraction, normal = ray_tube(start, way, radius, half_length)
     if wp.abs(start[2]) > half_length and start[2] * way[2] < 0.0:
         at = (half_length - wp.abs(start[2])) / (wp.sign(start[2]) * way[2])
         point = start + way * at
@@ -90,16 +97,7 @@ def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
     if wp.length_sq(nearest) > radius * radius:
-        a = way[0] * way[0] + way[1] * way[1]
-        b = start[0] * way[0] + start[1] * way[1]
-        c = start[0] * start[0] + start[1] * start[1] - radius * radius
-        root = b * b - a * c
-        if a > TINY and c > 0.0 and b < 0.0 and root >= 0.0:
-            at = c / (-b + wp.sqrt(root))
-            point = start + way * at
-            if at <= 1.0 and wp.abs(point[2]) <= half_length:
-                fraction = at
-                normal = Vector3(point[0] / radius, point[1] / radius, 0.0)
+        fraction, normal = ray_tube(start, way, radius, half_length)
         for end in range(2):
             z = half_length * (2.0 * real(end) - 1.0)
             at, outward = ray_ball(start, way, Vector3(0.0, 0.0, z), radius)
