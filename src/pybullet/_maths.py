@@ -10,7 +10,7 @@ from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
 from struct import Struct
 
 from carom.description.pose import Quaternion, Vector3
-from carom.description.transform import conjugate, multiplied, rotation_matrix, transposed
+from carom.description.transform import conjugate, multiplied, rotation_matrix, transposed, turns_about_axes
 from pybullet._arguments import Vector, real, rotation, vector3, vector4
 from pybullet._builtin import exported
 from pybullet._errors import fail
@@ -56,13 +56,7 @@ def getQuaternionFromEuler(eulerAngles: Vector, physicsClientId: int = 0) -> Qua
     roll, pitch, yaw = vector3(
         eulerAngles, "Euler angles need a 3 coordinates [roll, pitch, yaw].", "eulerAngles"
     )
-    sr, cr = sin(roll / 2.0), cos(roll / 2.0)
-    sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
-    sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
-    x = sr * cp * cy - cr * sp * sy
-    y = cr * sp * cy + sr * cp * sy
-    z = cr * cp * sy - sr * sp * cy
-    w = cr * cp * cy + sr * sp * sy
+    x, y, z, w = turns_about_axes(roll, pitch, yaw)
     length = sqrt(x * x + y * y + z * z + w * w)
     return (x / length, y / length, z / length, w / length)
 

@@ -124,58 +124,12 @@ def changeVisualShape(
         pybullet.error: Not connected, there is no such texture, or a colour is not four, or three, finite
             numbers.
     """
-    _change_looks(
-        objectUniqueId,
-        linkIndex,
-        shapeIndex,
-        textureUniqueId,
-        rgbaColor,
-        specularColor,
-        flags,
-        physicsClientId,
-    )
-
-
-@exported
-def resetVisualShapeData(
-    objectUniqueId: int,
-    linkIndex: int,
-    shapeIndex: int = -1,
-    textureUniqueId: int = -2,
-    rgbaColor: Vector | None = None,
-    specularColor: Vector | None = None,
-    flags: int = -1,
-    physicsClientId: int = 0,
-) -> None:
-    """The older name of `changeVisualShape`; it takes the same arguments and does the same."""
-    _change_looks(
-        objectUniqueId,
-        linkIndex,
-        shapeIndex,
-        textureUniqueId,
-        rgbaColor,
-        specularColor,
-        flags,
-        physicsClientId,
-    )
-
-
-def _change_looks(
-    body_id: Any,
-    link_index: Any,
-    shape_index: Any,
-    texture_id: Any,
-    rgba: Vector | None,
-    specular: Vector | None,
-    flags: Any,
-    physics_client_id: Any,
-) -> None:
-    client = client_of(physics_client_id)
-    number, link = integer(body_id, "objectUniqueId"), integer(link_index, "linkIndex")
-    shape, texture = integer(shape_index, "shapeIndex"), integer(texture_id, "textureUniqueId")
+    client = client_of(physicsClientId)
+    number, link = integer(objectUniqueId, "objectUniqueId"), integer(linkIndex, "linkIndex")
+    shape, texture = integer(shapeIndex, "shapeIndex"), integer(textureUniqueId, "textureUniqueId")
     bits = integer(flags, "flags")
-    colour = None if rgba is None else vector4(rgba, _CANNOT_CHANGE, "rgbaColor")
-    highlight = None if specular is None else vector3(specular, _CANNOT_CHANGE, "specularColor")
+    colour = None if rgbaColor is None else vector4(rgbaColor, _CANNOT_CHANGE, "rgbaColor")
+    highlight = None if specularColor is None else vector3(specularColor, _CANNOT_CHANGE, "specularColor")
     body = client.world.bodies.get(number)
     if body is None:
         logger.warning("changeVisualShape: %s", no_body(number))
@@ -203,6 +157,30 @@ def _change_looks(
             texture=texture if texture > _UNCHANGED else None,
             two_sided=None if bits < 0 else bool(bits & VISUAL_SHAPE_DOUBLE_SIDED),
         )
+
+
+@exported
+def resetVisualShapeData(
+    objectUniqueId: int,
+    linkIndex: int,
+    shapeIndex: int = -1,
+    textureUniqueId: int = -2,
+    rgbaColor: Vector | None = None,
+    specularColor: Vector | None = None,
+    flags: int = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """The older name of `changeVisualShape`; it takes the same arguments and does the same."""
+    changeVisualShape(
+        objectUniqueId,
+        linkIndex,
+        shapeIndex,
+        textureUniqueId,
+        rgbaColor,
+        specularColor,
+        flags,
+        physicsClientId,
+    )
 
 
 def _pixels(values: Any, columns: int, rows: int) -> NDArray[np.uint8]:

@@ -48,18 +48,25 @@ def quaternion_from_matrix(m: Matrix3) -> Quaternion:
     return (vector[0], vector[1], vector[2], (m[k][j] - m[j][k]) * h)
 
 
+def turns_about_axes(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """The product of turns [rad] about the fixed axes x, then y, then z: of unit length but for rounding."""
+    sr, cr = sin(roll / 2.0), cos(roll / 2.0)
+    sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
+    sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
     """Unit quaternion of roll, pitch and yaw [rad] about the fixed axes x, y and z, its sign fixed.
 
     The sign rule is that of `quaternion_from_matrix`.
     """
-    sr, cr = sin(roll / 2.0), cos(roll / 2.0)
-    sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
-    sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
-    x = sr * cp * cy - cr * sp * sy
-    y = cr * sp * cy + sr * cp * sy
-    z = cr * cp * sy - sr * sp * cy
-    w = cr * cp * cy + sr * sp * sy
+    x, y, z, w = turns_about_axes(roll, pitch, yaw)
     # Only the sign may change here: going through the matrix and back would cost the last digits, and with
     # them the test whether two frames of a file are the same.
     unit = 1.0 / sqrt(x * x + y * y + z * z + w * w)
