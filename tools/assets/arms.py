@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tools.assets.parts import (
-    QUARTER_TURN,
+    ALONG_Y,
     Box,
     Capsule,
     Cylinder,
@@ -24,7 +24,6 @@ ORANGE = Paint("orange", (0.95, 0.5, 0.12, 1.0), (0.3, 0.3, 0.3))
 TEAL = Paint("green", (0.0, 0.8, 0.8, 1.0))
 GREY = Paint("grey", (0.3, 0.32, 0.35, 1.0), (0.4, 0.4, 0.4))
 RED = Paint("red", (0.85, 0.15, 0.1, 1.0), (0.3, 0.3, 0.3))
-ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
 UP, FORWARD, SIDEWAYS = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, block, drum, rod
 from tools.assets.parts import (
+    ALONG_Y,
     HALF_TURN,
     QUARTER_TURN,
     ZERO,
@@ -28,7 +29,6 @@ from tools.assets.parts import (
 ORANGE = Paint("Orange", (1.0, 0.423529411765, 0.0392156862745, 1.0), (0.4, 0.4, 0.4))
 GREY = Paint("Grey", (0.2, 0.2, 0.2, 1.0), (0.2, 0.2, 0.2))
 SILVER = Paint("Silver", (0.72, 0.74, 0.76, 1.0), (0.6, 0.6, 0.6))
-ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
 
 BOUNDS = (
     Envelope(

@@ -10,6 +10,7 @@ from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, block, drum, rod
 from tools.assets.obj_mesh import ObjMesh
 from tools.assets.parts import (
+    ALONG_Y,
     HALF_TURN,
     QUARTER_TURN,
     ZERO,
@@ -30,7 +31,6 @@ from tools.assets.simple_meshes import blocks
 WHITE = Paint("panda_white", (0.93, 0.94, 0.95, 1.0), (0.4, 0.4, 0.4))
 DARK = Paint("panda_dark", (0.17, 0.18, 0.2, 1.0), (0.3, 0.3, 0.3))
 METAL = Paint("panda_metal", (0.62, 0.64, 0.67, 1.0), (0.6, 0.6, 0.6))
-ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
 FINGER_CONTACT = {
     "friction_anchor": None,
     "stiffness": 30000.0,

@@ -9,6 +9,8 @@ ZERO: Vector3 = (0.0, 0.0, 0.0)
 ONE: Vector3 = (1.0, 1.0, 1.0)
 QUARTER_TURN = 1.57079632679
 HALF_TURN = 3.14159265359
+ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
+"""Lays a cylinder or capsule along y."""
 
 
 @dataclass(frozen=True)
