@@ -14,17 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from load_cases import CASES, DATA, REFUSED, LoadCase
+from recording import is_refused, plain
 
 ANSWERS = Path(__file__).with_name("oracle.json")
-
-
-def plain(value: Any) -> Any:
-    """Tuples as lists and bytes as text, as JSON has them."""
-    if isinstance(value, bytes):
-        return value.decode("utf-8")
-    if isinstance(value, tuple):
-        return [plain(item) for item in value]
-    return value
 
 
 def ask(pybullet: Any, case: LoadCase) -> dict[str, Any]:
@@ -42,25 +34,15 @@ def ask(pybullet: Any, case: LoadCase) -> dict[str, Any]:
     return answer
 
 
-def is_refused(pybullet: Any, text: str, scratch: Path) -> bool:
-    scratch.write_text(text, encoding="utf-8")
-    try:
-        pybullet.loadURDF(str(scratch))
-    except pybullet.error:
-        return True
-    finally:
-        scratch.unlink()
-    return False
-
-
 def main() -> None:
     pybullet: Any = importlib.import_module("pybullet")
     pybullet.connect(pybullet.DIRECT)
+    scratch = DATA / "refused_by_pybullet.urdf"
     answers = {
         "pybullet": version("pybullet"),
         "cases": {case.name: ask(pybullet, case) for case in CASES},
         "refused": {
-            name: is_refused(pybullet, text, DATA / "refused_by_pybullet.urdf")
+            name: is_refused(pybullet.loadURDF, pybullet.error, text, scratch)
             for name, text in REFUSED.items()
         },
     }

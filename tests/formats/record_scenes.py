@@ -14,6 +14,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from recording import is_refused
 from scene_cases import CASES, DATA, REFUSED_SDF, SceneCase, ask
 
 ANSWERS = Path(__file__).with_name("scenes_oracle.json")
@@ -28,17 +29,6 @@ def ask_anew(case: SceneCase) -> Any:
 def ask_alone(case: SceneCase) -> Any:
     pybullet: Any = importlib.import_module("pybullet")
     return ask(pybullet, case, pybullet.connect(pybullet.DIRECT))
-
-
-def is_refused(load: Any, error: type[Exception], text: str, scratch: Path) -> bool:
-    scratch.write_text(text, encoding="utf-8")
-    try:
-        load(str(scratch))
-    except error:
-        return True
-    finally:
-        scratch.unlink()
-    return False
 
 
 def main() -> None:

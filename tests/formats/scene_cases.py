@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from recording import plain
+
 DATA = Path(__file__).with_name("data")
 
 
@@ -43,15 +45,6 @@ CASES = [
     SceneCase("loadMJCF", "mjcf/scene.xml", {"flags": 2}),
     SceneCase("loadMJCF", "mjcf/no_compiler.xml"),
 ]
-
-
-def plain(value: Any) -> Any:
-    """Tuples as lists and bytes as text, as JSON has them."""
-    if isinstance(value, bytes):
-        return value.decode("utf-8")
-    if isinstance(value, tuple):
-        return [plain(item) for item in value]
-    return value
 
 
 def ask(p: Any, case: SceneCase, client: int) -> list[dict[str, Any]]:

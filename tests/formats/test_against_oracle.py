@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
-from typing import Any
 
 import pytest
 from load_cases import CASES, DATA, REFUSED, LoadCase
 from pybullet_view import dynamics_infos, joint_infos
+from tests.differences import differences
 
 from carom.errors import DescriptionError
 from carom.formats import read_urdf
@@ -19,28 +18,10 @@ from carom.model.flags import LoadFlags
 
 ANSWERS = json.loads(Path(__file__).with_name("oracle.json").read_text(encoding="utf-8"))
 
-ABSOLUTE = 1e-12
-"""Below this, a figure is rounding. Inertias start at 1e-7."""
-
 
 def load(case: LoadCase) -> BodySpec:
     robot = read_urdf(DATA / case.file, scale=case.scale)
     return assemble(robot, flags=LoadFlags(case.flags), fixed_base=case.fixed_base)
-
-
-def differences(ours: Any, theirs: Any, where: str = "") -> list[str]:
-    """Every place where two nested lists of numbers and names differ by more than 1e-9."""
-    if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
-        return [
-            line
-            for i, (a, b) in enumerate(zip(ours, theirs, strict=True))
-            for line in differences(a, b, f"{where}[{i}]")
-        ]
-    if isinstance(ours, (int, float)) and isinstance(theirs, (int, float)):
-        is_same = math.isclose(ours, theirs, rel_tol=1e-9, abs_tol=ABSOLUTE)
-    else:
-        is_same = ours == theirs
-    return [] if is_same else [f"{where}: {ours!r}, PyBullet has {theirs!r}"]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

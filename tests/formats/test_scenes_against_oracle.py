@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 import pytest
 from scene_cases import CASES, REFUSED_SDF, SceneCase, ask
+from tests.differences import differences
 
 import pybullet as p
 
@@ -22,27 +22,16 @@ def client():
     p.disconnect(client)
 
 
-def differences(ours: Any, theirs: Any, at: str = "") -> list[str]:
-    """Where two nested answers differ by more than rounding."""
-    if isinstance(theirs, dict):
-        return [text for key in theirs for text in differences(ours[key], theirs[key], f"{at}.{key}")]
-    if isinstance(theirs, list):
-        if len(ours) != len(theirs):
-            return [f"{at}: {len(ours)} instead of {len(theirs)} entries"]
-        pairs = zip(ours, theirs, strict=True)
-        return [text for index, (a, b) in enumerate(pairs) for text in differences(a, b, f"{at}[{index}]")]
-    if isinstance(theirs, float) or isinstance(ours, float):
-        # What getLinkState says has been through single precision.
-        tolerance = 1e-6 if ".links" in at else 1e-9
-        same = math.isclose(ours, theirs, rel_tol=tolerance, abs_tol=tolerance)
-    else:
-        same = ours == theirs
-    return [] if same else [f"{at}: {ours!r} instead of {theirs!r}"]
+def is_close(ours: float, theirs: float, where: str) -> bool:
+    # What getLinkState says has been through single precision.
+    tolerance = 1e-6 if ".links" in where else 1e-9
+    return math.isclose(ours, theirs, rel_tol=tolerance, abs_tol=tolerance)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_bodies_are_those_of_pybullet(case: SceneCase, client: int) -> None:
-    assert "\n".join(differences(ask(p, case, client), ANSWERS["cases"][case.name])) == ""
+    found = differences(ask(p, case, client), ANSWERS["cases"][case.name], is_close=is_close)
+    assert "\n".join(found) == ""
 
 
 def test_every_case_is_recorded() -> None:

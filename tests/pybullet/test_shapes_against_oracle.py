@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from record_shapes import plain
 from shape_cases import CASES, CORNER_CASES, MESHES, REFUSED, call
+from tests.differences import differences
 
 import pybullet as p
 
@@ -27,23 +26,6 @@ CELL = 1.0 / 10216
 def _world() -> None:
     p.connect(p.DIRECT)
     p.setAdditionalSearchPath(str(MESHES))
-
-
-def differences(ours: Any, theirs: Any, where: str = "") -> list[str]:
-    """Every place where two nested answers differ by more than 1e-9."""
-    if isinstance(ours, dict) and isinstance(theirs, dict) and ours.keys() == theirs.keys():
-        return [line for key in ours for line in differences(ours[key], theirs[key], f"{where}.{key}")]
-    if isinstance(ours, list) and isinstance(theirs, list) and len(ours) == len(theirs):
-        return [
-            line
-            for i, (a, b) in enumerate(zip(ours, theirs, strict=True))
-            for line in differences(a, b, f"{where}[{i}]")
-        ]
-    if isinstance(ours, (int, float)) and isinstance(theirs, (int, float)):
-        is_same = math.isclose(ours, theirs, rel_tol=1e-9, abs_tol=ABSOLUTE)
-    else:
-        is_same = ours == theirs
-    return [] if is_same else [f"{where}: {ours!r}, PyBullet has {theirs!r}"]
 
 
 def test_every_case_is_recorded() -> None:
