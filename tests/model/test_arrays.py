@@ -20,15 +20,28 @@ def rows(table: ArrayTable, name: str) -> np.ndarray:
 
 
 def test_fields_belong_to_the_axis_they_are_named_after():
-    fields = fields_of(Model)
-    assert fields["link_mass"].axis == "link"
-    assert fields["dof_parent"].axis == "dof"
-    assert fields["link_inertia"].shape == (3,)
-    assert fields["link_joint_rotation"].shape == (4,)
-    assert fields["link_parent"].scalar is np.int32
-    assert fields["link_mass"].scalar is np.float64
-    assert fields_of(State)["link_pose"].shape == (7,)
-    assert fields_of(State)["dof_motor"].shape == (8,)
+    fields = fields_of(State)
+    assert fields["link_pose"].axis == "link"
+    assert fields["dof_motor"].axis == "dof"
+    assert fields["link_pose"].shape == (7,)
+    assert fields["dof_motor"].shape == (8,)
+    assert fields["dof_velocity"].shape == ()
+    assert fields["dof_velocity"].scalar == np.float64
+    assert fields["tree_island"].scalar == np.int32
+
+
+def test_fields_of_an_array_of_structs_are_arrays_of_their_own():
+    link = fields_of(Model)["link"]
+    assert (link.axis, link.shape) == ("link", ())
+    assert link.scalar["mass"] == np.float64
+    numpy = ArrayTable(Model, None).numpy
+    assert numpy["link_mass"].shape == (16,)
+    assert numpy["link_inertia"].shape == (16, 3)
+    assert numpy["link_joint_rotation"].shape == (16, 4)
+    assert numpy["link_parent"].dtype == np.int32
+    numpy["link_inertia"][3] = (1.0, 2.0, 3.0)
+    assert numpy["link_inertia"][3].tolist() == [1.0, 2.0, 3.0]
+    assert ArrayTable(Scratch, 2).numpy["link_rotation"].shape == (2, 16, 3, 3)
 
 
 def test_arrays_start_zeroed_with_some_room(table):
@@ -79,9 +92,14 @@ def test_deleted_rows_close_up_and_leave_zeros(table, start, count):
 
 def test_structs_share_the_memory_of_the_arrays(table):
     struct = table.struct("cpu")
-    for name, array in table.numpy.items():
-        assert getattr(struct, name).ptr == array.ctypes.data
-        assert getattr(struct, name).shape == array.shape[: getattr(struct, name).ndim]
+    for number, (name, array) in enumerate(table.numpy.items()):
+        array.fill(number % 100)
+        field, _, part = name.partition("_")
+        shared = (
+            getattr(struct, name).numpy() if hasattr(struct, name) else getattr(struct, field).numpy()[part]
+        )
+        np.testing.assert_array_equal(shared, array)
+        assert np.shares_memory(shared, array)
 
 
 def test_entry_views_show_blocks_column_by_column():

@@ -29,9 +29,9 @@ def mass_matrix_kernel(model: Model, state: State, scratch: Scratch, tree: Int32
     motion_subspaces(model, state.link_pose, scratch, world, tree)
     link_inertias(model, scratch, world, tree)
     composite_inertia(model, scratch, world, tree)
-    count = model.tree_dof_count[tree]
+    count = model.tree[tree].dof_count
     columns = 4 * ((count + 3) // 4)
-    matrix = 4 * model.tree_first_block[tree]
+    matrix = 4 * model.tree[tree].first_block
     for row in range(count):
         for column in range(row):
             entry = scratch.entry_factor[world, matrix + row * columns + column]
@@ -43,9 +43,9 @@ def nearest_dof(model: Model, link: Int32) -> Int32:
     """The last dof among those that move a link, -1 if none does."""
     dof = Int32(-1)
     while link >= 0 and dof < 0:
-        if model.link_dof_count[link] > 0:
-            dof = model.link_first_dof[link] + model.link_dof_count[link] - 1
-        link = model.link_parent[link]
+        if model.link[link].dof_count > 0:
+            dof = model.link[link].first_dof + model.link[link].dof_count - 1
+        link = model.link[link].parent
     return dof
 
 
@@ -55,16 +55,16 @@ def jacobian_kernel(model: Model, state: State, scratch: Scratch, query: Query, 
     world = wp.tid()
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
-    from_com = query.point_on_link[world, 0] - model.link_com_from_pivot[link]
-    point = scratch.link_offset[world, link] + scratch.link_rotation[world, link] * from_com
+    from_com = query.point_on_link[world, 0] - model.link[link].com_from_pivot
+    point = scratch.link[world, link].offset + scratch.link[world, link].rotation * from_com
 
-    first = model.tree_first_dof[tree]
-    for dof in range(first, first + model.tree_dof_count[tree]):
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
         query.dof_linear[world, dof] = Vector3(0.0, 0.0, 0.0)
         query.dof_angular[world, dof] = Vector3(0.0, 0.0, 0.0)
     moved_by = nearest_dof(model, link)
     while moved_by >= 0:
-        axis = scratch.dof_angular[world, moved_by]
+        axis = scratch.dof[world, moved_by].angular
         query.dof_angular[world, moved_by] = axis
-        query.dof_linear[world, moved_by] = scratch.dof_linear[world, moved_by] + wp.cross(axis, point)
-        moved_by = model.dof_parent[moved_by]
+        query.dof_linear[world, moved_by] = scratch.dof[world, moved_by].linear + wp.cross(axis, point)
+        moved_by = model.dof[moved_by].parent

@@ -16,17 +16,17 @@ INCLUDE_PARENT = wp.constant(int(LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT))
 def rigid_root(model: Model, link: Int32) -> Int32:
     """The first of the links, from `link` towards the base, that moves against its own parent."""
     root = link
-    while model.link_parent[root] >= 0 and model.link_dof_count[root] == 0:
-        root = model.link_parent[root]
+    while model.link[root].parent >= 0 and model.link[root].dof_count == 0:
+        root = model.link[root].parent
     return root
 
 
 @func
 def is_below(model: Model, link: Int32, ancestor: Int32) -> bool:
     """Whether `ancestor` is one of the links between `link` and its base, or the base."""
-    above = model.link_parent[link]
+    above = model.link[link].parent
     while above >= 0 and above != ancestor:
-        above = model.link_parent[above]
+        above = model.link[above].parent
     return above == ancestor
 
 
@@ -40,7 +40,7 @@ def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
         return not is_below(model, a, b) and not is_below(model, b, a)
     if flags & INCLUDE_PARENT != 0:
         return True
-    return model.link_parent[a] != b and model.link_parent[b] != a
+    return model.link[a].parent != b and model.link[b].parent != a
 
 
 @func
@@ -82,7 +82,7 @@ def may_touch(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, 
         return False
     root_a = rigid_root(model, a)
     root_b = rigid_root(model, b)
-    if root_a == root_b or (model.link_dof_count[root_a] == 0 and model.link_dof_count[root_b] == 0):
+    if root_a == root_b or (model.link[root_a].dof_count == 0 and model.link[root_b].dof_count == 0):
         return False
     if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):
         return False

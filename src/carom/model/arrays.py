@@ -24,14 +24,14 @@ class Field:
     Attributes:
         axis: Name of the axis its rows belong to.
         dtype: Warp type of one entry.
-        shape: Shape of one entry; () for a scalar.
-        scalar: NumPy type of the scalars.
+        shape: Shape of one entry; () for a scalar or a struct.
+        scalar: NumPy type of the scalars, or of the struct.
     """
 
     axis: str
     dtype: Any
     shape: tuple[int, ...]
-    scalar: type[np.generic]
+    scalar: np.dtype[Any]
 
 
 def fields_of(struct: Any) -> dict[str, Field]:
@@ -39,14 +39,23 @@ def fields_of(struct: Any) -> dict[str, Field]:
     fields = {}
     for name, annotation in struct.cls.__annotations__.items():
         dtype = annotation.dtype
-        shape = tuple(getattr(dtype, "_shape_", ()))
-        scalar = wp.dtype_to_numpy(getattr(dtype, "_wp_scalar_type_", dtype))
+        if hasattr(dtype, "numpy_dtype"):
+            shape, scalar = (), np.dtype(dtype.numpy_dtype())
+        else:
+            shape = tuple(getattr(dtype, "_shape_", ()))
+            scalar = np.dtype(wp.dtype_to_numpy(getattr(dtype, "_wp_scalar_type_", dtype)))
         fields[name] = Field(name.partition("_")[0], dtype, shape, scalar)
     return fields
 
 
 class ArrayTable:
-    """Arrays by name, grouped by axis, with an optional leading world axis."""
+    """Arrays by name, grouped by axis, with an optional leading world axis.
+
+    Attributes:
+        numpy: The arrays by the names of their fields. An array of structs is there as one array for
+            each of their fields, named after both: `link_mass` is the field `mass` of `link`.
+        capacity: Rows there are, by axis.
+    """
 
     def __init__(
         self, struct: Any, world_count: int | None, entry_views: Mapping[str, str] | None = None
@@ -65,9 +74,10 @@ class ArrayTable:
         }
         self._world_count = world_count
         self.capacity = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
+        self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         for name in self._fields:
-            self.numpy[name] = self._allocate(name)
+            self._replace(name, self._allocate(name))
 
     def _allocate(self, name: str) -> np.ndarray:
         field = self._fields[name]
@@ -75,6 +85,13 @@ class ArrayTable:
         if self._world_count is not None:
             shape = (self._world_count, *shape)
         return np.zeros((*shape, *field.shape), dtype=field.scalar)
+
+    def _replace(self, name: str, array: np.ndarray) -> None:
+        self._memory[name] = array
+        if array.dtype.names is None:
+            self.numpy[name] = array
+        for part in array.dtype.names or ():
+            self.numpy[f"{name}_{part}"] = array[part]
 
     def reserve(self, needed: Mapping[str, int]) -> bool:
         """Make room for `needed` rows on each axis; true if arrays were replaced."""
@@ -86,31 +103,31 @@ class ArrayTable:
             grown.add(axis)
         for name, field in self._fields.items():
             if field.axis in grown:
-                old = self.numpy[name]
+                old = self._memory[name]
                 new = self._allocate(name)
                 if self._world_count is None:
                     new[: len(old)] = old
                 else:
                     new[:, : old.shape[1]] = old
-                self.numpy[name] = new
+                self._replace(name, new)
         return bool(grown)
 
     def delete(self, axis: str, start: int, count: int) -> None:
         """Remove `count` rows of an axis; later rows move up and the freed ones are zero."""
         for name, field in self._fields.items():
             if field.axis == axis:
-                array = self.numpy[name]
+                array = self._memory[name]
                 rows = array if self._world_count is None else array.swapaxes(0, 1)
                 rows[start:-count] = rows[start + count :].copy()
-                rows[-count:] = 0
+                rows[-count:] = np.zeros((), dtype=array.dtype)
 
     def struct(self, device: str) -> Any:
         """A Warp struct whose fields are views of these arrays."""
         struct = self._struct()
         for name, field in self._fields.items():
-            setattr(struct, name, wp.array(self.numpy[name], dtype=field.dtype, device=device, copy=False))
+            setattr(struct, name, wp.array(self._memory[name], dtype=field.dtype, device=device, copy=False))
         for name, source in self._entry_views.items():
-            array = self.numpy[source]
+            array = self._memory[source]
             entries = array.reshape(*array.shape[:-2], -1)
             dtype = fields_of(self._struct)[name].dtype
             setattr(struct, name, wp.array(entries, dtype=dtype, device=device, copy=False))

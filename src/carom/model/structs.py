@@ -1,7 +1,9 @@
 """What kernels work on: `Settings`, `Model`, `State` and `Scratch`.
 
 `Model` is topology and parameters, shared by all worlds; `State` and `Scratch` have a leading world
-axis. A field's axis is the first word of its name: `link_mass` has one entry per link.
+axis. Quantities that are used together lie together, as the fields of one struct per tree, link,
+dof, constraint or row: the kernel finds them all from one address. A field's axis is the first
+word of its name: `Model.link` and `State.link_pose` have one entry per link.
 
 A *tree* is one body: a base and its links. A *dof* is one velocity coordinate; the six of the base
 come first, angular before linear. *Active* dofs are those that dynamics may change: all of a
@@ -11,21 +13,19 @@ floating tree, all but the base's six of a fixed one; `tree_first_dof` is the fi
 import warp as wp
 
 from carom.model.real import (
-    Index4Rows,
+    Index4,
     Int32,
     IntRows,
-    Ints,
-    Matrix3Rows,
-    Quaternions,
+    Matrix3,
+    Quaternion,
     RealRows,
-    Reals,
     TransformRows,
     Vector3,
     Vector3Rows,
     Vector4Rows,
     Vector6Rows,
+    Vector8,
     Vector8Rows,
-    Vectors3,
     real,
 )
 
@@ -59,57 +59,82 @@ class Settings:
 
 
 @wp.struct
+class TreeModel:
+    """One body: a base and its links, and what holds for all of them."""
+
+    first_link: Int32
+    link_count: Int32
+    first_position: Int32
+    position_count: Int32
+    first_velocity: Int32
+    first_dof: Int32
+    dof_count: Int32
+    fixed: Int32
+    first_block: Int32  # of its matrices, in rows of four columns
+    first_delta: Int32  # of its vectors, in blocks of four
+    sensor_count: Int32
+    constraint_count: Int32
+    batch: Int32  # first tree of those solved together with it for lack of constraints
+    linear_damping: real
+    angular_damping: real
+    max_velocity: real
+
+
+@wp.struct
+class LinkModel:
+    """One link, or the base of a tree, and the joint to its parent."""
+
+    parent: Int32  # -1 for a base
+    joint_type: Int32
+    first_position: Int32
+    first_dof: Int32
+    dof_count: Int32
+    nearest_dof: Int32  # last of the dofs that move it, -1 if none does
+    sensor: Int32
+    mass: real
+    inertia: Vector3  # principal moments
+    joint_rotation: Quaternion  # inertial frame in the parent's inertial frame at position 0
+    pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
+    com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
+    axis: Vector3  # velocity per unit rate, in the inertial frame
+    unit_axis: Vector3
+    planar_axis1: Vector3  # first translation of a planar joint, in the inertial frame
+    planar_axis2: Vector3
+
+
+@wp.struct
+class DofModel:
+    """One velocity coordinate."""
+
+    parent: Int32  # next active dof towards the root, -1 at the root
+    damping: real
+
+
+@wp.struct
+class ConstraintModel:
+    """What one joint motor, joint limit or user constraint may do."""
+
+    kind: Int32
+    tree: Int32
+    link: Int32  # of a user constraint: its row
+    lower: real
+    upper: real
+    twist: real
+    max_impulse: real
+
+
+@wp.struct
 class Model:
     """Topology and parameters of every body.
 
-    Link rows include the base of each tree, its first; `link_parent` is -1 there. Indices of links,
-    dofs and positions count over all trees.
+    Link rows include the base of each tree, its first. Indices of links, dofs and positions count
+    over all trees.
     """
 
-    tree_first_link: Ints
-    tree_link_count: Ints
-    tree_first_position: Ints
-    tree_position_count: Ints
-    tree_first_velocity: Ints
-    tree_first_dof: Ints
-    tree_dof_count: Ints
-    tree_fixed: Ints
-    tree_first_block: Ints  # of its matrices, in rows of four columns
-    tree_first_delta: Ints  # of its vectors, in blocks of four
-    tree_sensor_count: Ints
-    tree_constraint_count: Ints
-    tree_batch: Ints  # first tree of those solved together with it for lack of constraints
-    tree_linear_damping: Reals
-    tree_angular_damping: Reals
-    tree_max_velocity: Reals
-
-    link_parent: Ints
-    link_joint_type: Ints
-    link_first_position: Ints
-    link_first_dof: Ints
-    link_dof_count: Ints
-    link_nearest_dof: Ints  # last of the dofs that move it, -1 if none does
-    link_sensor: Ints
-    link_mass: Reals
-    link_inertia: Vectors3  # principal moments
-    link_joint_rotation: Quaternions  # inertial frame in the parent's inertial frame at position 0
-    link_pivot_in_parent: Vectors3  # joint origin in the parent's inertial frame
-    link_com_from_pivot: Vectors3  # centre of mass from the joint origin, in the inertial frame
-    link_axis: Vectors3  # velocity per unit rate, in the inertial frame
-    link_unit_axis: Vectors3
-    link_planar_axis1: Vectors3  # first translation of a planar joint, in the inertial frame
-    link_planar_axis2: Vectors3
-
-    dof_parent: Ints  # next active dof towards the root, -1 at the root
-    dof_damping: Reals
-
-    constraint_kind: Ints
-    constraint_tree: Ints
-    constraint_link: Ints  # of a user constraint: its row
-    constraint_lower: Reals
-    constraint_upper: Reals
-    constraint_twist: Reals
-    constraint_max_impulse: Reals
+    tree: wp.array(dtype=TreeModel)
+    link: wp.array(dtype=LinkModel)
+    dof: wp.array(dtype=DofModel)
+    constraint: wp.array(dtype=ConstraintModel)
 
 
 @wp.struct
@@ -133,37 +158,59 @@ class State:
 
 
 @wp.struct
-class Scratch:
-    """Intermediate results of one step.
+class LinkScratch:
+    """Motion, inertia and forces of one link.
 
     Spatial quantities are in world axes and refer to the base's centre of mass: velocities and
     accelerations are those of the point of the link that is there, moments are about it.
     """
 
-    link_pose: TransformRows
-    link_offset: Vector3Rows  # centre of mass from the reference point
-    link_rotation: Matrix3Rows
-    link_com_inertia: Matrix3Rows  # about the centre of mass, world axes
-    link_omega: Vector3Rows
-    link_velocity: Vector3Rows
-    link_alpha: Vector3Rows
-    link_acceleration: Vector3Rows
-    link_force: Vector3Rows
-    link_moment: Vector3Rows
-    link_composite_mass: RealRows
-    link_composite_first: Vector3Rows
-    link_composite_inertia: Matrix3Rows
-    link_constraint_force: Vector3Rows
-    link_constraint_torque: Vector3Rows
+    offset: Vector3  # centre of mass from the reference point
+    rotation: Matrix3
+    com_inertia: Matrix3  # about the centre of mass, world axes
+    omega: Vector3
+    velocity: Vector3
+    alpha: Vector3
+    acceleration: Vector3
+    force: Vector3
+    moment: Vector3
+    composite_mass: real
+    composite_first: Vector3
+    composite_inertia: Matrix3
+    constraint_force: Vector3
+    constraint_torque: Vector3
 
+
+@wp.struct
+class DofScratch:
+    """Motion subspace, force and acceleration of one dof."""
+
+    start_velocity: real
+    start_torque: real
+    angular: Vector3  # motion subspace
+    linear: Vector3
+    force: real
+    acceleration: real  # what inverse dynamics is asked for
+    inverse_pivot: real
+
+
+@wp.struct
+class RowScratch:
+    """One constraint row over a single tree."""
+
+    constraint: Int32
+    place: Index4  # see the PLACE_ columns in `codes`
+    terms: Vector8  # see the ROW_ columns in `codes`
+
+
+@wp.struct
+class Scratch:
+    """Intermediate results of one step."""
+
+    link: wp.array2d(dtype=LinkScratch)
+    link_pose: TransformRows  # like `State.link_pose`, for other coordinates
+    dof: wp.array2d(dtype=DofScratch)
     position_start: RealRows
-    dof_start_velocity: RealRows
-    dof_start_torque: RealRows
-    dof_angular: Vector3Rows  # motion subspace
-    dof_linear: Vector3Rows
-    dof_force: RealRows
-    dof_acceleration: RealRows  # what inverse dynamics is asked for
-    dof_inverse_pivot: RealRows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
     # columns, and the `entry_` arrays show the same memory column by column.
@@ -174,9 +221,7 @@ class Scratch:
     entry_inverse_mass: RealRows
     entry_delta_velocity: RealRows
 
-    row_constraint: IntRows
-    row_place: Index4Rows  # see the PLACE_ columns in `codes`
-    row_terms: Vector8Rows  # see the ROW_ columns in `codes`
+    row: wp.array2d(dtype=RowScratch)
 
 
 @wp.struct

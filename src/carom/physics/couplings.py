@@ -22,7 +22,7 @@ def tree_blocks(model: Model, tree: Int32) -> Int32:
     """Number of four-wide blocks of a vector over a tree's active dofs; 0 for the world, -1."""
     if tree < 0:
         return Int32(0)
-    return (model.tree_dof_count[tree] + 3) // 4
+    return (model.tree[tree].dof_count + 3) // 4
 
 
 @func
@@ -55,14 +55,14 @@ def write_jacobian(
             couplings.jacobian_row[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
             couplings.jacobian_response[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
             block += 1
-        reference = wp.transform_get_translation(state.link_pose[world, model.tree_first_link[tree]])
+        reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         moment = wp.cross(point - reference, linear) + angular
-        first = model.tree_first_dof[tree]
-        matrix = model.tree_first_block[tree]
-        dof = model.link_nearest_dof[link]
+        first = model.tree[tree].first_dof
+        matrix = model.tree[tree].first_block
+        dof = model.link[link].nearest_dof
         while dof >= 0:
-            share = wp.dot(scratch.dof_linear[world, dof], linear) + wp.dot(
-                scratch.dof_angular[world, dof], moment
+            share = wp.dot(scratch.dof[world, dof].linear, linear) + wp.dot(
+                scratch.dof[world, dof].angular, moment
             )
             velocity += share * state.dof_velocity[world, dof]
             couplings.entry_row[world, 4 * start + dof - first] = share
@@ -73,7 +73,7 @@ def write_jacobian(
                     share * scratch.block_inverse_mass[world, response + block]
                 )
                 block += 1
-            dof = model.dof_parent[dof]
+            dof = model.dof[dof].parent
         block = Int32(0)
         while block < blocks:
             inverse_mass += wp.dot(
@@ -94,9 +94,9 @@ def place_row(
     delta_a = Int32(0)
     delta_b = Int32(0)
     if tree_a >= 0:
-        delta_a = model.tree_first_delta[tree_a]
+        delta_a = model.tree[tree_a].first_delta
     if tree_b >= 0:
-        delta_b = model.tree_first_delta[tree_b]
+        delta_b = model.tree[tree_b].first_delta
     couplings.coupling_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
     couplings.coupling_start[world, row] = start
     couplings.coupling_bound[world, row] = Int32(-1)

@@ -17,16 +17,16 @@ from carom.physics.quarantine import report_fault
 @func
 def link_inertias(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Rotational inertia of each link in world axes, and its spatial inertia as composite seed."""
-    base = model.tree_first_link[tree]
-    for link in range(base, base + model.tree_link_count[tree]):
-        rotation = scratch.link_rotation[world, link]
-        about_com = turned_inertia(rotation, model.link_inertia[link])
-        mass = model.link_mass[link]
-        c = scratch.link_offset[world, link]
-        scratch.link_com_inertia[world, link] = about_com
-        scratch.link_composite_mass[world, link] = mass
-        scratch.link_composite_first[world, link] = mass * c
-        scratch.link_composite_inertia[world, link] = about_com + mass * parallel_axis(c)
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        rotation = scratch.link[world, link].rotation
+        about_com = turned_inertia(rotation, model.link[link].inertia)
+        mass = model.link[link].mass
+        c = scratch.link[world, link].offset
+        scratch.link[world, link].com_inertia = about_com
+        scratch.link[world, link].composite_mass = mass
+        scratch.link[world, link].composite_first = mass * c
+        scratch.link[world, link].composite_inertia = about_com + mass * parallel_axis(c)
 
 
 @func
@@ -90,52 +90,52 @@ def link_bias_forces(
     centripetal force of the links. `INVERSE_DYNAMICS` is with the joint accelerations in
     `dof_acceleration` and without damping.
     """
-    base = model.tree_first_link[tree]
-    linear_damping = model.tree_linear_damping[tree]
-    angular_damping = model.tree_angular_damping[tree]
+    base = model.tree[tree].first_link
+    linear_damping = model.tree[tree].linear_damping
+    angular_damping = model.tree[tree].angular_damping
 
-    for link in range(base, base + model.tree_link_count[tree]):
+    for link in range(base, base + model.tree[tree].link_count):
         omega = base_omega(model, state, world, tree)
         velocity = base_velocity(model, state, world, tree)
         alpha = Vector3(0.0, 0.0, 0.0)
         acceleration = Vector3(0.0, 0.0, 0.0)
         if link > base:
-            parent = model.link_parent[link]
-            omega = scratch.link_omega[world, parent]
-            velocity = scratch.link_velocity[world, parent]
-            alpha = scratch.link_alpha[world, parent]
-            acceleration = scratch.link_acceleration[world, parent]
+            parent = model.link[link].parent
+            omega = scratch.link[world, parent].omega
+            velocity = scratch.link[world, parent].velocity
+            alpha = scratch.link[world, parent].alpha
+            acceleration = scratch.link[world, parent].acceleration
             joint_omega = Vector3(0.0, 0.0, 0.0)
             joint_velocity = Vector3(0.0, 0.0, 0.0)
-            first = model.link_first_dof[link]
-            for dof in range(first, first + model.link_dof_count[link]):
+            first = model.link[link].first_dof
+            for dof in range(first, first + model.link[link].dof_count):
                 rate = state.dof_velocity[world, dof]
-                joint_omega += scratch.dof_angular[world, dof] * rate
-                joint_velocity += scratch.dof_linear[world, dof] * rate
+                joint_omega += scratch.dof[world, dof].angular * rate
+                joint_velocity += scratch.dof[world, dof].linear * rate
                 if purpose == INVERSE_DYNAMICS:
-                    alpha += scratch.dof_angular[world, dof] * scratch.dof_acceleration[world, dof]
-                    acceleration += scratch.dof_linear[world, dof] * scratch.dof_acceleration[world, dof]
+                    alpha += scratch.dof[world, dof].angular * scratch.dof[world, dof].acceleration
+                    acceleration += scratch.dof[world, dof].linear * scratch.dof[world, dof].acceleration
             omega += joint_omega
             velocity += joint_velocity
             # The motion subspace turns with the link: spatial cross product of both velocities.
             alpha += wp.cross(omega, joint_omega)
             acceleration += wp.cross(omega, joint_velocity) + wp.cross(velocity, joint_omega)
-        elif model.tree_fixed[tree] == 0:
+        elif model.tree[tree].fixed == 0:
             # The base keeps its velocity; its spatial acceleration is that minus omega x velocity.
             acceleration = -wp.cross(omega, velocity)
             if purpose == INVERSE_DYNAMICS:
-                first = model.tree_first_velocity[tree]
+                first = model.tree[tree].first_velocity
                 for axis in range(3):
-                    alpha[axis] = scratch.dof_acceleration[world, first + axis]
-                    acceleration[axis] += scratch.dof_acceleration[world, first + 3 + axis]
-        scratch.link_omega[world, link] = omega
-        scratch.link_velocity[world, link] = velocity
-        scratch.link_alpha[world, link] = alpha
-        scratch.link_acceleration[world, link] = acceleration
+                    alpha[axis] = scratch.dof[world, first + axis].acceleration
+                    acceleration[axis] += scratch.dof[world, first + 3 + axis].acceleration
+        scratch.link[world, link].omega = omega
+        scratch.link[world, link].velocity = velocity
+        scratch.link[world, link].alpha = alpha
+        scratch.link[world, link].acceleration = acceleration
 
-        mass = model.link_mass[link]
-        c = scratch.link_offset[world, link]
-        about_com = scratch.link_com_inertia[world, link]
+        mass = model.link[link].mass
+        c = scratch.link[world, link].offset
+        about_com = scratch.link[world, link].com_inertia
         com_velocity = velocity + wp.cross(omega, c)
         spin = about_com * omega
 
@@ -154,13 +154,13 @@ def link_bias_forces(
             force -= external_force(state, settings, mass, world, link)
             torque -= external_torque(state, world, link)
         else:
-            force -= scratch.link_constraint_force[world, link]
-            torque -= scratch.link_constraint_torque[world, link]
+            force -= scratch.link[world, link].constraint_force
+            torque -= scratch.link[world, link].constraint_torque
             if link > base:
                 force -= mass * wp.cross(omega, com_velocity)
 
-        scratch.link_force[world, link] = force
-        scratch.link_moment[world, link] = torque + wp.cross(c, force)
+        scratch.link[world, link].force = force
+        scratch.link[world, link].moment = torque + wp.cross(c, force)
 
 
 @func
@@ -168,25 +168,25 @@ def generalized_forces(
     model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, purpose: Int32
 ):
     """Gather link forces towards the root; leaves in `dof_force` what is free to accelerate dofs."""
-    base = model.tree_first_link[tree]
-    count = model.tree_link_count[tree]
+    base = model.tree[tree].first_link
+    count = model.tree[tree].link_count
     for i in range(count):
         link = base + count - 1 - i
-        force = scratch.link_force[world, link]
-        moment = scratch.link_moment[world, link]
-        first = model.link_first_dof[link]
-        for dof in range(first, first + model.link_dof_count[link]):
-            needed = wp.dot(scratch.dof_angular[world, dof], moment) + wp.dot(
-                scratch.dof_linear[world, dof], force
+        force = scratch.link[world, link].force
+        moment = scratch.link[world, link].moment
+        first = model.link[link].first_dof
+        for dof in range(first, first + model.link[link].dof_count):
+            needed = wp.dot(scratch.dof[world, dof].angular, moment) + wp.dot(
+                scratch.dof[world, dof].linear, force
             )
             applied = real(0.0)
             if purpose == FREE_MOTION:
                 applied = state.dof_torque[world, dof]
-            scratch.dof_force[world, dof] = applied - needed
+            scratch.dof[world, dof].force = applied - needed
         if link > base:
-            parent = model.link_parent[link]
-            scratch.link_force[world, parent] += force
-            scratch.link_moment[world, parent] += moment
+            parent = model.link[link].parent
+            scratch.link[world, parent].force += force
+            scratch.link[world, parent].moment += moment
 
 
 @func
@@ -194,11 +194,11 @@ def update_velocities(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Velocities after the step if nothing constrained them; `dof_force` holds accelerations."""
-    bound = model.tree_max_velocity[tree]
-    first = model.tree_first_dof[tree]
+    bound = model.tree[tree].max_velocity
+    first = model.tree[tree].first_dof
     total = real(0.0)
-    for dof in range(first, first + model.tree_dof_count[tree]):
-        velocity = state.dof_velocity[world, dof] + settings.time_step * scratch.dof_force[world, dof]
+    for dof in range(first, first + model.tree[tree].dof_count):
+        velocity = state.dof_velocity[world, dof] + settings.time_step * scratch.dof[world, dof].force
         state.dof_velocity[world, dof] = wp.clamp(velocity, -bound, bound)
         total += velocity
     report_fault(state, world, tree, total)

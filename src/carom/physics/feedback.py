@@ -17,10 +17,10 @@ from carom.physics.rows import row_dof
 @func
 def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Forget the constraint forces of the last substep."""
-    base = model.tree_first_link[tree]
-    for link in range(base, base + model.tree_link_count[tree]):
-        scratch.link_constraint_force[world, link] = Vector3(0.0, 0.0, 0.0)
-        scratch.link_constraint_torque[world, link] = Vector3(0.0, 0.0, 0.0)
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
+        scratch.link[world, link].constraint_torque = Vector3(0.0, 0.0, 0.0)
 
 
 @func
@@ -29,20 +29,20 @@ def gather_constraint_forces(
 ):
     """Turn the impulses of rows [first, last) into forces on the joint's link and on its parent."""
     for row in range(first, last):
-        constraint = scratch.row_constraint[world, row]
-        if model.tree_sensor_count[model.constraint_tree[constraint]] > 0:
-            link = model.constraint_link[constraint]
-            parent = model.link_parent[link]
+        constraint = scratch.row[world, row].constraint
+        if model.tree[model.constraint[constraint].tree].sensor_count > 0:
+            link = model.constraint[constraint].link
+            parent = model.link[link].parent
             dof = row_dof(model, scratch, world, row)
-            size = scratch.row_terms[world, row][ROW_IMPULSE] / settings.time_step
-            angular = scratch.dof_angular[world, dof]
+            size = scratch.row[world, row].terms[ROW_IMPULSE] / settings.time_step
+            angular = scratch.dof[world, dof].angular
             if wp.dot(angular, angular) > 0.0:
-                scratch.link_constraint_torque[world, link] += angular * size
-                scratch.link_constraint_torque[world, parent] -= angular * size
+                scratch.link[world, link].constraint_torque += angular * size
+                scratch.link[world, parent].constraint_torque -= angular * size
             else:
-                linear = scratch.dof_linear[world, dof]
-                scratch.link_constraint_force[world, link] += linear * size
-                scratch.link_constraint_force[world, parent] -= linear * size
+                linear = scratch.dof[world, dof].linear
+                scratch.link[world, link].constraint_force += linear * size
+                scratch.link[world, parent].constraint_force -= linear * size
 
 
 @func
@@ -53,8 +53,8 @@ def measure_joint_wrenches(
 
     Expects the accelerations in `dof_force` and the gathered bias forces of `generalized_forces`.
     """
-    base = model.tree_first_link[tree]
-    count = model.tree_link_count[tree]
+    base = model.tree[tree].first_link
+    count = model.tree[tree].link_count
     zero = Vector3(0.0, 0.0, 0.0)
 
     # What the joint accelerations add to the accelerations of the links.
@@ -62,43 +62,43 @@ def measure_joint_wrenches(
         alpha = zero
         acceleration = zero
         if link > base:
-            alpha = scratch.link_alpha[world, model.link_parent[link]]
-            acceleration = scratch.link_acceleration[world, model.link_parent[link]]
-        first = model.link_first_dof[link]
-        for dof in range(first, first + model.link_dof_count[link]):
-            rate = scratch.dof_force[world, dof]
-            alpha += scratch.dof_angular[world, dof] * rate
-            acceleration += scratch.dof_linear[world, dof] * rate
-        scratch.link_alpha[world, link] = alpha
-        scratch.link_acceleration[world, link] = acceleration
+            alpha = scratch.link[world, model.link[link].parent].alpha
+            acceleration = scratch.link[world, model.link[link].parent].acceleration
+        first = model.link[link].first_dof
+        for dof in range(first, first + model.link[link].dof_count):
+            rate = scratch.dof[world, dof].force
+            alpha += scratch.dof[world, dof].angular * rate
+            acceleration += scratch.dof[world, dof].linear * rate
+        scratch.link[world, link].alpha = alpha
+        scratch.link[world, link].acceleration = acceleration
 
     # The force for that, gathered towards the root on top of the bias forces.
     for link in range(base, base + count):
-        mass = model.link_mass[link]
-        c = scratch.link_offset[world, link]
-        alpha = scratch.link_alpha[world, link]
-        acceleration = scratch.link_acceleration[world, link]
-        inertia = scratch.link_com_inertia[world, link] + mass * parallel_axis(c)
+        mass = model.link[link].mass
+        c = scratch.link[world, link].offset
+        alpha = scratch.link[world, link].alpha
+        acceleration = scratch.link[world, link].acceleration
+        inertia = scratch.link[world, link].com_inertia + mass * parallel_axis(c)
         force = mass * (acceleration + wp.cross(alpha, c))
         moment = inertia * alpha + mass * wp.cross(c, acceleration)
         up = link
         while up >= 0:
-            scratch.link_force[world, up] += force
-            scratch.link_moment[world, up] += moment
-            up = model.link_parent[up]
+            scratch.link[world, up].force += force
+            scratch.link[world, up].moment += moment
+            up = model.link[up].parent
 
     for link in range(base + 1, base + count):
-        if model.link_sensor[link] != 0:
-            force = scratch.link_force[world, link]
-            torque = scratch.link_moment[world, link] - wp.cross(scratch.link_offset[world, link], force)
-            to_link = wp.transpose(scratch.link_rotation[world, link])
+        if model.link[link].sensor != 0:
+            force = scratch.link[world, link].force
+            torque = scratch.link[world, link].moment - wp.cross(scratch.link[world, link].offset, force)
+            to_link = wp.transpose(scratch.link[world, link].rotation)
             force = to_link * force
             torque = to_link * torque
             if settings.feedback_in_joint != 0:
-                torque -= wp.cross(force, model.link_com_from_pivot[link])
+                torque -= wp.cross(force, model.link[link].com_from_pivot)
             if settings.feedback_in_world != 0:
-                force = scratch.link_rotation[world, link] * force
-                torque = scratch.link_rotation[world, link] * torque
+                force = scratch.link[world, link].rotation * force
+                torque = scratch.link[world, link].rotation * torque
             wrench = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
             if add != 0:
                 wrench += state.link_reaction[world, link]

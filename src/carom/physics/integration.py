@@ -35,18 +35,18 @@ def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, d
     The base's orientation turns in world axes, a spherical joint's in the axes of its link; the
     translations of a planar joint are given along axes of the link.
     """
-    base = model.tree_first_link[tree]
-    q = model.tree_first_position[tree]
+    base = model.tree[tree].first_link
+    q = model.tree[tree].first_position
     velocity = base_velocity(model, state, world, tree)
     for axis in range(3):
         state.position[world, q + axis] += dt * velocity[axis]
     turn = rotation_step(base_omega(model, state, world, tree), dt)
     store_quaternion(state, world, q + 3, turn * load_quaternion(state, world, q + 3))
 
-    for link in range(base + 1, base + model.tree_link_count[tree]):
-        joint_type = model.link_joint_type[link]
-        q = model.link_first_position[link]
-        dof = model.link_first_dof[link]
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        joint_type = model.link[link].joint_type
+        q = model.link[link].first_position
+        dof = model.link[link].first_dof
         if joint_type == REVOLUTE or joint_type == PRISMATIC:
             state.position[world, q] += dt * state.dof_velocity[world, dof]
         elif joint_type == SPHERICAL:
@@ -60,10 +60,10 @@ def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, d
         elif joint_type == PLANAR:
             angle = state.position[world, q] + dt * state.dof_velocity[world, dof]
             state.position[world, q] = angle
-            axis1 = model.link_planar_axis1[link]
-            axis2 = model.link_planar_axis2[link]
+            axis1 = model.link[link].planar_axis1
+            axis2 = model.link[link].planar_axis2
             slide = wp.quat_rotate(
-                axis_rotation(model.link_unit_axis[link], angle),
+                axis_rotation(model.link[link].unit_axis, angle),
                 axis1 * state.dof_velocity[world, dof + 1] + axis2 * state.dof_velocity[world, dof + 2],
             )
             state.position[world, q + 1] += dt * wp.dot(axis1, slide)

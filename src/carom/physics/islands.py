@@ -29,7 +29,7 @@ def can_move(model: Model, tree: Int32) -> bool:
     """Whether a tree has dofs; the world, -1, has none."""
     if tree < 0:
         return False
-    return model.tree_dof_count[tree] > 0
+    return model.tree[tree].dof_count > 0
 
 
 @func
@@ -63,7 +63,7 @@ def build_islands(
     """Join trees that touch or are tied together, and list the constraints and contacts of each island."""
     contact_count = contacts.count_contacts[world, 0]
     for tree in range(settings.tree_count):
-        state.tree_island[world, tree] = model.tree_batch[tree]
+        state.tree_island[world, tree] = model.tree[tree].batch
         couplings.tree_touches[world, tree] = 0
     for contact in range(contact_count):
         pair = contacts.contact_shapes[world, contact]
@@ -81,7 +81,7 @@ def build_islands(
         couplings.tree_first_contact[world, tree] = _NONE
     constraint = settings.constraint_count - 1
     while constraint >= 0:
-        root = state.tree_island[world, model.constraint_tree[constraint]]
+        root = state.tree_island[world, model.constraint[constraint].tree]
         couplings.constraint_next[world, constraint] = couplings.tree_first_constraint[world, root]
         couplings.tree_first_constraint[world, root] = constraint
         constraint -= 1

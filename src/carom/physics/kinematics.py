@@ -11,8 +11,8 @@ from carom.physics.rotation import axis_rotation, canonical, rotation_matrix
 @func
 def forward_kinematics(model: Model, state: State, poses: TransformRows, world: Int32, tree: Int32):
     """Fill `poses` with the world poses of a tree's inertial frames, from its coordinates."""
-    base = model.tree_first_link[tree]
-    q = model.tree_first_position[tree]
+    base = model.tree[tree].first_link
+    q = model.tree[tree].first_position
     position = Vector3(state.position[world, q], state.position[world, q + 1], state.position[world, q + 2])
     orientation = Quaternion(
         state.position[world, q + 3],
@@ -22,23 +22,23 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
     )
     poses[world, base] = Transform(position, canonical(orientation))
 
-    for link in range(base + 1, base + model.tree_link_count[tree]):
-        parent_pose = poses[world, model.link_parent[link]]
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        parent_pose = poses[world, model.link[link].parent]
         parent_orientation = wp.transform_get_rotation(parent_pose)
         pivot = wp.transform_get_translation(parent_pose) + wp.quat_rotate(
-            parent_orientation, model.link_pivot_in_parent[link]
+            parent_orientation, model.link[link].pivot_in_parent
         )
-        child_orientation = parent_orientation * model.link_joint_rotation[link]
+        child_orientation = parent_orientation * model.link[link].joint_rotation
         slide = Vector3(0.0, 0.0, 0.0)
 
-        joint_type = model.link_joint_type[link]
-        q = model.link_first_position[link]
+        joint_type = model.link[link].joint_type
+        q = model.link[link].first_position
         if joint_type == REVOLUTE:
             child_orientation = child_orientation * axis_rotation(
-                model.link_unit_axis[link], state.position[world, q]
+                model.link[link].unit_axis, state.position[world, q]
             )
         elif joint_type == PRISMATIC:
-            slide = model.link_axis[link] * state.position[world, q]
+            slide = model.link[link].axis * state.position[world, q]
         elif joint_type == SPHERICAL:
             child_orientation = child_orientation * Quaternion(
                 state.position[world, q],
@@ -50,15 +50,15 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
             # The translations are measured along axes that do not turn with the joint.
             pivot += wp.quat_rotate(
                 child_orientation,
-                model.link_planar_axis1[link] * state.position[world, q + 1]
-                + model.link_planar_axis2[link] * state.position[world, q + 2],
+                model.link[link].planar_axis1 * state.position[world, q + 1]
+                + model.link[link].planar_axis2 * state.position[world, q + 2],
             )
             child_orientation = child_orientation * axis_rotation(
-                model.link_unit_axis[link], state.position[world, q]
+                model.link[link].unit_axis, state.position[world, q]
             )
 
         child_orientation = canonical(child_orientation)
-        offset = wp.quat_rotate(child_orientation, model.link_com_from_pivot[link] + slide)
+        offset = wp.quat_rotate(child_orientation, model.link[link].com_from_pivot + slide)
         poses[world, link] = Transform(pivot + offset, child_orientation)
 
 
@@ -68,57 +68,57 @@ def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world
 
     Linear velocities are those at the tree's reference point, the centre of mass of its base.
     """
-    base = model.tree_first_link[tree]
+    base = model.tree[tree].first_link
     reference = wp.transform_get_translation(poses[world, base])
     zero = Vector3(0.0, 0.0, 0.0)
 
-    if model.tree_fixed[tree] == 0:
-        first = model.tree_first_velocity[tree]
+    if model.tree[tree].fixed == 0:
+        first = model.tree[tree].first_velocity
         for axis in range(3):
             unit = Vector3(0.0, 0.0, 0.0)
             unit[axis] = 1.0
-            scratch.dof_angular[world, first + axis] = unit
-            scratch.dof_linear[world, first + axis] = zero
-            scratch.dof_angular[world, first + 3 + axis] = zero
-            scratch.dof_linear[world, first + 3 + axis] = unit
+            scratch.dof[world, first + axis].angular = unit
+            scratch.dof[world, first + axis].linear = zero
+            scratch.dof[world, first + 3 + axis].angular = zero
+            scratch.dof[world, first + 3 + axis].linear = unit
 
-    for link in range(base, base + model.tree_link_count[tree]):
+    for link in range(base, base + model.tree[tree].link_count):
         pose = poses[world, link]
         rotation = rotation_matrix(wp.transform_get_rotation(pose))
         offset = wp.transform_get_translation(pose) - reference
-        scratch.link_rotation[world, link] = rotation
-        scratch.link_offset[world, link] = offset
+        scratch.link[world, link].rotation = rotation
+        scratch.link[world, link].offset = offset
 
-        joint_type = model.link_joint_type[link]
-        dof = model.link_first_dof[link]
+        joint_type = model.link[link].joint_type
+        dof = model.link[link].first_dof
         if joint_type == REVOLUTE:
-            axis_world = rotation * model.link_axis[link]
-            pivot = offset - rotation * model.link_com_from_pivot[link]
-            scratch.dof_angular[world, dof] = axis_world
-            scratch.dof_linear[world, dof] = wp.cross(pivot, axis_world)
+            axis_world = rotation * model.link[link].axis
+            pivot = offset - rotation * model.link[link].com_from_pivot
+            scratch.dof[world, dof].angular = axis_world
+            scratch.dof[world, dof].linear = wp.cross(pivot, axis_world)
         elif joint_type == PRISMATIC:
-            scratch.dof_angular[world, dof] = zero
-            scratch.dof_linear[world, dof] = rotation * model.link_axis[link]
+            scratch.dof[world, dof].angular = zero
+            scratch.dof[world, dof].linear = rotation * model.link[link].axis
         elif joint_type == SPHERICAL:
-            pivot = offset - rotation * model.link_com_from_pivot[link]
+            pivot = offset - rotation * model.link[link].com_from_pivot
             for axis in range(3):
                 column = Vector3(rotation[0, axis], rotation[1, axis], rotation[2, axis])
-                scratch.dof_angular[world, dof + axis] = column
-                scratch.dof_linear[world, dof + axis] = wp.cross(pivot, column)
+                scratch.dof[world, dof + axis].angular = column
+                scratch.dof[world, dof + axis].linear = wp.cross(pivot, column)
         elif joint_type == PLANAR:
-            axis_world = rotation * model.link_axis[link]
-            scratch.dof_angular[world, dof] = axis_world
-            scratch.dof_linear[world, dof] = wp.cross(offset, axis_world)
-            scratch.dof_angular[world, dof + 1] = zero
-            scratch.dof_linear[world, dof + 1] = rotation * model.link_planar_axis1[link]
-            scratch.dof_angular[world, dof + 2] = zero
-            scratch.dof_linear[world, dof + 2] = rotation * model.link_planar_axis2[link]
+            axis_world = rotation * model.link[link].axis
+            scratch.dof[world, dof].angular = axis_world
+            scratch.dof[world, dof].linear = wp.cross(offset, axis_world)
+            scratch.dof[world, dof + 1].angular = zero
+            scratch.dof[world, dof + 1].linear = rotation * model.link[link].planar_axis1
+            scratch.dof[world, dof + 2].angular = zero
+            scratch.dof[world, dof + 2].linear = rotation * model.link[link].planar_axis2
 
 
 @func
 def base_omega(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Angular velocity of a tree's base [rad/s]."""
-    v = model.tree_first_velocity[tree]
+    v = model.tree[tree].first_velocity
     return Vector3(
         state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
     )
@@ -127,7 +127,7 @@ def base_omega(model: Model, state: State, world: Int32, tree: Int32) -> Vector3
 @func
 def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Velocity of the centre of mass of a tree's base [m/s]."""
-    v = model.tree_first_velocity[tree] + 3
+    v = model.tree[tree].first_velocity + 3
     return Vector3(
         state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
     )
@@ -136,20 +136,20 @@ def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vect
 @func
 def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Velocities of all links of a tree about its reference point, from the joint rates."""
-    base = model.tree_first_link[tree]
-    scratch.link_omega[world, base] = base_omega(model, state, world, tree)
-    scratch.link_velocity[world, base] = base_velocity(model, state, world, tree)
-    for link in range(base + 1, base + model.tree_link_count[tree]):
-        parent = model.link_parent[link]
-        omega = scratch.link_omega[world, parent]
-        velocity = scratch.link_velocity[world, parent]
-        first = model.link_first_dof[link]
-        for dof in range(first, first + model.link_dof_count[link]):
+    base = model.tree[tree].first_link
+    scratch.link[world, base].omega = base_omega(model, state, world, tree)
+    scratch.link[world, base].velocity = base_velocity(model, state, world, tree)
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        parent = model.link[link].parent
+        omega = scratch.link[world, parent].omega
+        velocity = scratch.link[world, parent].velocity
+        first = model.link[link].first_dof
+        for dof in range(first, first + model.link[link].dof_count):
             rate = state.dof_velocity[world, dof]
-            omega += scratch.dof_angular[world, dof] * rate
-            velocity += scratch.dof_linear[world, dof] * rate
-        scratch.link_omega[world, link] = omega
-        scratch.link_velocity[world, link] = velocity
+            omega += scratch.dof[world, dof].angular * rate
+            velocity += scratch.dof[world, dof].linear * rate
+        scratch.link[world, link].omega = omega
+        scratch.link[world, link].velocity = velocity
 
 
 @kernel
@@ -177,12 +177,12 @@ def link_twist_kernel(model: Model, state: State, scratch: Scratch, tree: Int32)
     forward_kinematics(model, state, scratch.link_pose, world, tree)
     motion_subspaces(model, scratch.link_pose, scratch, world, tree)
     link_velocities(model, state, scratch, world, tree)
-    base = model.tree_first_link[tree]
-    for link in range(base, base + model.tree_link_count[tree]):
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
         now = wp.transform_get_rotation(scratch.link_pose[world, link])
         reported = wp.transform_get_rotation(state.link_pose[world, link])
-        omega = scratch.link_omega[world, link]
-        velocity = scratch.link_velocity[world, link] + wp.cross(omega, scratch.link_offset[world, link])
+        omega = scratch.link[world, link].omega
+        velocity = scratch.link[world, link].velocity + wp.cross(omega, scratch.link[world, link].offset)
         velocity = wp.quat_rotate(reported, wp.quat_rotate_inv(now, velocity))
         omega = wp.quat_rotate(reported, wp.quat_rotate_inv(now, omega))
         state.link_twist[world, link] = Vector6(

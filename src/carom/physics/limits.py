@@ -39,18 +39,18 @@ def limit_rows(
     A violation within the split threshold is taken back at the joint's error reduction rate; a
     deeper one only stops growing.
     """
-    link = model.constraint_link[constraint]
-    dof = model.link_first_dof[link]
-    tree = model.constraint_tree[constraint]
-    position = state.position[world, model.link_first_position[link]]
+    link = model.constraint[constraint].link
+    dof = model.link[link].first_dof
+    tree = model.constraint[constraint].tree
+    position = state.position[world, model.link[link].first_position]
     velocity = state.dof_velocity[world, dof]
-    bound = model.constraint_max_impulse[constraint]
+    bound = model.constraint[constraint].max_impulse
     effective_mass = dof_effective_mass(model, scratch, world, tree, dof)
-    below = model.constraint_lower[constraint] - position
+    below = model.constraint[constraint].lower - position
     if below >= 0.0:
         change = limit_change(settings, below) - velocity
         row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, 0.0, bound)
-    above = position - model.constraint_upper[constraint]
+    above = position - model.constraint[constraint].upper
     if above >= 0.0:
         change = -limit_change(settings, above) - velocity
         row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, 0.0)
@@ -92,16 +92,16 @@ def spherical_limit_rows(
     row: Int32,
 ) -> Int32:
     """Add the rows of the swing and twist ranges that a spherical joint has left."""
-    link = model.constraint_link[constraint]
-    first = model.link_first_dof[link]
+    link = model.constraint[constraint].link
+    first = model.link[link].first_dof
     angles = swing_and_twist(joint_quaternion(model, state, world, link))
     ranges = Vector3(
-        model.constraint_lower[constraint],
-        model.constraint_upper[constraint],
-        model.constraint_twist[constraint],
+        model.constraint[constraint].lower,
+        model.constraint[constraint].upper,
+        model.constraint[constraint].twist,
     )
-    bound = model.constraint_max_impulse[constraint]
-    effective_mass = axis_effective_masses(model, scratch, world, model.constraint_tree[constraint], link)
+    bound = model.constraint[constraint].max_impulse
+    effective_mass = axis_effective_masses(model, scratch, world, model.constraint[constraint].tree, link)
     for axis in range(3):
         excess = real(0.0)
         if angles[axis] >= ranges[axis]:

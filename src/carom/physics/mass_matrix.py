@@ -22,22 +22,22 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
 
     Composite rigid body algorithm: each link carries the inertia of its whole subtree.
     """
-    base = model.tree_first_link[tree]
-    count = model.tree_link_count[tree]
-    first = model.tree_first_dof[tree]
-    blocks = (model.tree_dof_count[tree] + 3) // 4
-    matrix = model.tree_first_block[tree]
+    base = model.tree[tree].first_link
+    count = model.tree[tree].link_count
+    first = model.tree[tree].first_dof
+    blocks = (model.tree[tree].dof_count + 3) // 4
+    matrix = model.tree[tree].first_block
 
     for i in range(count):
         link = base + count - 1 - i
-        mass = scratch.link_composite_mass[world, link]
-        moment = scratch.link_composite_first[world, link]
-        inertia = scratch.link_composite_inertia[world, link]
+        mass = scratch.link[world, link].composite_mass
+        moment = scratch.link[world, link].composite_first
+        inertia = scratch.link[world, link].composite_inertia
 
-        first_dof = model.link_first_dof[link]
-        for dof in range(first_dof, first_dof + model.link_dof_count[link]):
-            angular = scratch.dof_angular[world, dof]
-            linear = scratch.dof_linear[world, dof]
+        first_dof = model.link[link].first_dof
+        for dof in range(first_dof, first_dof + model.link[link].dof_count):
+            angular = scratch.dof[world, dof].angular
+            linear = scratch.dof[world, dof].linear
             # Momentum of the subtree for a unit rate of this dof.
             spin = inertia * angular + wp.cross(moment, linear)
             push = mass * linear - wp.cross(moment, angular)
@@ -48,24 +48,24 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
             other = dof
             while other >= 0:
                 scratch.entry_factor[world, 4 * row + other - first] = wp.dot(
-                    scratch.dof_angular[world, other], spin
-                ) + wp.dot(scratch.dof_linear[world, other], push)
-                other = model.dof_parent[other]
+                    scratch.dof[world, other].angular, spin
+                ) + wp.dot(scratch.dof[world, other].linear, push)
+                other = model.dof[other].parent
 
         if link > base:
-            parent = model.link_parent[link]
-            scratch.link_composite_mass[world, parent] += mass
-            scratch.link_composite_first[world, parent] += moment
-            scratch.link_composite_inertia[world, parent] += inertia
+            parent = model.link[link].parent
+            scratch.link[world, parent].composite_mass += mass
+            scratch.link[world, parent].composite_first += moment
+            scratch.link[world, parent].composite_inertia += inertia
 
 
 @func
 def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Turn the joint-space inertia in `block_factor` into L, and its pivots into inverses."""
-    first = model.tree_first_dof[tree]
-    count = model.tree_dof_count[tree]
+    first = model.tree[tree].first_dof
+    count = model.tree[tree].dof_count
     blocks = (count + 3) // 4
-    matrix = model.tree_first_block[tree]
+    matrix = model.tree[tree].first_block
     k = count - 1
     row = matrix + k * blocks
     while k >= 0:
@@ -73,7 +73,7 @@ def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
         inverse = real(0.0)
         if pivot >= LEAST_PIVOT:
             inverse = 1.0 / pivot
-        scratch.dof_inverse_pivot[world, first + k] = inverse
+        scratch.dof[world, first + k].inverse_pivot = inverse
         i = Int32(0)
         target = matrix + 0
         while i < k:
@@ -103,22 +103,22 @@ def subtract_row(scratch: Scratch, world: Int32, target: Int32, row: Int32, last
 @func
 def solve(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Replace the generalized forces in `dof_force` by the accelerations they cause."""
-    first = model.tree_first_dof[tree]
-    count = model.tree_dof_count[tree]
+    first = model.tree[tree].first_dof
+    count = model.tree[tree].dof_count
     blocks = (count + 3) // 4
-    matrix = model.tree_first_block[tree]
+    matrix = model.tree[tree].first_block
     for step in range(count):
         k = count - 1 - step
-        force = scratch.dof_force[world, first + k]
+        force = scratch.dof[world, first + k].force
         row = matrix + k * blocks
         for i in range(k):
-            scratch.dof_force[world, first + i] -= scratch.entry_factor[world, 4 * row + i] * force
+            scratch.dof[world, first + i].force -= scratch.entry_factor[world, 4 * row + i] * force
     for k in range(count):
-        acceleration = scratch.dof_force[world, first + k] * scratch.dof_inverse_pivot[world, first + k]
+        acceleration = scratch.dof[world, first + k].force * scratch.dof[world, first + k].inverse_pivot
         row = matrix + k * blocks
         for i in range(k):
-            acceleration -= scratch.entry_factor[world, 4 * row + i] * scratch.dof_force[world, first + i]
-        scratch.dof_force[world, first + k] = acceleration
+            acceleration -= scratch.entry_factor[world, 4 * row + i] * scratch.dof[world, first + i].force
+        scratch.dof[world, first + k].force = acceleration
 
 
 @func
@@ -128,10 +128,10 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     L A = D⁻¹ L⁻ᵀ is upper triangular, which gives the rows of A one after the other:
     A[i, c] = -Σ L[i, j] A[j, c] over j < i for c < i, and 1 / D[i] more on the diagonal.
     """
-    first = model.tree_first_dof[tree]
-    count = model.tree_dof_count[tree]
+    first = model.tree[tree].first_dof
+    count = model.tree[tree].dof_count
     blocks = (count + 3) // 4
-    matrix = model.tree_first_block[tree]
+    matrix = model.tree[tree].first_block
     i = Int32(0)
     row = matrix + 0
     while i < count:
@@ -153,7 +153,7 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
             j += 1
             source += blocks
         # Column i of the rows above is still to come, so the diagonal is summed on its own.
-        diagonal = scratch.dof_inverse_pivot[world, first + i]
+        diagonal = scratch.dof[world, first + i].inverse_pivot
         j = Int32(0)
         source = matrix + 0
         while j < i:

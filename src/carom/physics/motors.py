@@ -30,21 +30,21 @@ from carom.physics.rows import add_row, axis_effective_masses, dof_effective_mas
 @func
 def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
     """Viscous joint friction as an explicit torque at the rates before the step."""
-    first = model.tree_first_dof[tree]
-    for dof in range(first, first + model.tree_dof_count[tree]):
-        state.dof_torque[world, dof] -= model.dof_damping[dof] * state.dof_velocity[world, dof]
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
+        state.dof_torque[world, dof] -= model.dof[dof].damping * state.dof_velocity[world, dof]
 
 
 @func
 def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
     """Torque of proportional-derivative drives; it adds up over the substeps of one step."""
-    base = model.tree_first_link[tree]
-    for link in range(base + 1, base + model.tree_link_count[tree]):
-        if model.link_dof_count[link] == 1:
-            dof = model.link_first_dof[link]
+    base = model.tree[tree].first_link
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        if model.link[link].dof_count == 1:
+            dof = model.link[link].first_dof
             drive = state.dof_pd[world, dof]
             if drive[PD_MAX_FORCE] > 0.0:
-                position = state.position[world, model.link_first_position[link]]
+                position = state.position[world, model.link[link].first_position]
                 force = drive[PD_KP] * (drive[PD_POSITION] - position) + drive[PD_KD] * (
                     drive[PD_VELOCITY] - state.dof_velocity[world, dof]
                 )
@@ -62,21 +62,21 @@ def motor_row(
     row: Int32,
 ) -> Int32:
     """Add the row of a revolute or prismatic motor; returns the next free row."""
-    link = model.constraint_link[constraint]
-    dof = model.link_first_dof[link]
+    link = model.constraint[constraint].link
+    dof = model.link[link].first_dof
     motor = state.dof_motor[world, dof]
     bound = motor[MOTOR_MAX_IMPULSE]
     if bound == 0.0:
         return row
     velocity = state.dof_velocity[world, dof]
-    position_error = motor[MOTOR_POSITION] - state.position[world, model.link_first_position[link]]
+    position_error = motor[MOTOR_POSITION] - state.position[world, model.link[link].first_position]
     wanted = (
         motor[MOTOR_KP] * position_error / settings.time_step
         + velocity
         + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - velocity)
     )
     wanted = wp.clamp(wanted, -motor[MOTOR_VELOCITY_CLAMP], motor[MOTOR_VELOCITY_CLAMP])
-    effective_mass = dof_effective_mass(model, scratch, world, model.constraint_tree[constraint], dof)
+    effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
     return add_row(
         model, scratch, world, constraint, row, dof, wanted - velocity, effective_mass, -bound, bound
     )
@@ -97,7 +97,7 @@ def euler_xyz(r: Matrix3) -> Vector3:
 @func
 def joint_quaternion(model: Model, state: State, world: Int32, link: Int32) -> Quaternion:
     """Position of a spherical joint."""
-    q = model.link_first_position[link]
+    q = model.link[link].first_position
     return Quaternion(
         state.position[world, q],
         state.position[world, q + 1],
@@ -117,8 +117,8 @@ def spherical_motor_rows(
     row: Int32,
 ) -> Int32:
     """Add the three rows of a spherical motor: kp of the orientation error per step, rate damped."""
-    link = model.constraint_link[constraint]
-    first = model.link_first_dof[link]
+    link = model.constraint[constraint].link
+    first = model.link[link].first_dof
     x = state.dof_motor[world, first]
     y = state.dof_motor[world, first + 1]
     z = state.dof_motor[world, first + 2]
@@ -127,7 +127,7 @@ def spherical_motor_rows(
     target = Quaternion(x[MOTOR_POSITION], y[MOTOR_POSITION], z[MOTOR_POSITION], x[MOTOR_TARGET_W])
     current = joint_quaternion(model, state, world, link)
     error = euler_xyz(rotation_matrix(wp.quat_inverse(target) * current))
-    effective_mass = axis_effective_masses(model, scratch, world, model.constraint_tree[constraint], link)
+    effective_mass = axis_effective_masses(model, scratch, world, model.constraint[constraint].tree, link)
     for axis in range(3):
         motor = state.dof_motor[world, first + axis]
         bound = motor[MOTOR_MAX_IMPULSE]

@@ -17,28 +17,28 @@ OVERFLOW = -1
 @func
 def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Remember the coordinates of a tree at the start of the step."""
-    q = model.tree_first_position[tree]
-    while q < model.tree_first_position[tree] + model.tree_position_count[tree]:
+    q = model.tree[tree].first_position
+    while q < model.tree[tree].first_position + model.tree[tree].position_count:
         scratch.position_start[world, q] = state.position[world, q]
         q += 1
-    dof = model.tree_first_dof[tree]
-    while dof < model.tree_first_dof[tree] + model.tree_dof_count[tree]:
-        scratch.dof_start_velocity[world, dof] = state.dof_velocity[world, dof]
-        scratch.dof_start_torque[world, dof] = state.dof_torque[world, dof]
+    dof = model.tree[tree].first_dof
+    while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
+        scratch.dof[world, dof].start_velocity = state.dof_velocity[world, dof]
+        scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
         dof += 1
 
 
 @func
 def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Put a tree back to where the step started."""
-    q = model.tree_first_position[tree]
-    while q < model.tree_first_position[tree] + model.tree_position_count[tree]:
+    q = model.tree[tree].first_position
+    while q < model.tree[tree].first_position + model.tree[tree].position_count:
         state.position[world, q] = scratch.position_start[world, q]
         q += 1
-    dof = model.tree_first_dof[tree]
-    while dof < model.tree_first_dof[tree] + model.tree_dof_count[tree]:
-        state.dof_velocity[world, dof] = scratch.dof_start_velocity[world, dof]
-        state.dof_torque[world, dof] = scratch.dof_start_torque[world, dof]
+    dof = model.tree[tree].first_dof
+    while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
+        state.dof_velocity[world, dof] = scratch.dof[world, dof].start_velocity
+        state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
         dof += 1
 
 

@@ -28,17 +28,17 @@ def add_row(
     upper: real,
 ) -> Int32:
     """Write a row that wants the rate of `dof` to change by `change`; returns `row + 1`."""
-    tree = model.constraint_tree[constraint]
-    i = dof - model.tree_first_dof[tree]
-    blocks = (model.tree_dof_count[tree] + 3) // 4
+    tree = model.constraint[constraint].tree
+    i = dof - model.tree[tree].first_dof
+    blocks = (model.tree[tree].dof_count + 3) // 4
     inverse_mass = real(0.0)
     if effective_mass > 0.0:
         inverse_mass = 1.0 / effective_mass
-    delta = model.tree_first_delta[tree]
-    response = model.tree_first_block[tree] + i * blocks
-    scratch.row_constraint[world, row] = constraint
-    scratch.row_place[world, row] = Index4(4 * delta + i, response, delta, blocks)
-    scratch.row_terms[world, row] = Vector8(
+    delta = model.tree[tree].first_delta
+    response = model.tree[tree].first_block + i * blocks
+    scratch.row[world, row].constraint = constraint
+    scratch.row[world, row].place = Index4(4 * delta + i, response, delta, blocks)
+    scratch.row[world, row].terms = Vector8(
         change * effective_mass, effective_mass, inverse_mass, lower, upper, 0.0, 0.0, 0.0
     )
     return row + 1
@@ -47,16 +47,16 @@ def add_row(
 @func
 def row_dof(model: Model, scratch: Scratch, world: Int32, row: Int32) -> Int32:
     """The dof a row acts on."""
-    place = scratch.row_place[world, row]
-    tree = model.constraint_tree[scratch.row_constraint[world, row]]
-    return model.tree_first_dof[tree] + place[PLACE_ENTRY] - 4 * place[PLACE_DELTA]
+    place = scratch.row[world, row].place
+    tree = model.constraint[scratch.row[world, row].constraint].tree
+    return model.tree[tree].first_dof + place[PLACE_ENTRY] - 4 * place[PLACE_DELTA]
 
 
 @func
 def inverse_mass_entry(model: Model, scratch: Scratch, world: Int32, tree: Int32, i: Int32, j: Int32) -> real:
     """Entry (i, j) of a tree's inverse mass matrix, in its active dofs."""
-    blocks = (model.tree_dof_count[tree] + 3) // 4
-    return scratch.entry_inverse_mass[world, 4 * (model.tree_first_block[tree] + i * blocks) + j]
+    blocks = (model.tree[tree].dof_count + 3) // 4
+    return scratch.entry_inverse_mass[world, 4 * (model.tree[tree].first_block + i * blocks) + j]
 
 
 @func
@@ -70,7 +70,7 @@ def inverse_or_off(inverse_mass: real) -> real:
 @func
 def dof_effective_mass(model: Model, scratch: Scratch, world: Int32, tree: Int32, dof: Int32) -> real:
     """Effective mass of a row on a single dof."""
-    i = dof - model.tree_first_dof[tree]
+    i = dof - model.tree[tree].first_dof
     return inverse_or_off(inverse_mass_entry(model, scratch, world, tree, i, i))
 
 
@@ -80,19 +80,19 @@ def angular_inverse_mass(
 ) -> real:
     """Angular velocity along `direction` that a unit torque along it gives the link moved by `last_dof`."""
     total = real(0.0)
-    first = model.tree_first_dof[tree]
+    first = model.tree[tree].first_dof
     i = last_dof
     while i >= 0:
-        along_i = wp.dot(direction, scratch.dof_angular[world, i])
+        along_i = wp.dot(direction, scratch.dof[world, i].angular)
         if along_i != 0.0:
             j = last_dof
             while j >= 0:
-                along_j = wp.dot(direction, scratch.dof_angular[world, j])
+                along_j = wp.dot(direction, scratch.dof[world, j].angular)
                 total += (
                     along_i * along_j * inverse_mass_entry(model, scratch, world, tree, i - first, j - first)
                 )
-                j = model.dof_parent[j]
-        i = model.dof_parent[i]
+                j = model.dof[j].parent
+        i = model.dof[i].parent
     return total
 
 
@@ -104,10 +104,10 @@ def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: In
     all the same, only by smaller steps.
     """
     result = Vector3(0.0, 0.0, 0.0)
-    first = model.link_first_dof[link]
+    first = model.link[link].first_dof
     for axis in range(3):
-        direction = scratch.dof_angular[world, first + axis]
+        direction = scratch.dof[world, first + axis].angular
         own = angular_inverse_mass(model, scratch, world, tree, first + 2, direction)
-        parents = angular_inverse_mass(model, scratch, world, tree, model.dof_parent[first], direction)
+        parents = angular_inverse_mass(model, scratch, world, tree, model.dof[first].parent, direction)
         result[axis] = inverse_or_off(own + parents)
     return result

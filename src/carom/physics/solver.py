@@ -55,7 +55,7 @@ def joint_rows(
     constraint = couplings.tree_first_constraint[world, root]
     while constraint >= 0:
         before = row + 0
-        kind = model.constraint_kind[constraint]
+        kind = model.constraint[constraint].kind
         if kind == MOTOR:
             row = motor_row(model, settings, state, scratch, world, constraint, row)
         elif kind == LIMIT:
@@ -65,7 +65,7 @@ def joint_rows(
         elif kind == SPHERICAL_LIMIT:
             row = spherical_limit_rows(model, settings, state, scratch, world, constraint, row)
         else:
-            user = model.constraint_link[constraint]
+            user = model.constraint[constraint].link
             if has_room(model, couplings, place, users.user_tree_a[user], users.user_tree_b[user]):
                 first = place[0]
                 place = add_user_rows(settings, model, state, scratch, users, couplings, world, user, place)
@@ -179,17 +179,17 @@ def keep_coupling_impulses(
         contact = couplings.contact_next[world, contact]
     constraint = couplings.tree_first_constraint[world, root]
     while constraint >= 0:
-        if model.constraint_kind[constraint] == USER:
-            keep_user_impulses(users, couplings, world, model.constraint_link[constraint])
+        if model.constraint[constraint].kind == USER:
+            keep_user_impulses(users, couplings, world, model.constraint[constraint].link)
         constraint = couplings.constraint_next[world, constraint]
 
 
 @func
 def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int32, row: Int32):
     """Report the impulse of a motor's row to the user."""
-    kind = model.constraint_kind[scratch.row_constraint[world, row]]
+    kind = model.constraint[scratch.row[world, row].constraint].kind
     if kind == MOTOR or kind == SPHERICAL_MOTOR:
-        state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row_terms[world, row][
+        state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row[world, row].terms[
             ROW_IMPULSE
         ]
 
@@ -197,19 +197,19 @@ def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int3
 @func
 def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Start the solver from no change of velocity."""
-    first = model.tree_first_delta[tree]
-    for block in range(first, first + (model.tree_dof_count[tree] + 3) // 4):
+    first = model.tree[tree].first_delta
+    for block in range(first, first + (model.tree[tree].dof_count + 3) // 4):
         scratch.delta_velocity[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
 
 
 @func
 def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Add what the solver found to the velocities of a tree."""
-    bound = model.tree_max_velocity[tree]
-    first = model.tree_first_dof[tree]
-    delta = model.tree_first_delta[tree]
+    bound = model.tree[tree].max_velocity
+    first = model.tree[tree].first_dof
+    delta = model.tree[tree].first_delta
     total = real(0.0)
-    for i in range(model.tree_dof_count[tree]):
+    for i in range(model.tree[tree].dof_count):
         velocity = state.dof_velocity[world, first + i] + scratch.entry_delta_velocity[world, 4 * delta + i]
         state.dof_velocity[world, first + i] = wp.clamp(velocity, -bound, bound)
         total += velocity

@@ -41,11 +41,11 @@ def free_motion(
     composite_inertia(model, scratch, world, tree)
     factorise(model, scratch, world, tree)
     solve(model, scratch, world, tree)
-    if model.tree_sensor_count[tree] > 0:
+    if model.tree[tree].sensor_count > 0:
         measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
         clear_constraint_forces(model, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
-    if model.tree_constraint_count[tree] > 0 or couplings.tree_touches[world, tree] != 0:
+    if model.tree[tree].constraint_count > 0 or couplings.tree_touches[world, tree] != 0:
         invert(model, scratch, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
 
@@ -53,11 +53,11 @@ def free_motion(
 @func
 def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
     """Applied forces and torques last for one step."""
-    base = model.tree_first_link[tree]
-    for link in range(base, base + model.tree_link_count[tree]):
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
         state.link_wrench[world, link] = Vector6()
-    first = model.tree_first_dof[tree]
-    for dof in range(first, first + model.tree_dof_count[tree]):
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
         state.dof_torque[world, dof] = 0.0
 
 
@@ -111,7 +111,7 @@ def step_kernel(
             free_motion(model, settings, state, scratch, couplings, world, tree)
         solve_constraints(settings, model, state, scratch, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
-            if model.tree_sensor_count[tree] > 0:
+            if model.tree[tree].sensor_count > 0:
                 constraint_feedback(model, settings, state, scratch, world, tree)
             apply_delta_velocities(model, state, scratch, world, tree)
             integrate_positions(model, state, world, tree, settings.time_step)

@@ -27,8 +27,8 @@ from carom.physics.couplings import relax_coupling, relax_in_circle, relax_withi
 @func
 def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
     """Bring one row to its target as far as its bounds allow; returns the change of its velocity."""
-    terms = scratch.row_terms[world, row]
-    place = scratch.row_place[world, row]
+    terms = scratch.row[world, row].terms
+    place = scratch.row[world, row].place
     before = terms[ROW_IMPULSE]
     # The order of operations keeps the chain from one row to the next short.
     already = scratch.entry_delta_velocity[world, place[PLACE_ENTRY]] * terms[ROW_EFFECTIVE_MASS]
@@ -38,7 +38,7 @@ def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
     if after > terms[ROW_UPPER]:
         after = terms[ROW_UPPER]
     change = after - before
-    scratch.row_terms[world, row][ROW_IMPULSE] = after
+    scratch.row[world, row].terms[ROW_IMPULSE] = after
 
     delta = place[PLACE_DELTA]
     response = place[PLACE_RESPONSE]

@@ -140,9 +140,9 @@ def write_dof_jacobian(
     start: Int32,
 ) -> Vector3:
     """Write a row that is `share` times the rate of a dof; returns inverse mass, velocity, 0."""
-    blocks = (model.tree_dof_count[tree] + 3) // 4
-    column_of_dof = dof - model.tree_first_dof[tree]
-    response = model.tree_first_block[tree] + column_of_dof * blocks
+    blocks = (model.tree[tree].dof_count + 3) // 4
+    column_of_dof = dof - model.tree[tree].first_dof
+    response = model.tree[tree].first_block + column_of_dof * blocks
     for block in range(blocks):
         couplings.jacobian_row[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
         couplings.jacobian_response[world, start + block] = (
@@ -156,7 +156,7 @@ def write_dof_jacobian(
 @func
 def joint_position(model: Model, state: State, world: Int32, link: Int32) -> real:
     """Position of the joint that carries a link."""
-    return state.position[world, model.link_first_position[link]]
+    return state.position[world, model.link[link].first_position]
 
 
 @func
@@ -179,7 +179,7 @@ def add_gear_row(
     auxiliary_rate = real(0.0)
     error = real(0.0)
     if auxiliary >= 0:
-        auxiliary_rate = state.dof_velocity[world, model.link_first_dof[auxiliary]]
+        auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof]
     if users.user_erp[user] != 0.0:
         angle = joint_position(model, state, world, link_a) + ratio * joint_position(
             model, state, world, link_b
@@ -194,12 +194,12 @@ def add_gear_row(
     )
     own = write_dof_jacobian(
         model, state, scratch, couplings, world,
-        users.user_tree_a[user], model.link_first_dof[link_a], 1.0, place[1],
+        users.user_tree_a[user], model.link[link_a].first_dof, 1.0, place[1],
     )  # fmt: skip
     start_b = place[1] + couplings.coupling_place[world, row][1]
     other = write_dof_jacobian(
         model, state, scratch, couplings, world,
-        users.user_tree_b[user], model.link_first_dof[link_b], ratio, start_b,
+        users.user_tree_b[user], model.link[link_b].first_dof, ratio, start_b,
     )  # fmt: skip
     change = auxiliary_rate - (own[1] + other[1]) - error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]
