@@ -80,15 +80,12 @@ MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 
-# Columns of a constraint row's numbers (`Scratch.row_terms`); ROW_SHARE is the impulse that would
-# bring about the whole change of velocity if nothing else pushed.
+# Columns of the numbers of a row over two trees (`Couplings.coupling_terms`); ROW_SHARE is the impulse
+# that would bring about the whole change of velocity if nothing else pushed.
 ROW_SHARE, ROW_EFFECTIVE_MASS, ROW_INVERSE_MASS, ROW_LOWER, ROW_UPPER, ROW_IMPULSE = 0, 1, 2, 3, 4, 5
 ROW_SOFTNESS, ROW_FRICTION = 6, 7
 # Columns of a contact's rows (`Couplings.contact_rows`); -1 where there is none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
-# Columns of its place (`Scratch.row_place`): entry of its dof in the change of velocity, first block
-# of its response to an impulse, first block of the tree's change of velocity, number of blocks.
-PLACE_ENTRY, PLACE_RESPONSE, PLACE_DELTA, PLACE_BLOCKS = 0, 1, 2, 3
 
 # Columns of a contact candidate (`Pairs.candidate_terms`): point on shape b, normal on b, distance.
 CANDIDATE_POINT, CANDIDATE_NORMAL, CANDIDATE_DISTANCE = 0, 3, 6

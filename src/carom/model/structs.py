@@ -13,7 +13,6 @@ floating tree, all but the base's six of a fixed one; `tree_first_dof` is the fi
 import warp as wp
 
 from carom.model.real import (
-    Index4,
     Int32,
     IntRows,
     Matrix3,
@@ -24,7 +23,6 @@ from carom.model.real import (
     Vector3Rows,
     Vector4Rows,
     Vector6Rows,
-    Vector8,
     Vector8Rows,
     real,
 )
@@ -196,11 +194,18 @@ class DofScratch:
 
 @wp.struct
 class RowScratch:
-    """One constraint row over a single tree."""
+    """One constraint row that acts on a single dof."""
 
     constraint: Int32
-    place: Index4  # see the PLACE_ columns in `codes`
-    terms: Vector8  # see the ROW_ columns in `codes`
+    entry: Int32  # of its dof in `entry_delta_velocity`
+    delta: Int32  # first block of its tree in `delta_velocity`
+    response: Int32  # first block of `block_response`
+    blocks: Int32
+    change: real  # of its dof's rate, wanted
+    effective_mass: real
+    lower: real  # bounds of the impulse
+    upper: real
+    impulse: real
 
 
 @wp.struct
@@ -216,6 +221,7 @@ class Scratch:
     # columns, and the `entry_` arrays show the same memory column by column.
     block_factor: Vector4Rows
     block_inverse_mass: Vector4Rows
+    block_response: Vector4Rows  # to the impulse that changes the rate of a row's dof by 1
     delta_velocity: Vector4Rows
     entry_factor: RealRows
     entry_inverse_mass: RealRows

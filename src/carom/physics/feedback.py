@@ -6,7 +6,7 @@ second motion which only the constraint forces drive.
 
 import warp as wp
 
-from carom.model.codes import CONSTRAINT_FEEDBACK, ROW_IMPULSE
+from carom.model.codes import CONSTRAINT_FEEDBACK
 from carom.model.real import Int32, Vector3, Vector6, func
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, parallel_axis
@@ -34,7 +34,7 @@ def gather_constraint_forces(
             link = model.constraint[constraint].link
             parent = model.link[link].parent
             dof = row_dof(model, scratch, world, row)
-            size = scratch.row[world, row].terms[ROW_IMPULSE] / settings.time_step
+            size = scratch.row[world, row].impulse / settings.time_step
             angular = scratch.dof[world, dof].angular
             if wp.dot(angular, angular) > 0.0:
                 scratch.link[world, link].constraint_torque += angular * size

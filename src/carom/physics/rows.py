@@ -6,8 +6,7 @@ bounds, that brings it about. Rows of an island are contiguous, in the order in 
 
 import warp as wp
 
-from carom.model.codes import PLACE_DELTA, PLACE_ENTRY
-from carom.model.real import Index4, Int32, Vector3, Vector8, func, real
+from carom.model.real import Int32, Vector3, func, real
 from carom.model.structs import Model, Scratch
 
 # Rows with less inverse mass than this are switched off (double precision epsilon).
@@ -31,25 +30,30 @@ def add_row(
     tree = model.constraint[constraint].tree
     i = dof - model.tree[tree].first_dof
     blocks = (model.tree[tree].dof_count + 3) // 4
-    inverse_mass = real(0.0)
-    if effective_mass > 0.0:
-        inverse_mass = 1.0 / effective_mass
     delta = model.tree[tree].first_delta
     response = model.tree[tree].first_block + i * blocks
+    if effective_mass == 0.0:
+        change = real(0.0)
     scratch.row[world, row].constraint = constraint
-    scratch.row[world, row].place = Index4(4 * delta + i, response, delta, blocks)
-    scratch.row[world, row].terms = Vector8(
-        change * effective_mass, effective_mass, inverse_mass, lower, upper, 0.0, 0.0, 0.0
-    )
+    scratch.row[world, row].entry = 4 * delta + i
+    scratch.row[world, row].delta = delta
+    scratch.row[world, row].response = response
+    scratch.row[world, row].blocks = blocks
+    scratch.row[world, row].change = change
+    scratch.row[world, row].effective_mass = effective_mass
+    scratch.row[world, row].lower = lower
+    scratch.row[world, row].upper = upper
+    scratch.row[world, row].impulse = real(0.0)
+    for block in range(response, response + blocks):
+        scratch.block_response[world, block] = effective_mass * scratch.block_inverse_mass[world, block]
     return row + 1
 
 
 @func
 def row_dof(model: Model, scratch: Scratch, world: Int32, row: Int32) -> Int32:
     """The dof a row acts on."""
-    place = scratch.row[world, row].place
     tree = model.constraint[scratch.row[world, row].constraint].tree
-    return model.tree[tree].first_dof + place[PLACE_ENTRY] - 4 * place[PLACE_DELTA]
+    return model.tree[tree].first_dof + scratch.row[world, row].entry - 4 * scratch.row[world, row].delta
 
 
 @func

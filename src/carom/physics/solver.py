@@ -9,7 +9,6 @@ import warp as wp
 from carom.model.codes import (
     LIMIT,
     MOTOR,
-    ROW_IMPULSE,
     SPHERICAL_LIMIT,
     SPHERICAL_MOTOR,
     USER,
@@ -189,9 +188,7 @@ def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int3
     """Report the impulse of a motor's row to the user."""
     kind = model.constraint[scratch.row[world, row].constraint].kind
     if kind == MOTOR or kind == SPHERICAL_MOTOR:
-        state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row[world, row].terms[
-            ROW_IMPULSE
-        ]
+        state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row[world, row].impulse
 
 
 @func

@@ -5,49 +5,49 @@ import warp as wp
 from carom.model.codes import (
     LATERAL_ROW,
     NORMAL_ROW,
-    PLACE_BLOCKS,
-    PLACE_DELTA,
-    PLACE_ENTRY,
-    PLACE_RESPONSE,
-    ROW_EFFECTIVE_MASS,
     ROW_FRICTION,
     ROW_IMPULSE,
-    ROW_INVERSE_MASS,
-    ROW_LOWER,
-    ROW_SHARE,
-    ROW_UPPER,
     SPINNING_ROW,
 )
 from carom.model.contact_structs import Couplings
-from carom.model.real import Int32, func, real
+from carom.model.real import Int32, func, real, shared_func
 from carom.model.structs import Scratch, Settings
 from carom.physics.couplings import relax_coupling, relax_in_circle, relax_within
 
 
+@shared_func
+def bounded_change(before: real, after: real, lower: real, upper: real, effective_mass: real) -> real:
+    """Change of rate that is left of a row's when its impulse stops at a bound."""
+    return (wp.clamp(after, lower, upper) - before) / effective_mass
+
+
 @func
 def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
-    """Bring one row to its target as far as its bounds allow; returns the change of its velocity."""
-    terms = scratch.row[world, row].terms
-    place = scratch.row[world, row].place
-    before = terms[ROW_IMPULSE]
-    # The order of operations keeps the chain from one row to the next short.
-    already = scratch.entry_delta_velocity[world, place[PLACE_ENTRY]] * terms[ROW_EFFECTIVE_MASS]
-    after = (before + terms[ROW_SHARE]) - already
-    if after < terms[ROW_LOWER]:
-        after = terms[ROW_LOWER]
-    if after > terms[ROW_UPPER]:
-        after = terms[ROW_UPPER]
-    change = after - before
-    scratch.row[world, row].terms[ROW_IMPULSE] = after
+    """Bring one row to its target as far as its bounds allow; returns the change of its velocity.
 
-    delta = place[PLACE_DELTA]
-    response = place[PLACE_RESPONSE]
-    end = delta + place[PLACE_BLOCKS]
+    From one row to the next only the change of velocity has to be waited for: the impulse is found
+    beside it, and a bound is a branch that is seldom taken.
+    """
+    entry = scratch.row[world, row].entry
+    before = scratch.row[world, row].impulse
+    effective_mass = scratch.row[world, row].effective_mass
+    change = scratch.row[world, row].change - scratch.entry_delta_velocity[world, entry]
+    after = before + change * effective_mass
+    lower = scratch.row[world, row].lower
+    upper = scratch.row[world, row].upper
+    if after < lower or after > upper:
+        change = bounded_change(before, after, lower, upper, effective_mass)
+        after = before + change * effective_mass
+    scratch.row[world, row].impulse = after
+
+    delta = scratch.row[world, row].delta
+    response = scratch.row[world, row].response
+    end = delta + scratch.row[world, row].blocks
     while delta < end:
-        scratch.delta_velocity[world, delta] += change * scratch.block_inverse_mass[world, response]
+        scratch.delta_velocity[world, delta] += change * scratch.block_response[world, response]
         delta += 1
         response += 1
-    return change * terms[ROW_INVERSE_MASS]
+    return change
 
 
 @func
@@ -58,11 +58,14 @@ def joint_sweep(
     residual = real(0.0)
     for _inner in range(settings.inner_iterations):
         residual = real(0.0)
-        for i in range(count):
-            place = i
-            if sweep % 2 == 0:
-                place = count - 1 - i
+        place = Int32(0)
+        stride = Int32(1)
+        if sweep % 2 == 0:
+            place = count - 1
+            stride = Int32(-1)
+        while place >= 0 and place < count:
             row = couplings.visit_row[world, place]
+            place += stride
             change = real(0.0)
             if row >= 0:
                 change = relax_row(scratch, world, row)
