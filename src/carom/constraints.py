@@ -192,8 +192,13 @@ class JointConstraints:
             minlength=tree_count,
         )
         model["tree_batch"][:tree_count] = np.arange(tree_count)
+        model["tree_batch_constraints"][:tree_count] = 0
         for first, length in islands:
-            model["tree_batch"][trees[first : first + length]] = min(trees[first : first + length])
+            batch = trees[first : first + length]
+            root = min(batch)
+            model["tree_batch"][batch] = root
+            model["tree_first_constraint"][root] = first
+            model["tree_batch_constraints"][root] = length
         return grown
 
 

@@ -9,6 +9,7 @@ from carom.collision.collide import collide_kernel
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import WANTED
 from carom.model.launch import Launch
+from carom.physics.coupled_step import coupled_step_kernel
 from carom.physics.kinematics import link_poses_kernel
 from carom.physics.quarantine import OVERFLOW
 from carom.physics.step import step_kernel
@@ -48,8 +49,9 @@ class Detection:
 class Stepper:
     """One step of a world as it is now: its bodies, parameters and arrays.
 
-    Without anything that can touch, a step is one launch whatever the number of substeps. With it,
-    each substep is collision detection and a launch.
+    Without anything that can touch, a step is one launch whatever the number of substeps, and a
+    simpler one if nothing is tied together either. Otherwise each substep is collision detection and
+    a launch.
 
     Args:
         structs: Warp structs by the name kernels give them.
@@ -70,11 +72,12 @@ class Stepper:
         *,
         touching: bool,
     ) -> None:
-        self._launch = launch(step_kernel, structs, device, **{_SUBSTEPS: 1, _BEGINS: 1, _ENDS: 1})
-        self._index = argument_indices(step_kernel)
+        self._coupled = touching or touch.user_count > 0
+        kernel = coupled_step_kernel if self._coupled else step_kernel
+        self._launch = launch(kernel, structs, device, **{_SUBSTEPS: 1, _BEGINS: 1, _ENDS: 1})
+        self._index = argument_indices(kernel)
         self._touch = touch
         self._fault = fault
-        self._touching = touching
         self.detection = Detection(structs, touch, device) if touching else None
         if not touching:
             touch.forget_contacts()
@@ -83,8 +86,7 @@ class Stepper:
     @property
     def single(self) -> Callable[[], None] | None:
         """A step of one substep as one launch, where nothing can fail to fit."""
-        coupled = self._touching or self._touch.user_count > 0
-        return None if coupled or self._substeps > 1 else self._launch.function
+        return None if self._coupled or self._substeps > 1 else self._launch.function
 
     def step(self, substeps: int, done: int = 0) -> int:
         """Perform a step of `substeps` substeps, or the rest of one.

@@ -9,6 +9,7 @@ from carom.model.launch import CompilationNotice
 KERNEL_MODULES = (
     "carom.physics.kinematics",
     "carom.physics.step",
+    "carom.physics.coupled_step",
     "carom.collision.collide",
     "carom.collision.closest",
     "carom.collision.rays",

@@ -10,6 +10,8 @@ come first, angular before linear. *Active* dofs are those that dynamics may cha
 floating tree, all but the base's six of a fixed one; `tree_first_dof` is the first of them.
 """
 
+from typing import TYPE_CHECKING, Any
+
 import warp as wp
 
 from carom.model.real import (
@@ -73,6 +75,8 @@ class TreeModel:
     sensor_count: Int32
     constraint_count: Int32
     batch: Int32  # first tree of those solved together with it for lack of constraints
+    first_constraint: Int32  # of its batch, if it is the first tree of one
+    batch_constraints: Int32  # of its batch, if it is the first tree of one; else 0
     linear_damping: real
     angular_damping: real
     max_velocity: real
@@ -121,6 +125,18 @@ class ConstraintModel:
     max_impulse: real
 
 
+if TYPE_CHECKING:
+    Trees = Any
+    Links = Any
+    Dofs = Any
+    Constraints = Any
+else:
+    Trees = wp.array(dtype=TreeModel)
+    Links = wp.array(dtype=LinkModel)
+    Dofs = wp.array(dtype=DofModel)
+    Constraints = wp.array(dtype=ConstraintModel)
+
+
 @wp.struct
 class Model:
     """Topology and parameters of every body.
@@ -129,10 +145,10 @@ class Model:
     over all trees.
     """
 
-    tree: wp.array(dtype=TreeModel)
-    link: wp.array(dtype=LinkModel)
-    dof: wp.array(dtype=DofModel)
-    constraint: wp.array(dtype=ConstraintModel)
+    tree: Trees
+    link: Links
+    dof: Dofs
+    constraint: Constraints
 
 
 @wp.struct
@@ -208,13 +224,23 @@ class RowScratch:
     impulse: real
 
 
+if TYPE_CHECKING:
+    LinkRows = Any
+    DofRows = Any
+    ConstraintRows = Any
+else:
+    LinkRows = wp.array2d(dtype=LinkScratch)
+    DofRows = wp.array2d(dtype=DofScratch)
+    ConstraintRows = wp.array2d(dtype=RowScratch)
+
+
 @wp.struct
 class Scratch:
     """Intermediate results of one step."""
 
-    link: wp.array2d(dtype=LinkScratch)
+    link: LinkRows
     link_pose: TransformRows  # like `State.link_pose`, for other coordinates
-    dof: wp.array2d(dtype=DofScratch)
+    dof: DofRows
     position_start: RealRows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
@@ -227,7 +253,7 @@ class Scratch:
     entry_inverse_mass: RealRows
     entry_delta_velocity: RealRows
 
-    row: wp.array2d(dtype=RowScratch)
+    row: ConstraintRows
 
 
 @wp.struct

@@ -1,9 +1,8 @@
-"""One step of a world: every stage in order, in one kernel launch."""
+"""One step of worlds whose bodies neither touch nor are tied together, in one kernel launch."""
 
 import warp as wp
 
 from carom.model.codes import FREE_MOTION
-from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Int32, Vector6, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
@@ -13,12 +12,20 @@ from carom.physics.feedback import (
     measure_joint_wrenches,
 )
 from carom.physics.integration import integrate_positions
-from carom.physics.islands import build_islands
+from carom.physics.joint_solver import apply_delta_velocities, clear_delta_velocities, solve_joints
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd, joint_damping
 from carom.physics.quarantine import keep_start, return_to_start
-from carom.physics.solver import apply_delta_velocities, clear_delta_velocities, solve_island
+
+
+@func
+def begin_step(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
+    """Keep the start of the step, and let joint friction act for all of it."""
+    state.fault_tree[world, 0] = 0
+    for tree in range(settings.tree_count):
+        keep_start(model, state, scratch, world, tree)
+        joint_damping(model, state, world, tree)
 
 
 @func
@@ -27,9 +34,9 @@ def free_motion(
     settings: Settings,
     state: State,
     scratch: Scratch,
-    couplings: Couplings,
     world: Int32,
     tree: Int32,
+    touched: Int32,
 ):
     """Velocities after the substep if there were no constraints."""
     explicit_pd(model, state, world, tree)
@@ -45,9 +52,30 @@ def free_motion(
         measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
         clear_constraint_forces(model, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
-    if model.tree[tree].constraint_count > 0 or couplings.tree_touches[world, tree] != 0:
+    if model.tree[tree].constraint_count > 0 or touched != 0:
         invert(model, scratch, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
+
+
+@func
+def constrained_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
+    """Add what the solver found to the velocities, and move on by them."""
+    for tree in range(settings.tree_count):
+        if model.tree[tree].sensor_count > 0:
+            constraint_feedback(model, settings, state, scratch, world, tree)
+        apply_delta_velocities(model, state, scratch, world, tree)
+        integrate_positions(model, state, world, tree, settings.time_step)
+
+
+@func
+def end_step(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, complete: Int32):
+    """Go back to the start if something went wrong; forces last until a step is complete."""
+    fault = state.fault_tree[world, 0]
+    for tree in range(settings.tree_count):
+        if fault != 0:
+            return_to_start(model, state, scratch, world, tree)
+        if fault > 0 or (fault == 0 and complete != 0):
+            clear_forces(model, state, world, tree)
 
 
 @func
@@ -61,64 +89,15 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
         state.dof_torque[world, dof] = 0.0
 
 
-@func
-def solve_constraints(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    shapes: Shapes,
-    contacts: Contacts,
-    users: UserConstraints,
-    couplings: Couplings,
-    world: Int32,
-):
-    """Find the changes of velocity that motors, limits, user constraints and contacts ask for."""
-    for tree in range(settings.tree_count):
-        if state.tree_island[world, tree] == tree:
-            solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
-
-
 @kernel
-def step_kernel(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    shapes: Shapes,
-    contacts: Contacts,
-    users: UserConstraints,
-    couplings: Couplings,
-    substeps: Int32,
-    begins: Int32,
-    ends: Int32,
-):
-    """Advance each world by `substeps` substeps of one step.
-
-    Where bodies can touch, collision detection comes between substeps and each is a launch: then
-    `begins` and `ends` tell the first and the last of a step.
-    """
+def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, substeps: Int32):
+    """Advance each world by one step of `substeps` substeps."""
     world = wp.tid()
-    if begins != 0:
-        state.fault_tree[world, 0] = 0
-        for tree in range(settings.tree_count):
-            keep_start(model, state, scratch, world, tree)
-            joint_damping(model, state, world, tree)
-
+    begin_step(settings, model, state, scratch, world)
     for _substep in range(substeps):
-        build_islands(settings, model, state, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
-            free_motion(model, settings, state, scratch, couplings, world, tree)
-        solve_constraints(settings, model, state, scratch, shapes, contacts, users, couplings, world)
+            free_motion(model, settings, state, scratch, world, tree, 0)
         for tree in range(settings.tree_count):
-            if model.tree[tree].sensor_count > 0:
-                constraint_feedback(model, settings, state, scratch, world, tree)
-            apply_delta_velocities(model, state, scratch, world, tree)
-            integrate_positions(model, state, world, tree, settings.time_step)
-
-    fault = state.fault_tree[world, 0]
-    for tree in range(settings.tree_count):
-        if fault != 0:
-            return_to_start(model, state, scratch, world, tree)
-        if fault > 0 or (fault == 0 and ends != 0):
-            clear_forces(model, state, world, tree)
+            solve_joints(model, settings, state, scratch, world, tree)
+        constrained_motion(settings, model, state, scratch, world)
+    end_step(settings, model, state, scratch, world, 1)

@@ -10,48 +10,14 @@ from carom.model.codes import (
     SPINNING_ROW,
 )
 from carom.model.contact_structs import Couplings
-from carom.model.real import Int32, func, real, shared_func
+from carom.model.real import Int32, func, real
 from carom.model.structs import Scratch, Settings
 from carom.physics.couplings import relax_coupling, relax_in_circle, relax_within
-
-
-@shared_func
-def bounded_change(before: real, after: real, lower: real, upper: real, effective_mass: real) -> real:
-    """Change of rate that is left of a row's when its impulse stops at a bound."""
-    return (wp.clamp(after, lower, upper) - before) / effective_mass
+from carom.physics.joint_solver import relax_row
 
 
 @func
-def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
-    """Bring one row to its target as far as its bounds allow; returns the change of its velocity.
-
-    From one row to the next only the change of velocity has to be waited for: the impulse is found
-    beside it, and a bound is a branch that is seldom taken.
-    """
-    entry = scratch.row[world, row].entry
-    before = scratch.row[world, row].impulse
-    effective_mass = scratch.row[world, row].effective_mass
-    change = scratch.row[world, row].change - scratch.entry_delta_velocity[world, entry]
-    after = before + change * effective_mass
-    lower = scratch.row[world, row].lower
-    upper = scratch.row[world, row].upper
-    if after < lower or after > upper:
-        change = bounded_change(before, after, lower, upper, effective_mass)
-        after = before + change * effective_mass
-    scratch.row[world, row].impulse = after
-
-    delta = scratch.row[world, row].delta
-    response = scratch.row[world, row].response
-    end = delta + scratch.row[world, row].blocks
-    while delta < end:
-        scratch.delta_velocity[world, delta] += change * scratch.block_response[world, response]
-        delta += 1
-        response += 1
-    return change
-
-
-@func
-def joint_sweep(
+def visit_sweep(
     settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, count: Int32, sweep: Int32
 ) -> real:
     """Relax motors, limits and user constraints once; returns the greatest change squared."""

@@ -1,0 +1,43 @@
+"""One step of worlds whose bodies touch or are tied together."""
+
+import warp as wp
+
+from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
+from carom.model.real import Int32, kernel
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.islands import build_islands
+from carom.physics.solver import solve_island
+from carom.physics.step import begin_step, constrained_motion, end_step, free_motion
+
+
+@kernel
+def coupled_step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    substeps: Int32,
+    begins: Int32,
+    ends: Int32,
+):
+    """Advance each world by `substeps` substeps of one step.
+
+    Where bodies can touch, collision detection comes between substeps and each is a launch: then
+    `begins` and `ends` tell the first and the last of a step.
+    """
+    world = wp.tid()
+    if begins != 0:
+        begin_step(settings, model, state, scratch, world)
+    for _substep in range(substeps):
+        build_islands(settings, model, state, shapes, contacts, users, couplings, world)
+        for tree in range(settings.tree_count):
+            free_motion(model, settings, state, scratch, world, tree, couplings.tree_touches[world, tree])
+        for tree in range(settings.tree_count):
+            if state.tree_island[world, tree] == tree:
+                solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
+        constrained_motion(settings, model, state, scratch, world)
+    end_step(settings, model, state, scratch, world, ends)
