@@ -2,34 +2,84 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import warp as wp
 
 from carom.model.launch import CompilationNotice
+from carom.model.warp_start import start_warp
 
+# Those that take longest to compile come first, so that processes that share them out end together.
 KERNEL_MODULES = (
-    "carom.physics.kinematics",
-    "carom.physics.step",
     "carom.physics.coupled_step",
     "carom.collision.collide",
+    "carom.physics.step",
+    "carom.algorithms.reach.search",
     "carom.collision.closest",
+    "carom.physics.kinematics",
     "carom.collision.rays",
     "carom.algorithms.kernels",
-    "carom.algorithms.reach.search",
     "carom.render.kernels.draw",
 )
+
+# A launch on CPU uses blocks of one thread, and a module is compiled for its block size.
+_CPU_BLOCK_SIZE = 1
 
 
 def warmup(device: str = "cpu") -> None:
     """Compile, or load from the cache, the kernels of every module that has some.
 
+    Modules for the CPU are compiled in as many processes as there are cores.
+
     Args:
         device: Warp device name.
     """
-    import warp as wp
-
-    modules = [wp.get_module(import_module(name).__name__) for name in KERNEL_MODULES]
+    start_warp()
     target = wp.get_device(device)
-    # A launch on CPU uses blocks of one thread, and a module is compiled for its block size.
-    block_size = 1 if target.is_cpu else None
     with CompilationNotice():
-        wp.force_load(target, modules, block_size)
+        if target.is_cpu:
+            _build_side_by_side([name for name in KERNEL_MODULES if not _is_built(_warp_module(name))])
+        modules = [_warp_module(name) for name in KERNEL_MODULES]
+        wp.force_load(target, modules, _CPU_BLOCK_SIZE if target.is_cpu else None)
+
+
+def build(name: str) -> None:
+    """Compile the kernels of one module for the CPU, into the cache."""
+    start_warp()
+    wp.force_load(wp.get_device("cpu"), [_warp_module(name)], _CPU_BLOCK_SIZE)
+
+
+def _warp_module(name: str) -> Any:
+    return wp.get_module(import_module(name).__name__)
+
+
+def _is_built(module: Any) -> bool:
+    return (Path(wp.config.kernel_cache_dir) / module.get_module_identifier(_CPU_BLOCK_SIZE)).is_dir()
+
+
+def _build_side_by_side(names: Sequence[str]) -> None:
+    """Compile modules in processes of their own: within one, Warp compiles them one after the other."""
+    workers = min(os.cpu_count() or 1, len(names))
+    if workers > 1 and sys.executable:
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(_build_elsewhere, names))
+
+
+def _build_elsewhere(name: str) -> None:
+    """Compile a module in another process. Should that fail, this process will do it and tell why."""
+    subprocess.run(
+        [sys.executable, "-c", "import sys; from carom.warmup import build; build(sys.argv[1])", name],
+        # Warp adds its version to the path it is given.
+        env={**os.environ, "WARP_CACHE_PATH": str(Path(wp.config.kernel_cache_dir).parent)},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        check=False,
+    )
