@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, overload
 
+from carom.description import Pose
 from pybullet._arguments import Vector, integer, real, rotation, text, vector3
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._errors import fail, logger
+from pybullet._new_bodies import add_bodies
 
 __all__ = [
     "loadURDF",
@@ -111,9 +113,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         spec = assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
     except CaromError as problem:
         fail(_CANNOT_LOAD, str(problem))
-    with client.lock:
-        client.bodies.clear()
-        return client.world.load(spec, position, orientation).id
+    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD)[0]
 
 
 _DEFAULTS = {

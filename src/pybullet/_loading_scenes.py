@@ -17,6 +17,7 @@ from pybullet._constants import (
     URDF_USE_IMPLICIT_CYLINDER,
 )
 from pybullet._errors import fail, logger
+from pybullet._new_bodies import add_bodies
 
 if TYPE_CHECKING:
     from carom.formats.placed import PlacedRobot
@@ -147,9 +148,6 @@ def _load(
         specs = [build(robot) for robot in placed]
     except CaromError as error:
         fail(problem, str(error))
-    with client.lock:
-        client.bodies.clear()
-        return tuple(
-            client.world.load(spec, robot.pose.position, robot.pose.orientation).id
-            for spec, robot in zip(specs, placed, strict=True)
-        )
+    return add_bodies(
+        client, [(spec, robot.pose) for spec, robot in zip(specs, placed, strict=True)], problem
+    )

@@ -13,6 +13,7 @@ from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
 from pybullet._errors import fail, logger
+from pybullet._new_bodies import add_bodies
 from pybullet._shape_registry import ShapeTable
 
 if TYPE_CHECKING:
@@ -130,9 +131,7 @@ def createMultiBody(
             "createMultiBody: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates."
         )
     spec = _assembled(Robot("", tuple(links), tuple(_joints(lists))), max(bits, 0))
-    with client.lock:
-        client.bodies.clear()
-        ids = tuple(client.world.load(spec, place, orientation).id for place in batch or [position])
+    ids = add_bodies(client, [(spec, Pose(place, orientation)) for place in batch or [position]], _FAILED)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
         shape = client.shapes.collisions.get(number)
         if shape is not None:

@@ -89,6 +89,32 @@ def test_scaling_of_nothing_or_less_is_none(client: int, arm_path: str) -> None:
     assert heights == pytest.approx([0.05, 0.05, 0.05, 0.1])
 
 
+@pytest.mark.parametrize("concave", [False, True])
+def test_a_broken_mesh_loads_nothing(client: int, tmp_path: Path, concave: bool) -> None:
+    # Without a mass nobody asks for the inertia of the mesh. What is concave needs triangles with an area.
+    line = "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n" if concave else "v 0 0 0\nf 1 2 3\n"
+    (tmp_path / "broken.obj").write_text(line)
+    urdf, sdf = tmp_path / "floor.urdf", tmp_path / "floors.sdf"
+    attribute = 'concave="yes"' if concave else ""
+    urdf.write_text(
+        '<robot name="floor"><link name="floor"><inertial><mass value="0"/>'
+        '<inertia ixx="0" iyy="0" izz="0"/></inertial>'
+        f'<collision {attribute}><geometry><mesh filename="broken.obj"/></geometry></collision>'
+        "</link></robot>"
+    )
+    link = (
+        '<link name="a"><inertial><mass>0</mass><inertia><ixx>0</ixx><iyy>0</iyy><izz>0</izz></inertia>'
+        f'</inertial><collision name="c" {attribute}><geometry>{{}}</geometry></collision></link>'
+    )
+    shapes = ("<sphere><radius>1</radius></sphere>", "<mesh><uri>broken.obj</uri></mesh>")
+    models = "".join(f'<model name="{shape[1]}">{link.format(shape)}</model>' for shape in shapes)
+    sdf.write_text(f"<sdf><world>{models}</world></sdf>")
+    for load, file, text in ((p.loadURDF, urdf, "URDF"), (p.loadSDF, sdf, "SDF")):
+        with pytest.raises(p.error, match=f"Cannot load {text} file."):
+            load(str(file))
+        assert p.getNumBodies() == 0
+
+
 def test_ids_of_removed_bodies_are_given_again(client: int, arm_path: str) -> None:
     assert [p.loadURDF(arm_path) for _ in range(4)] == [0, 1, 2, 3]
     p.removeBody(1)

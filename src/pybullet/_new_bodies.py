@@ -1,0 +1,51 @@
+"""Bodies that come into the world of a client: all of a call, or none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from pybullet._clients import Client
+from pybullet._errors import fail
+
+if TYPE_CHECKING:
+    from carom.description.pose import Pose
+    from carom.model.body_spec import BodySpec
+
+
+def add_bodies(client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str) -> tuple[int, ...]:
+    """Brings bodies into a world.
+
+    Args:
+        client: Whose world.
+        bodies: What they are, and the pose of the link frame of their base.
+        problem: PyBullet's text when one cannot be made.
+
+    Returns:
+        Their ids.
+
+    Raises:
+        pybullet.error: The file of a mesh cannot be used; the world is as before.
+    """
+    from carom.errors import CaromError
+
+    try:
+        if len(bodies) > 1:
+            _make_shapes([spec for spec, _ in bodies])
+        with client.lock:
+            client.bodies.clear()
+            return tuple(client.world.load(spec, pose.position, pose.orientation).id for spec, pose in bodies)
+    except CaromError as reason:
+        fail(problem, str(reason))
+
+
+def _make_shapes(specs: Sequence[BodySpec]) -> None:
+    """Makes what collision detection needs, and keeps for later, so that what is wrong comes out now."""
+    from carom.model.flags import LoadFlags
+    from carom.model.shape_pieces import shape_pieces
+
+    for spec in specs:
+        implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        for link in (spec.base, *spec.links):
+            for collision in link.collisions:
+                shape_pieces(collision.geometry, implicit_cylinder=implicit)
