@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from carom.description.pose import Quaternion, Vector3
 from pybullet._arguments import Vector, integer, rotation, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_FIXED, JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail, logger
-from pybullet._lookup import body_access, no_body
+from pybullet._lookup import body_access, body_of, no_body
 
 __all__ = [
     "computeDofCount",
@@ -22,8 +23,6 @@ __all__ = [
     "resetBaseVelocity",
 ]
 
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
 
 _HAS_SPHERICAL, _HAS_PLANAR = -1, -2
 
@@ -77,9 +76,7 @@ def getBodyInfo(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[bytes, byt
     Raises:
         pybullet.error: Not connected, or there is no such body.
     """
-    body = client_of(physicsClientId).body(bodyUniqueId)
-    if body is None:
-        fail("Couldn't get body info", no_body(bodyUniqueId))
+    body = body_of(client_of(physicsClientId), bodyUniqueId, "Couldn't get body info")
     return body.spec.base.name.encode(), body.spec.name.encode()
 
 

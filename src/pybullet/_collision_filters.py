@@ -7,12 +7,9 @@ from typing import Any
 from pybullet._arguments import integer
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
-from pybullet._errors import logger
-from pybullet._lookup import no_body, no_joint
+from pybullet._lookup import link_or_warning
 
 __all__ = ["setCollisionFilterGroupMask", "setCollisionFilterPair"]
-
-_BASE = -1
 
 
 @exported
@@ -84,12 +81,5 @@ def setCollisionFilterGroupMask(
 
 def _row(client: Client, body_id: Any, link_index: Any, function: str) -> int | None:
     """Row of a link; None, with a warning, if it does not exist."""
-    number, link = integer(body_id, "bodyUniqueId"), integer(link_index, "linkIndex")
-    body = client.world.bodies.get(number)
-    if body is None:
-        logger.warning("%s: %s", function, no_body(number))
-        return None
-    if not _BASE <= link < body.joint_count:
-        logger.warning("%s: %s", function, no_joint(body, link))
-        return None
-    return body.first_link + 1 + link
+    found = link_or_warning(client, body_id, link_index, function)
+    return None if found is None else found[0].first_link + 1 + found[1]

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose
-from pybullet._arguments import Vector, integer, real, vector3, vector4
+from pybullet._arguments import Vector, integer, real, rotation, vector3
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_GEAR, JOINT_POINT2POINT, JOINT_PRISMATIC
 from pybullet._errors import fail, logger
 from pybullet._lookup import no_body
+from pybullet._rotations import unit
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -29,6 +30,7 @@ __all__ = [
 _WORLD = -1
 _KINDS = (JOINT_PRISMATIC, JOINT_FIXED, JOINT_POINT2POINT, JOINT_GEAR)
 _FAILED = "createConstraint failed."
+_CHANGE_FAILED = "changeConstraint failed."
 _UNCHANGED_TARGET = 1e32
 
 Numbers = tuple[float, ...]
@@ -142,12 +144,14 @@ def changeConstraint(
     target = real(relativePositionTarget, "relativePositionTarget")
     pivot = orientation = None
     if jointChildPivot is not None:
-        pivot = vector3(jointChildPivot, "changeConstraint failed.", "jointChildPivot")
+        pivot = vector3(jointChildPivot, _CHANGE_FAILED, "jointChildPivot")
     if jointChildFrameOrientation is not None:
-        orientation = _quaternion(jointChildFrameOrientation, "jointChildFrameOrientation")
+        orientation = unit(rotation(jointChildFrameOrientation, _CHANGE_FAILED, "jointChildFrameOrientation"))
     if constraint is None:
         logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
         return
+    if auxiliary >= 0:
+        constraint.gear_auxiliary_link = _link(constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED)
     if pivot is not None or orientation is not None:
         old = constraint.child_frame
         constraint.child_frame = Pose(pivot or old.position, orientation or old.orientation)
@@ -156,8 +160,6 @@ def changeConstraint(
         constraint.max_impulse = force * client.world.parameters.substep_time
     if ratio != 0.0:
         constraint.gear_ratio = ratio
-    if auxiliary >= 0:
-        constraint.gear_auxiliary_link = _link(constraint.parent, auxiliary, "gearAuxLink")
     if target < _UNCHANGED_TARGET:
         constraint.relative_position_target = target
     if share >= 0.0:
@@ -282,10 +284,10 @@ def _body(client: Client, number: int, name: str) -> Body:
     return body
 
 
-def _link(body: Body, number: int, name: str) -> int:
+def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
     link = integer(number, name)
     if not -1 <= link < body.joint_count:
-        fail(_FAILED, f"{name} is {link}, but body {body.id} ({body.name}) has {body.joint_count} links.")
+        fail(problem, f"{name} is {link}, but body {body.id} ({body.name}) has {body.joint_count} links.")
     return link
 
 
@@ -300,12 +302,4 @@ def _frame(position: Vector, orientation: Vector | None, name: str) -> Pose:
     origin = vector3(position, _FAILED, f"{name}Position")
     if orientation is None:
         return Pose(origin, IDENTITY.orientation)
-    return Pose(origin, _quaternion(orientation, f"{name}Orientation"))
-
-
-def _quaternion(values: Vector, name: str) -> tuple[float, float, float, float]:
-    x, y, z, w = vector4(values, _FAILED, name)
-    length = (x * x + y * y + z * z + w * w) ** 0.5
-    if length == 0.0:
-        fail(_FAILED, f"{name} is a quaternion of length 0.")
-    return (x / length, y / length, z / length, w / length)
+    return Pose(origin, unit(rotation(orientation, _FAILED, f"{name}Orientation")))

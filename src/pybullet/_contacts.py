@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from carom.description.pose import Vector3
 from pybullet._arguments import integer
 from pybullet._builtin import exported
 from pybullet._clients import client_of
@@ -22,7 +23,6 @@ _ANY_BODY = -1
 _BASE = -1
 _ANY_LINK = -2
 
-Vector3 = tuple[float, float, float]
 ContactPoint = tuple[
     int, int, int, int, int, Vector3, Vector3, Vector3, float, float, float, Vector3, float, Vector3
 ]

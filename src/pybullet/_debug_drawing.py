@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from carom.description.pose import Vector3
 from pybullet._arguments import Vector, integer, real, rotation, sequence, text, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
@@ -19,7 +20,6 @@ __all__ = [
     "setDebugObjectColor",
 ]
 
-Vector3 = tuple[float, float, float]
 
 _WHITE = (1.0, 1.0, 1.0)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.description.pose import Quaternion, Vector3
 from pybullet._arguments import Vector, integer, real, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._errors import fail, logger
-from pybullet._lookup import body_access, no_body, no_joint
+from pybullet._lookup import BASE, body_access, link_or_warning, no_joint
 
 __all__ = [
     "changeDynamics",
@@ -16,13 +17,10 @@ __all__ = [
     "getDynamicsInfo",
 ]
 
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
 DynamicsInfo = tuple[
     float, float, Vector3, Vector3, Quaternion, float, float, float, float, float, int, float
 ]
 
-_BASE = -1
 _MULTI_BODY = 2
 
 
@@ -49,7 +47,7 @@ def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0)
         bodyUniqueId, physicsClientId, problem, "getDynamicsInfo failed; invalid bodyUniqueId"
     )
     body, link = access.body, integer(linkIndex, "linkIndex")
-    if link < _BASE:
+    if link < BASE:
         fail("getDynamicsInfo failed; invalid linkIndex", f"{link} is less than -1, the base.")
     if link >= body.joint_count:
         fail(problem, no_joint(body, link))
@@ -143,7 +141,6 @@ def changeDynamics(
             finite or not three numbers.
     """
     client = client_of(physicsClientId)
-    body = client.body(bodyUniqueId)
     named_link = integer(linkIndex, "linkIndex")
     stiffness, damping = real(contactStiffness, "contactStiffness"), real(contactDamping, "contactDamping")
     if (stiffness >= 0.0) != (damping >= 0.0):
@@ -179,22 +176,20 @@ def changeDynamics(
     changes.of_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
     changes.of_body("collision_margin", real(collisionMargin, "collisionMargin"))
 
-    link = changes.link
-    if body is None:
-        logger.warning("changeDynamics: %s", no_body(bodyUniqueId))
-    elif not _BASE <= link < body.joint_count:
-        logger.warning("changeDynamics: %s", no_joint(body, link))
-    else:
-        if link != named_link and changes.misdirected:
-            logger.warning(
-                "changeDynamics: %s go to the base, not to link %d, because the call also changes the whole "
-                "body. Make two calls.",
-                ", ".join(changes.misdirected),
-                named_link,
-            )
-        with client.lock:
-            body.change_dynamics(link, **changes.values)
-            client.bodies.pop(body.id, None)
+    found = link_or_warning(client, bodyUniqueId, changes.link, "changeDynamics")
+    if found is None:
+        return
+    body, link = found
+    if link != named_link and changes.misdirected:
+        logger.warning(
+            "changeDynamics: %s go to the base, not to link %d, because the call also changes the whole "
+            "body. Make two calls.",
+            ", ".join(changes.misdirected),
+            named_link,
+        )
+    with client.lock:
+        body.change_dynamics(link, **changes.values)
+        client.bodies.pop(body.id, None)
 
 
 @exported
@@ -253,7 +248,7 @@ class _Changes:
         """Takes a value for the whole body, unless it is negative."""
         if value >= 0:
             self.values[name] = value
-            self.link = _BASE
+            self.link = BASE
 
 
 def _optional_vector(values: Vector | None, name: str) -> Vector3 | None:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Heightfield, Visual
+from carom.description.pose import Vector3
 from pybullet._arguments import sequence
 from pybullet._errors import fail
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
     from pybullet._clients import Client
 
-Vector3 = tuple[float, float, float]
 
 _WRONG_SIZE = "Size of heightfieldData doesn't match numHeightfieldColumns*numHeightfieldRows"
 

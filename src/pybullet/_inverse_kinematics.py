@@ -13,7 +13,7 @@ from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._constants import IK_DLS, IK_SDLS, JOINT_SPHERICAL
 from pybullet._errors import fail, logger
-from pybullet._lookup import no_body
+from pybullet._lookup import body_of
 from pybullet._maths import getEulerFromQuaternion
 
 if TYPE_CHECKING:
@@ -139,10 +139,7 @@ def calculateInverseKinematics(
     client = client_of(physicsClientId)
     position = vector3(targetPosition, _NO_POSITION, "targetPosition")
     orientation = _orientation(targetOrientation)
-    number = integer(bodyIndex if bodyUniqueId is None else bodyUniqueId, "bodyUniqueId")
-    body = client.body(number)
-    if body is None:
-        fail(_PROBLEM, no_body(number))
+    body = body_of(client, bodyIndex if bodyUniqueId is None else bodyUniqueId, _PROBLEM)
     options = _options(
         body,
         (lowerLimits, upperLimits, jointRanges, restPoses),
@@ -213,9 +210,7 @@ def calculateInverseKinematics2(
     if len(links) < len(positions):
         fail(_PROBLEM, f"There are {len(links)} links and {len(positions)} positions for them.")
     links = links[: len(positions)]
-    body = client.body(bodyUniqueId)
-    if body is None:
-        fail(_PROBLEM, no_body(bodyUniqueId))
+    body = body_of(client, bodyUniqueId, _PROBLEM)
     options = _options(
         body,
         (lowerLimits, upperLimits, jointRanges, restPoses),

@@ -9,8 +9,8 @@ from carom.description import Pose
 from pybullet._arguments import Vector, integer, real, rotation, text, vector3
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
-from pybullet._errors import fail, logger
-from pybullet._new_bodies import add_bodies
+from pybullet._errors import fail
+from pybullet._new_bodies import add_bodies, warn_of_coordinates
 
 __all__ = [
     "loadURDF",
@@ -98,8 +98,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     client = client_of(options["physicsClientId"])
     if not name:
         fail("Empty filename, method expects 1, 4 or 8 arguments.")
-    if maximal > 0:
-        logger.warning("loadURDF: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.")
+    warn_of_coordinates("loadURDF", maximal)
 
     from carom.errors import CaromError
     from carom.formats.search import AssetSearch

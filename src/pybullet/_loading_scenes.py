@@ -17,7 +17,7 @@ from pybullet._constants import (
     URDF_USE_IMPLICIT_CYLINDER,
 )
 from pybullet._errors import fail, logger
-from pybullet._new_bodies import add_bodies
+from pybullet._new_bodies import add_bodies, warn_of_coordinates
 
 if TYPE_CHECKING:
     from carom.formats.placed import PlacedRobot
@@ -62,8 +62,7 @@ def loadSDF(
     maximal = integer(useMaximalCoordinates, "useMaximalCoordinates")
     scaling = real(globalScaling, "globalScaling")
     client = client_of(physicsClientId)
-    if maximal > 0:
-        logger.warning("loadSDF: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.")
+    warn_of_coordinates("loadSDF", maximal)
 
     def read(search: AssetSearch) -> list[PlacedRobot]:
         from carom.formats.sdf import read_sdf

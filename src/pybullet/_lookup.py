@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from pybullet._arguments import integer
-from pybullet._clients import client_of
-from pybullet._errors import fail
+from pybullet._clients import Client, client_of
+from pybullet._errors import fail, logger
 
 if TYPE_CHECKING:
     from carom.body import Body
     from pybullet._body_access import BodyAccess
     from pybullet._joint_access import JointAccess
+
+BASE = -1
+"""Index of the base among the links."""
 
 OUT_OF_RANGE = "Joint index out-of-range."
 
@@ -24,6 +27,46 @@ def no_body(body_id: int) -> str:
 def no_joint(body: Body, index: int) -> str:
     """Says that a body has no joint of an index."""
     return f"Body {body.id} ({body.spec.name}) has {body.joint_count} joints, so there is no joint {index}."
+
+
+def body_of(client: Client, body_id: Any, problem: str) -> Body:
+    """A body.
+
+    Args:
+        client: The connection.
+        body_id: The body.
+        problem: PyBullet's text when there is no such body.
+
+    Raises:
+        pybullet.error: There is none.
+        TypeError: The id is not an integer.
+    """
+    body = client.body(body_id)
+    if body is None:
+        fail(problem, no_body(body_id))
+    return body
+
+
+def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str) -> tuple[Body, int] | None:
+    """A body and the index of a link of it; None, with a warning, if there is no such body or link.
+
+    Args:
+        client: The connection.
+        body_id: The body.
+        link_index: The link, from 0; -1 for the base.
+        function: Name of the function that needs them.
+
+    Raises:
+        TypeError: One is not an integer.
+    """
+    body, link = client.body(body_id), integer(link_index, "linkIndex")
+    if body is None:
+        logger.warning("%s: %s", function, no_body(body_id))
+        return None
+    if not BASE <= link < body.joint_count:
+        logger.warning("%s: %s", function, no_joint(body, link))
+        return None
+    return body, link
 
 
 def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: str = "") -> BodyAccess:

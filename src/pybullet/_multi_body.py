@@ -13,7 +13,7 @@ from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
 from pybullet._errors import fail, logger
-from pybullet._new_bodies import add_bodies
+from pybullet._new_bodies import add_bodies, warn_of_coordinates
 from pybullet._shape_registry import ShapeTable
 
 if TYPE_CHECKING:
@@ -126,10 +126,7 @@ def createMultiBody(
         client, 0, _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
     )
     links = [base, *_links(client, lists)]
-    if maximal > 0:
-        logger.warning(
-            "createMultiBody: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates."
-        )
+    warn_of_coordinates("createMultiBody", maximal)
     spec = _assembled(Robot("", tuple(links), tuple(_joints(lists))), max(bits, 0))
     ids = add_bodies(client, [(spec, Pose(place, orientation)) for place in batch or [position]], _FAILED)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):

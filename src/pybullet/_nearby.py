@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
+from carom.description.pose import Vector3
 from pybullet._arguments import bound, integer, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
-from pybullet._contacts import ContactPoint, Vector3
+from pybullet._contacts import ContactPoint
 from pybullet._errors import fail
 from pybullet._link_rows import Place, places
 

@@ -6,11 +6,19 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from pybullet._clients import Client
-from pybullet._errors import fail
+from pybullet._errors import fail, logger
 
 if TYPE_CHECKING:
     from carom.description.pose import Pose
     from carom.model.body_spec import BodySpec
+
+
+def warn_of_coordinates(function: str, use_maximal: int) -> None:
+    """Logs that maximal coordinates, where they are asked for, are not what the bodies have."""
+    if use_maximal > 0:
+        logger.warning(
+            "%s: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.", function
+        )
 
 
 def add_bodies(client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from carom.description.pose import Pose
+from carom.description.pose import Pose, Vector3
 from carom.description.transform import rotation_matrix
 from pybullet._arguments import integer, real, sequence, vector3
 from pybullet._builtin import exported
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["rayTest", "rayTestBatch"]
 
-Vector3 = tuple[float, float, float]
 RayHit = tuple[int, int, float, Vector3, Vector3]
 
 _MISS: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Pose, Sphere
-from carom.description.pose import IDENTITY
+from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
 from pybullet._arguments import real, rotation, sequence, vector3
 from pybullet._constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
     from pybullet._clients import Client
 
-Vector3 = tuple[float, float, float]
 
 PRIMITIVES = (GEOM_SPHERE, GEOM_BOX, GEOM_CYLINDER, GEOM_PLANE, GEOM_CAPSULE)
 

@@ -17,6 +17,7 @@ from carom.description import (
     Sphere,
     TriangleMesh,
 )
+from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix
 from pybullet._arguments import integer
 from pybullet._builtin import exported
@@ -32,18 +33,15 @@ from pybullet._constants import (
     VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS,
 )
 from pybullet._errors import fail
-from pybullet._lookup import no_body, no_joint
+from pybullet._lookup import BASE, body_of, no_body, no_joint
 
 if TYPE_CHECKING:
     from carom.body import Body
 
 __all__ = ["getAABB", "getCollisionShapeData", "getMeshData", "getVisualShapeData"]
 
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
 CollisionData = tuple[int, int, int, Vector3, bytes, Vector3, Quaternion]
 
-_BASE = -1
 _NO_COLLISION_DATA = "Error receiving collision shape info"
 _NO_AABB = "getAABB failed."
 _NO_MESH = "getMeshData failed"
@@ -123,7 +121,7 @@ def getVisualShapeData(
     with client.lock:
         appearance = appearance_of(client.world)
         appearance.number_textures(client.world)
-        for link in range(_BASE, body.joint_count):
+        for link in range(BASE, body.joint_count):
             for look in appearance.shapes(body, link):
                 described = _visual_geometry(client, look.geometry)
                 frame = look.frame
@@ -187,7 +185,7 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
     client = client_of(physicsClientId)
     if integer(bodyUniqueId, "bodyUniqueId") < 0:
         fail("getAABB failed; invalid bodyUniqueId", no_body(bodyUniqueId))
-    if integer(linkIndex, "linkIndex") < _BASE:
+    if integer(linkIndex, "linkIndex") < BASE:
         fail("getAABB failed; invalid linkIndex", f"{linkIndex} is less than -1, the base.")
     body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_AABB)
 
@@ -207,11 +205,8 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
 
 
 def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) -> tuple[Body, int]:
-    number, link = integer(body_id, "bodyUniqueId"), integer(link_index, "linkIndex")
-    body = client.world.bodies.get(number)
-    if body is None:
-        fail(problem, no_body(number))
-    if not _BASE <= link < body.joint_count:
+    body, link = body_of(client, body_id, problem), integer(link_index, "linkIndex")
+    if not BASE <= link < body.joint_count:
         fail(problem, no_joint(body, link))
     return body, link
 

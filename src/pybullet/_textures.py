@@ -9,7 +9,8 @@ from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._constants import VISUAL_SHAPE_DOUBLE_SIDED
 from pybullet._errors import fail, logger
-from pybullet._lookup import no_body, no_joint
+from pybullet._lookup import link_or_warning
+from pybullet._shape_arguments import find_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,13 +46,10 @@ def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
     name = text(textureFilename, "textureFilename")
 
     from carom.errors import DescriptionError
-    from carom.formats.search import AssetSearch
     from carom.render.appearance import appearance_of
     from carom.render.images import read_image
 
-    path = AssetSearch(client.search_path).find(name)
-    if path is None:
-        fail(_CANNOT_LOAD, f"There is no file {name!r}.")
+    path = find_file(client, name, _CANNOT_LOAD)
     try:
         image = read_image(path)
     except DescriptionError as problem:
@@ -125,18 +123,14 @@ def changeVisualShape(
             numbers.
     """
     client = client_of(physicsClientId)
-    number, link = integer(objectUniqueId, "objectUniqueId"), integer(linkIndex, "linkIndex")
     shape, texture = integer(shapeIndex, "shapeIndex"), integer(textureUniqueId, "textureUniqueId")
     bits = integer(flags, "flags")
     colour = None if rgbaColor is None else vector4(rgbaColor, _CANNOT_CHANGE, "rgbaColor")
     highlight = None if specularColor is None else vector3(specularColor, _CANNOT_CHANGE, "specularColor")
-    body = client.world.bodies.get(number)
-    if body is None:
-        logger.warning("changeVisualShape: %s", no_body(number))
+    found = link_or_warning(client, objectUniqueId, linkIndex, "changeVisualShape")
+    if found is None:
         return
-    if not -1 <= link < body.joint_count:
-        logger.warning("changeVisualShape: %s", no_joint(body, link))
-        return
+    body, link = found
 
     from carom.render.appearance import appearance_of
 
