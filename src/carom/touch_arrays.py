@@ -59,6 +59,8 @@ class TouchArrays:
             {
                 "tree": model["tree"],
                 "contact": contacts,
+                "unit": contacts,
+                "patch": contacts // 2,
                 "constraint": model["constraint"],
                 "visit": self._arrays.scratch.capacity["row"] + ROWS_PER_PAIR * self.users.capacity["user"],
                 "user": self.users.capacity["user"],

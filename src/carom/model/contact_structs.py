@@ -4,18 +4,26 @@ As in `structs`, a field's axis is the first word of its name. A *manifold* is a
 contacts of the same two shapes; runs are sorted by the lower, then by the higher row of the two.
 """
 
+from typing import TYPE_CHECKING, Any
+
 import warp as wp
 
 from carom.model.real import (
+    Index4,
     Index4Rows,
+    Int32,
     IntRows,
     Ints,
     Matrix3Rows,
+    Matrix4,
+    Matrix48,
+    Matrix84,
     Quaternions,
     RealRows,
     Reals,
     Transforms,
     Vector3Rows,
+    Vector4,
     Vector4Rows,
     Vector6Rows,
     Vector8Rows,
@@ -158,6 +166,58 @@ class UserConstraints:
 
 
 @wp.struct
+class Patch:
+    """Up to four contacts of the same two shapes, whose rows are relaxed together; see `physics.patches`.
+
+    Vectors run over the contacts. Jacobians have a row for each dof of one of the two trees, responses
+    a row for each contact; 0 is the normal, 1 and 2 are the friction directions. Gains say by how much
+    an impulse of the contact of their row, along their first direction, lowers the impulses wanted
+    along their second.
+    """
+
+    place: Index4  # as `coupling_place`
+    first_contact: Int32
+    count: Int32
+    jacobian0_a: Matrix84
+    jacobian0_b: Matrix84
+    response0_a: Matrix48
+    response0_b: Matrix48
+    gain00: Matrix4
+    share0: Vector4
+    softness0: Vector4
+    effective_mass0: Vector4
+    inverse_mass0: Vector4
+    impulse0: Vector4
+    jacobian1_a: Matrix84
+    jacobian1_b: Matrix84
+    jacobian2_a: Matrix84
+    jacobian2_b: Matrix84
+    response1_a: Matrix48
+    response1_b: Matrix48
+    response2_a: Matrix48
+    response2_b: Matrix48
+    gain11: Matrix4
+    gain12: Matrix4
+    gain21: Matrix4
+    gain22: Matrix4
+    friction: Vector4
+    share1: Vector4
+    share2: Vector4
+    effective_mass1: Vector4
+    effective_mass2: Vector4
+    inverse_mass1: Vector4
+    inverse_mass2: Vector4
+    impulse1: Vector4
+    impulse2: Vector4
+
+
+if TYPE_CHECKING:
+    Patches = Any
+else:
+    Patches = wp.array2d(dtype=Patch)
+
+
+@wp.struct
 class Couplings:
     """Constraint rows over up to two trees, and the islands they join: intermediate results."""
 
@@ -178,6 +238,10 @@ class Couplings:
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )
+    unit_code: IntRows  # what an island's sweep relaxes, in order: a contact, or -1 - patch
+
+    patch: Patches
+
     user_impulse: Vector6Rows  # of the last substep, by row of the constraint
     user_first_row: IntRows
     visit_row: IntRows  # rows of motors, limits and user constraints in their order: -1 - row of the latter

@@ -25,7 +25,10 @@ if TYPE_CHECKING:
     Vector8 = Any
     Quaternion = Any
     Matrix3 = Any
+    Matrix4 = Any
     Matrix43 = Any
+    Matrix48 = Any
+    Matrix84 = Any
     Transform = Any
     Ints = Any
     Reals = Any
@@ -66,7 +69,10 @@ if not TYPE_CHECKING:
     Vector8 = wp.types.vector(8, real)
     Quaternion = wp.types.quaternion(real)
     Matrix3 = wp.types.matrix((3, 3), real)
+    Matrix4 = wp.types.matrix((4, 4), real)
     Matrix43 = wp.types.matrix((4, 3), real)
+    Matrix48 = wp.types.matrix((4, 8), real)
+    Matrix84 = wp.types.matrix((8, 4), real)
     Transform = wp.types.transformation(real)
 
     # One value per tree, link, coordinate...: shared by all worlds.

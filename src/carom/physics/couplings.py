@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.model.blocks import add_multiple, dot_product
 from carom.model.codes import (
     ROW_EFFECTIVE_MASS,
     ROW_IMPULSE,
@@ -136,104 +137,98 @@ def write_row(
 
 
 @func
-def row_velocity_change(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
-    """What the solver has changed so far about the velocity of a row."""
-    place = couplings.coupling_place[world, row]
-    start = couplings.coupling_start[world, row]
+def row_velocity_change(
+    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32
+) -> real:
+    """What the solver has changed so far about the velocity of the row at a place, its Jacobian at `start`."""
     total = real(0.0)
-    delta = place[0]
-    end = place[0] + place[1]
-    while delta < end:
-        total += wp.dot(couplings.jacobian_row[world, start], scratch.delta_velocity[world, delta])
-        delta += 1
-        start += 1
-    delta = place[2]
-    end = place[2] + place[3]
-    while delta < end:
-        total += wp.dot(couplings.jacobian_row[world, start], scratch.delta_velocity[world, delta])
-        delta += 1
-        start += 1
+    if place[1] > 0:
+        total = dot_product(couplings.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
+    if place[3] > 0:
+        total += dot_product(
+            couplings.jacobian_row, start + place[1], scratch.delta_velocity, place[2], world, place[3]
+        )
     return total
 
 
 @func
-def push_row(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, impulse: real):
+def push_row(
+    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32, impulse: real
+):
     """Apply an impulse along a row to the changes of velocity of its trees."""
-    place = couplings.coupling_place[world, row]
-    start = couplings.coupling_start[world, row]
-    delta = place[0]
-    end = place[0] + place[1]
-    while delta < end:
-        scratch.delta_velocity[world, delta] += impulse * couplings.jacobian_response[world, start]
-        delta += 1
-        start += 1
-    delta = place[2]
-    end = place[2] + place[3]
-    while delta < end:
-        scratch.delta_velocity[world, delta] += impulse * couplings.jacobian_response[world, start]
-        delta += 1
-        start += 1
+    if place[1] > 0:
+        add_multiple(
+            scratch.delta_velocity, place[0], impulse, couplings.jacobian_response, start, world, place[1]
+        )
+    if place[3] > 0:
+        add_multiple(
+            scratch.delta_velocity, place[2], impulse, couplings.jacobian_response, start + place[1], world,
+            place[3],
+        )  # fmt: skip
 
 
 @func
-def wanted_impulse(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+def wanted_impulse(
+    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32, terms: Vector8
+) -> real:
     """Impulse that would bring a row to its target if it had no bounds."""
-    terms = couplings.coupling_terms[world, row]
     return (
         terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
         + terms[ROW_SHARE]
-        - row_velocity_change(scratch, couplings, world, row) * terms[ROW_EFFECTIVE_MASS]
+        - row_velocity_change(scratch, couplings, world, place, start) * terms[ROW_EFFECTIVE_MASS]
     )
 
 
 @func
-def set_impulse(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, impulse: real) -> real:
-    """Change a row's impulse to `impulse`; returns the change of its velocity."""
-    change = impulse - couplings.coupling_terms[world, row][ROW_IMPULSE]
-    couplings.coupling_terms[world, row][ROW_IMPULSE] = impulse
-    push_row(scratch, couplings, world, row, change)
-    return change * couplings.coupling_terms[world, row][ROW_INVERSE_MASS]
-
-
-@func
-def relax_coupling(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
-    """Bring one row to its target as far as its bounds allow; returns the change of its velocity."""
-    impulse = wanted_impulse(scratch, couplings, world, row)
-    lower = couplings.coupling_terms[world, row][ROW_LOWER]
-    upper = couplings.coupling_terms[world, row][ROW_UPPER]
+def relax_within(
+    scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, lower: real, upper: real
+) -> real:
+    """Bring one row to its target as far as bounds allow; returns the change of its velocity."""
+    terms = couplings.coupling_terms[world, row]
+    place = couplings.coupling_place[world, row]
+    start = couplings.coupling_start[world, row]
+    impulse = wanted_impulse(scratch, couplings, world, place, start, terms)
     if impulse < lower:
         impulse = lower
     if impulse > upper:
         impulse = upper
-    return set_impulse(scratch, couplings, world, row, impulse)
+    change = impulse - terms[ROW_IMPULSE]
+    couplings.coupling_terms[world, row][ROW_IMPULSE] = impulse
+    push_row(scratch, couplings, world, place, start, change)
+    return change * terms[ROW_INVERSE_MASS]
 
 
 @func
-def relax_within(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, bound: real) -> real:
-    """As `relax_coupling`, with the bounds ± `bound`."""
-    impulse = wanted_impulse(scratch, couplings, world, row)
-    if impulse < -bound:
-        impulse = -bound
-    if impulse > bound:
-        impulse = bound
-    return set_impulse(scratch, couplings, world, row, impulse)
+def relax_coupling(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+    """As `relax_within`, with the row's own bounds."""
+    terms = couplings.coupling_terms[world, row]
+    return relax_within(scratch, couplings, world, row, terms[ROW_LOWER], terms[ROW_UPPER])
 
 
 @func
 def relax_in_circle(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, bound: real) -> real:
     """Relax two perpendicular rows, this and the next, their impulses together within `bound`."""
-    first = wanted_impulse(scratch, couplings, world, row)
-    second = wanted_impulse(scratch, couplings, world, row + 1)
-    size = wp.sqrt(first * first + second * second)
-    if size >= bound:
+    place = couplings.coupling_place[world, row]
+    start1 = couplings.coupling_start[world, row]
+    start2 = start1 + place[1] + place[3]
+    terms1 = couplings.coupling_terms[world, row]
+    terms2 = couplings.coupling_terms[world, row + 1]
+    first = wanted_impulse(scratch, couplings, world, place, start1, terms1)
+    second = wanted_impulse(scratch, couplings, world, place, start2, terms2)
+    square = first * first + second * second
+    if square >= bound * bound:
         scale = real(0.0)
-        if size > 0.0:
-            scale = bound / size
+        if square > 0.0:
+            scale = bound / wp.sqrt(square)
         first = first * scale
         second = second * scale
-    return set_impulse(scratch, couplings, world, row, first) + set_impulse(
-        scratch, couplings, world, row + 1, second
-    )
+    change1 = first - terms1[ROW_IMPULSE]
+    change2 = second - terms2[ROW_IMPULSE]
+    couplings.coupling_terms[world, row][ROW_IMPULSE] = first
+    couplings.coupling_terms[world, row + 1][ROW_IMPULSE] = second
+    push_row(scratch, couplings, world, place, start1, change1)
+    push_row(scratch, couplings, world, place, start2, change2)
+    return change1 * terms1[ROW_INVERSE_MASS] + change2 * terms2[ROW_INVERSE_MASS]
 
 
 @func

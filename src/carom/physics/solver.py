@@ -12,6 +12,7 @@ from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.physics.couplings import tree_blocks
 from carom.physics.joint_solver import joint_constraint_rows, keep_row_results
+from carom.physics.patches import gather_units, scatter_impulses
 from carom.physics.quarantine import OVERFLOW
 from carom.physics.sweeps import contact_sweep, visit_sweep
 from carom.physics.user_constraints import add_user_rows, keep_user_impulses
@@ -129,6 +130,9 @@ def solve_island(
         state.fault_tree[world, 0] = OVERFLOW
         return
 
+    units = Index4(0, 0, 0, 0)
+    if first_contact >= 0:
+        units = gather_units(contacts, couplings, world, first_contact)
     residual = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
@@ -137,10 +141,12 @@ def solve_island(
     while searching == 1:
         residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
         if first_contact >= 0:
-            residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, first_contact))
+            residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
         sweep += 1
         if residual <= settings.residual_threshold or sweep >= settings.iterations:
             searching = Int32(0)
+    for patch in range(units[1]):
+        scatter_impulses(couplings, world, patch)
     keep_row_results(model, settings, state, scratch, world, root, made[0], sweep, residual)
     keep_coupling_impulses(model, contacts, users, couplings, world, root)
 

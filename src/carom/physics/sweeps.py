@@ -10,10 +10,11 @@ from carom.model.codes import (
     SPINNING_ROW,
 )
 from carom.model.contact_structs import Couplings
-from carom.model.real import Int32, func, real
+from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Scratch, Settings
 from carom.physics.couplings import relax_coupling, relax_in_circle, relax_within
 from carom.physics.joint_solver import relax_row
+from carom.physics.patches import relax_friction, relax_normals
 
 
 @func
@@ -43,15 +44,18 @@ def visit_sweep(
 
 
 @func
-def normal_sweep(scratch: Scratch, couplings: Couplings, world: Int32, first_contact: Int32) -> real:
+def normal_sweep(scratch: Scratch, couplings: Couplings, world: Int32, units: Int32) -> real:
     """Relax the normal rows of an island's contacts once; returns the greatest change squared."""
     residual = real(0.0)
-    contact = first_contact + 0
-    while contact >= 0:
-        change = relax_coupling(scratch, couplings, world, couplings.contact_rows[world, contact][NORMAL_ROW])
-        if change * change > residual:
-            residual = change * change
-        contact = couplings.contact_next[world, contact]
+    for unit in range(units):
+        code = couplings.unit_code[world, unit]
+        if code < 0:
+            residual = wp.max(residual, relax_normals(scratch, couplings, world, -1 - code))
+        else:
+            change = relax_coupling(
+                scratch, couplings, world, couplings.contact_rows[world, code][NORMAL_ROW]
+            )
+            residual = wp.max(residual, change * change)
     return residual
 
 
@@ -66,48 +70,60 @@ def friction_bound(couplings: Couplings, world: Int32, row: Int32) -> real:
 
 
 @func
+def relax_contact_friction(
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, contact: Int32, kind: Int32
+) -> real:
+    """Relax the spinning, rolling or lateral rows of a contact; returns the greatest change squared."""
+    row = couplings.contact_rows[world, contact][kind]
+    change = real(0.0)
+    if row >= 0:
+        bound = friction_bound(couplings, world, row)
+        in_circle = settings.cone_friction != 0 and kind != SPINNING_ROW
+        if in_circle and (bound > 0.0 or kind == LATERAL_ROW):
+            change = relax_in_circle(scratch, couplings, world, row, bound)
+        elif not in_circle and bound > 0.0:
+            last = row + 1
+            if kind == SPINNING_ROW:
+                last = row + 0
+            while row <= last:
+                change = wp.max(
+                    wp.abs(change),
+                    wp.abs(relax_within(scratch, couplings, world, row, -bound, bound)),
+                )
+                row += 1
+    return change * change
+
+
+@func
 def friction_sweep(
-    settings: Settings,
-    scratch: Scratch,
-    couplings: Couplings,
-    world: Int32,
-    first_contact: Int32,
-    kind: Int32,
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, units: Int32, kind: Int32
 ) -> real:
     """Relax the spinning, rolling or lateral rows of an island's contacts; returns as `normal_sweep`."""
     residual = real(0.0)
-    contact = first_contact + 0
-    while contact >= 0:
-        row = couplings.contact_rows[world, contact][kind]
-        if row >= 0:
-            bound = friction_bound(couplings, world, row)
-            in_circle = settings.cone_friction != 0 and kind != SPINNING_ROW
-            change = real(0.0)
-            if in_circle and (bound > 0.0 or kind == LATERAL_ROW):
-                change = relax_in_circle(scratch, couplings, world, row, bound)
-            elif not in_circle and bound > 0.0:
-                last = row + 1
-                if kind == SPINNING_ROW:
-                    last = row + 0
-                while row <= last:
-                    change = wp.max(
-                        wp.abs(change), wp.abs(relax_within(scratch, couplings, world, row, bound))
-                    )
-                    row += 1
-            residual = wp.max(residual, change * change)
-        contact = couplings.contact_next[world, contact]
+    for unit in range(units):
+        code = couplings.unit_code[world, unit]
+        if code >= 0:
+            residual = wp.max(
+                residual, relax_contact_friction(settings, scratch, couplings, world, code, kind)
+            )
+        elif kind == LATERAL_ROW:
+            residual = wp.max(residual, relax_friction(settings, scratch, couplings, world, -1 - code))
     return residual
 
 
 @func
 def contact_sweep(
-    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, first_contact: Int32
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, units: Index4
 ) -> real:
-    """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction."""
-    residual = normal_sweep(scratch, couplings, world, first_contact)
-    for kind in range(3):
-        # SPINNING_ROW, ROLLING_ROW, LATERAL_ROW
-        residual = wp.max(
-            residual, friction_sweep(settings, scratch, couplings, world, first_contact, SPINNING_ROW - kind)
-        )
+    """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
+
+    `units` is what `patches.gather_units` returns.
+    """
+    residual = normal_sweep(scratch, couplings, world, units[0])
+    kind = Int32(LATERAL_ROW)
+    if units[2] != 0:
+        kind = Int32(SPINNING_ROW)
+    while kind >= LATERAL_ROW:
+        residual = wp.max(residual, friction_sweep(settings, scratch, couplings, world, units[0], kind))
+        kind -= 1
     return residual
