@@ -140,7 +140,7 @@ def write_row(
 def row_velocity_change(
     scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32
 ) -> real:
-    """What the solver has changed so far about the velocity of the row at a place, its Jacobian at `start`."""
+    """What the solver has changed so far about the velocity of a row, by its place and start."""
     total = real(0.0)
     if place[1] > 0:
         total = dot_product(couplings.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
