@@ -61,7 +61,7 @@ def _warp_module(name: str) -> Any:
 
 
 def _is_built(module: Any) -> bool:
-    return (Path(wp.config.kernel_cache_dir) / module.get_module_identifier(_CPU_BLOCK_SIZE)).is_dir()
+    return (Path(str(wp.config.kernel_cache_dir)) / module.get_module_identifier(_CPU_BLOCK_SIZE)).is_dir()
 
 
 def _build_side_by_side(names: Sequence[str]) -> None:
@@ -77,7 +77,7 @@ def _build_elsewhere(name: str) -> None:
     subprocess.run(
         [sys.executable, "-c", "import sys; from carom.warmup import build; build(sys.argv[1])", name],
         # Warp adds its version to the path it is given.
-        env={**os.environ, "WARP_CACHE_PATH": str(Path(wp.config.kernel_cache_dir).parent)},
+        env={**os.environ, "WARP_CACHE_PATH": str(Path(str(wp.config.kernel_cache_dir)).parent)},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
