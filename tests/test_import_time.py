@@ -5,7 +5,17 @@ import sys
 
 import pytest
 
-HEAVY = {"matplotlib", "trimesh", "viser", "gymnasium", "scipy", "PIL", "tkinter"}
+HEAVY = {
+    "matplotlib",
+    "trimesh",
+    "websockets",
+    "asyncio",
+    "carom.viewer.viewer",
+    "gymnasium",
+    "scipy",
+    "PIL",
+    "tkinter",
+}
 
 
 def modules_after(statement: str) -> set[str]:

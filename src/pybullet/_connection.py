@@ -24,7 +24,7 @@ from pybullet._constants import (
     UDP,
 )
 from pybullet._errors import fail, logger
-from pybullet._window import NoWindow, RecordingWindow, Window
+from pybullet._window import NoWindow
 
 __all__ = [
     "connect",
@@ -69,11 +69,13 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         *arguments: `key` and `options`, or `hostName`, `port` and `options`.
         **keywords: The same by name.
         method: `DIRECT` for a world without a window; any number of them, up to 1024 connections. `GUI`
-            for one with a window; `GUI_SERVER` and `GUI_MAIN_THREAD` are the same here. In this version
-            of Carom the window is not shown: it keeps what the script draws, and its sliders stay at
-            their start values.
+            for one with a window; `GUI_SERVER` and `GUI_MAIN_THREAD` are the same here. The window is a
+            page in the browser: its address is printed, and it opens where there is a display and `CI`
+            is not set.
         key: Of shared memory; checked, but there are no servers in this version of Carom.
-        options: Of the window, separated by spaces: `--width=1024 --height=768`; others are ignored.
+        options: Of the window, separated by spaces: `--width=1024 --height=768`, the size of its image
+            until a page is open; `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1`
+            and `--port=8400`, where the page is. Others are ignored.
         hostName: Of a server.
         port: Of a server.
 
@@ -82,8 +84,9 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         server can be reached by `SHARED_MEMORY`, `UDP` or `TCP`, which is always so in this version.
 
     Raises:
-        pybullet.error: There is a window already, there are 1024 connections, or the method does not
-            exist or is a kind of server that this version of Carom does not have.
+        pybullet.error: There is a window already, there are 1024 connections, the page cannot be served at
+            the address asked for, or the method does not exist or is a kind of server that this version of
+            Carom does not have.
     """
     method = integer(method, "method")
     options = _connect_options(arguments, keywords)
@@ -100,17 +103,19 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     if method in _WITH_WINDOW:
         if any(living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)):
             fail(_ONE_WINDOW)
-        window: Window = RecordingWindow(**_window_size(options))
-    elif method == DIRECT:
-        window = NoWindow()
-    else:
+    elif method != DIRECT:
         fail("connectPhysicsServer unexpected argument", f"There is no connection method {method}.")
 
     # The engine is imported when it is needed, so that importing the module stays quick.
     from carom.world import World
     from pybullet._body_access import BodyTable
 
-    clients[slot] = Client(method, World(), BodyTable(), window)
+    client = Client(method, World(), BodyTable(), NoWindow())
+    if method in _WITH_WINDOW:
+        from pybullet._page_window import open_window
+
+        client.window = open_window(client, options)
+    clients[slot] = client
     return slot
 
 
@@ -233,15 +238,6 @@ def _connect_options(arguments: tuple[int | str, ...], keywords: dict[str, int |
         else:
             integer(value, name)
     return str(given.get("options", ""))
-
-
-def _window_size(options: str) -> dict[str, int]:
-    size = {}
-    for option in options.split():
-        name, _, value = option.lstrip("-").partition("=")
-        if name in ("width", "height") and value.isdecimal() and int(value) > 0:
-            size[name] = int(value)
-    return size
 
 
 @atexit.register

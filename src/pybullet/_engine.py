@@ -49,6 +49,9 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
         client = clients[physicsClientId]
     except (KeyError, TypeError):
         client = client_of(physicsClientId)
+    if client.window.held:
+        client.window.wait_for_turn()
+        client = client_of(physicsClientId)
     with client.lock:
         try:
             client.world.step()

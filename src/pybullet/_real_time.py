@@ -69,6 +69,8 @@ class RealTimeClock:
             for _ in range(pace.steps_due(monotonic(), client.time_step)):
                 if self._stopping.is_set():
                     return
+                if client.window.held and not client.window.has_turn():
+                    break
                 try:
                     with client.lock:
                         client.world.step()

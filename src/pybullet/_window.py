@@ -1,8 +1,8 @@
 """What a script can ask of a graphical interface: the seam between the drop-in and a viewer.
 
-A viewer is a subclass of `Window`. Two are here: `NoWindow` for clients without one, and
-`RecordingWindow`, which keeps what the script shows and answers from that: sliders stay at their start
-values and nobody presses a key.
+A viewer is a subclass of `Window`: `PageWindow`, in a module of its own. Two are here: `NoWindow` for clients
+without one, and `RecordingWindow`, which keeps what the script shows and answers from that: sliders stay at
+their start values and nobody presses a key.
 """
 
 from __future__ import annotations
@@ -12,70 +12,29 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import hypot
 
-from carom.description.pose import Quaternion, Vector3
+from carom.description.pose import Vector3
+from carom.viewer.items import DebugItem, DebugLine, DebugPoints, DebugText, Slider
 from pybullet._camera_maths import Y_UP, Z_UP, Matrix16, cross, frustum, look_at, orbit, subtracted, unit
 from pybullet._constants import COV_ENABLE_Y_AXIS_UP
 
+__all__ = [
+    "NO_ITEM",
+    "DebugCamera",
+    "DebugItem",
+    "DebugLine",
+    "DebugPoints",
+    "DebugText",
+    "NoWindow",
+    "RecordingWindow",
+    "Slider",
+    "VisualizerOptions",
+    "Window",
+]
+
 NO_ITEM = -1
-_WHITE = (1.0, 1.0, 1.0)
 _NEAR, _FAR = 0.01, 1000.0
 # Length of the image's edges as `getDebugVisualizerCamera` reports them, for rays through its pixels.
 _RAY_PLANE = 20000.0
-
-
-@dataclass(frozen=True, slots=True)
-class DebugItem:
-    """Something drawn into the scene.
-
-    Attributes:
-        life_time: How long it stays [s]; 0 for ever.
-        parent_body: Body whose link carries it; -1 for the world.
-        parent_link: That link; -1 for the base.
-    """
-
-    life_time: float = 0.0
-    parent_body: int = -1
-    parent_link: int = -1
-
-
-@dataclass(frozen=True, slots=True)
-class DebugLine(DebugItem):
-    """A line from one point to another; `width` in pixels."""
-
-    start: Vector3 = (0.0, 0.0, 0.0)
-    end: Vector3 = (0.0, 0.0, 0.0)
-    colour: Vector3 = _WHITE
-    width: float = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class DebugText(DebugItem):
-    """Text at a point; it faces the camera unless it has an orientation."""
-
-    text: str = ""
-    position: Vector3 = (0.0, 0.0, 0.0)
-    colour: Vector3 = _WHITE
-    size: float = 1.0
-    orientation: Quaternion | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class DebugPoints(DebugItem):
-    """A cloud of points, each with its colour; `size` in pixels."""
-
-    positions: tuple[Vector3, ...] = ()
-    colours: tuple[Vector3, ...] = ()
-    size: float = 1.0
-
-
-@dataclass(slots=True)
-class Slider:
-    """A number the user can set; a button that counts its clicks when `lower > upper`."""
-
-    name: str
-    lower: float
-    upper: float
-    value: float
 
 
 @dataclass(slots=True)
@@ -136,7 +95,21 @@ class VisualizerOptions:
 
 
 class Window(ABC):
-    """A graphical interface."""
+    """A graphical interface.
+
+    Attributes:
+        held: Steps have to ask `wait_for_turn` or `has_turn` first, and may find the window closed then.
+    """
+
+    held = False
+
+    @abstractmethod
+    def wait_for_turn(self) -> None:
+        """Returns when the user lets the simulation make a step."""
+
+    @abstractmethod
+    def has_turn(self) -> bool:
+        """Whether the user lets it make a step now; the step then counts as made."""
 
     @abstractmethod
     def is_open(self) -> bool:
@@ -204,6 +177,12 @@ class NoWindow(Window):
     def close(self) -> None:
         """There is nothing to take off the screen."""
 
+    def wait_for_turn(self) -> None:
+        """Nobody holds it."""
+
+    def has_turn(self) -> bool:
+        return True
+
     def draw(self, item: DebugItem, replaced: int) -> int:
         return NO_ITEM
 
@@ -267,6 +246,12 @@ class RecordingWindow(Window):
 
     def close(self) -> None:
         self._open = False
+
+    def wait_for_turn(self) -> None:
+        """Nobody holds it."""
+
+    def has_turn(self) -> bool:
+        return True
 
     def draw(self, item: DebugItem, replaced: int) -> int:
         identifier = replaced if replaced >= 0 else self._new_identifier()

@@ -44,12 +44,13 @@ TITLES = {
 UNAVAILABLE = "_unavailable"
 
 NOTES = {
-    "_gui": "There is no window yet: sliders keep their start values, drawings are kept but not shown, and "
-    "no key is ever pressed.",
+    "_gui": "The window is [a page in the browser](viewer.md).",
 }
 
 LIMITED = {
-    "connect": "`GUI` simulates without showing a window; there are no physics servers",
+    "connect": "there are no physics servers",
+    "configureDebugVisualizer": "camera previews, reflections, single-step rendering and the flags of "
+    "virtual reality are recorded and have no effect",
     "changeDynamics": "`anisotropicFriction`, `frictionAnchor` and what concerns sleeping are recorded and "
     "have no effect; nor has continuous collision detection, as on PyBullet's multibodies",
     "getClosestPoints": "between bodies; `collisionShapeA` and `collisionShapeB` raise `pybullet.error`",

@@ -1,0 +1,97 @@
+"""What all pages show: of everything that has a name, the newest message.
+
+Pages do not get a stream of changes but what is new since they were last sent something. So a page that joins
+late, or was cut off, gets the whole scene, and one that is slow gets the newest state and no backlog.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from threading import Lock
+from typing import Any
+
+from carom.viewer.messages import encoded
+
+
+@dataclass(slots=True)
+class _Entry:
+    revision: int
+    message: bytes
+    gone: bool = False
+
+
+class Board:
+    """Newest messages by key, numbered by when they were put there. Safe to use from all threads."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        # The oldest first: a changed entry goes to the end.
+        self._entries: dict[Hashable, _Entry] = {}
+        self._removals: set[Hashable] = set()
+        self._revision = 0
+
+    @property
+    def revision(self) -> int:
+        """Number of the newest entry; it grows with every change."""
+        return self._revision
+
+    def put(self, key: Hashable, header: Mapping[str, Any], payload: bytes = b"") -> None:
+        """Shows a message in place of the one of the same key, if there is one."""
+        self._enter(key, encoded(header, payload), gone=False)
+
+    def amend(self, key: Hashable, header: Mapping[str, Any]) -> None:
+        """Changes what pages are told that join from now on; those that know the message keep it."""
+        with self._lock:
+            entry = self._entries.get(key)
+            if entry is not None:
+                entry.message = encoded(header)
+
+    def take_down(self, key: Hashable, header: Mapping[str, Any]) -> None:
+        """Forgets a message. Pages that know it are sent `header`; an unknown key does no harm."""
+        entry = self._entries.get(key)
+        if entry is not None and not entry.gone:
+            self._enter(key, encoded(header), gone=True)
+
+    def holds(self, key: Hashable) -> bool:
+        """Whether there is a message of that key."""
+        entry = self._entries.get(key)
+        return entry is not None and not entry.gone
+
+    def since(self, revision: int) -> tuple[list[bytes], int]:
+        """What is newer than a revision, the oldest first.
+
+        Args:
+            revision: What the page has; 0 for nothing.
+
+        Returns:
+            The messages, and the revision to ask with the next time.
+        """
+        with self._lock:
+            if revision == self._revision:
+                return [], revision
+            newest: list[bytes] = []
+            for entry in reversed(self._entries.values()):
+                if entry.revision <= revision:
+                    break
+                # A page that knows nothing need not forget anything.
+                if revision or not entry.gone:
+                    newest.append(entry.message)
+            newest.reverse()
+            return newest, self._revision
+
+    def forget_removals(self, revision: int) -> None:
+        """Drops the removals that every page has been told of: those up to a revision."""
+        if not self._removals:
+            return
+        with self._lock:
+            for key in [key for key in self._removals if self._entries[key].revision <= revision]:
+                self._removals.remove(key)
+                del self._entries[key]
+
+    def _enter(self, key: Hashable, message: bytes, *, gone: bool) -> None:
+        with self._lock:
+            self._revision += 1
+            self._entries.pop(key, None)
+            self._entries[key] = _Entry(self._revision, message, gone)
+            (self._removals.add if gone else self._removals.discard)(key)

@@ -1,0 +1,56 @@
+"""Sliders and buttons of the panel."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from carom.viewer.board import Board
+from carom.viewer.items import Slider
+
+
+class Controls:
+    """Sliders and buttons by number, on the board. Safe to use from all threads.
+
+    Attributes:
+        sliders: What is shown now, by number.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self.sliders: dict[int, Slider] = {}
+
+    def add(self, number: int, slider: Slider) -> None:
+        """Shows a slider or a button."""
+        self.sliders[number] = slider
+        self._show(number, slider)
+
+    def remove(self, number: int) -> None:
+        """Takes one away; an unknown number does no harm."""
+        self.sliders.pop(number, None)
+        self._board.take_down(("slider", number), {"type": "no slider", "slider": number})
+
+    def move(self, number: int, value: float) -> None:
+        """The user has moved a slider; it stops at its ends."""
+        slider = self.sliders.get(number)
+        if slider is not None and not slider.is_button and isfinite(value):
+            slider.value = min(max(value, slider.lower), slider.upper)
+            self._show(number, slider)
+
+    def press(self, number: int) -> None:
+        """The user has clicked a button."""
+        slider = self.sliders.get(number)
+        if slider is not None and slider.is_button:
+            slider.value += 1.0
+            self._show(number, slider)
+
+    def _show(self, number: int, slider: Slider) -> None:
+        header = {
+            "type": "slider",
+            "slider": number,
+            "name": slider.name,
+            "button": slider.is_button,
+            "lower": slider.lower,
+            "upper": slider.upper,
+            "value": slider.value,
+        }
+        self._board.put(("slider", number), header)

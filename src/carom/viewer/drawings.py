@@ -1,0 +1,74 @@
+"""Lines, points and texts that scripts draw."""
+
+from __future__ import annotations
+
+from threading import Lock
+from time import monotonic
+
+import numpy as np
+
+from carom.viewer.board import Board
+from carom.viewer.items import DebugItem, DebugLine, DebugPoints, DebugText
+
+
+class Drawings:
+    """Drawn items by number, on the board. Safe to use from all threads.
+
+    Attributes:
+        items: What is shown now, by number.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._lock = Lock()
+        self._ends: dict[int, float] = {}
+        self.items: dict[int, DebugItem] = {}
+
+    def draw(self, number: int, item: DebugItem) -> None:
+        """Shows an item in place of the one of that number, if there is one."""
+        with self._lock:
+            self.items[number] = item
+            self._ends.pop(number, None)
+            if item.life_time > 0.0:
+                self._ends[number] = monotonic() + item.life_time
+            header, payload = _described(item)
+            self._board.put(("item", number), {**header, "item": number}, payload)
+
+    def remove(self, number: int) -> None:
+        """Takes an item away; an unknown number does no harm."""
+        with self._lock:
+            self._remove(number)
+
+    def clear(self) -> None:
+        """Takes all items away."""
+        with self._lock:
+            for number in list(self.items):
+                self._remove(number)
+
+    def expire(self) -> None:
+        """Takes away the items whose time is over."""
+        if not self._ends:
+            return
+        with self._lock:
+            now = monotonic()
+            over = [number for number, end in self._ends.items() if end <= now]
+            for number in over:
+                self._remove(number)
+
+    def _remove(self, number: int) -> None:
+        self.items.pop(number, None)
+        self._ends.pop(number, None)
+        self._board.take_down(("item", number), {"type": "no item", "item": number})
+
+
+def _described(item: DebugItem) -> tuple[dict[str, object], bytes]:
+    header: dict[str, object] = {"body": item.parent_body, "link": item.parent_link + 1}
+    if isinstance(item, DebugLine):
+        line = {"type": "line", "start": item.start, "end": item.end, "colour": item.colour}
+        return {**header, **line, "width": item.width}, b""
+    if isinstance(item, DebugText):
+        text = {"type": "text", "text": item.text, "position": item.position, "colour": item.colour}
+        return {**header, **text, "size": item.size, "orientation": item.orientation}, b""
+    assert isinstance(item, DebugPoints)
+    payload = np.array([item.positions, item.colours], dtype="<f4").tobytes()
+    return {**header, "type": "points", "size": item.size, "count": len(item.positions)}, payload

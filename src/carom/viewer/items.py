@@ -1,0 +1,69 @@
+"""What scripts draw into the scene, and the sliders and buttons they add."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from carom.description.pose import Quaternion, Vector3
+
+_WHITE = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class DebugItem:
+    """Something drawn into the scene.
+
+    Attributes:
+        life_time: How long it stays [s]; 0 for ever.
+        parent_body: Body whose link carries it; -1 for the world.
+        parent_link: That link; -1 for the base.
+    """
+
+    life_time: float = 0.0
+    parent_body: int = -1
+    parent_link: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class DebugLine(DebugItem):
+    """A line from one point to another; `width` in pixels."""
+
+    start: Vector3 = (0.0, 0.0, 0.0)
+    end: Vector3 = (0.0, 0.0, 0.0)
+    colour: Vector3 = _WHITE
+    width: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class DebugText(DebugItem):
+    """Text at a point; it faces the camera unless it has an orientation."""
+
+    text: str = ""
+    position: Vector3 = (0.0, 0.0, 0.0)
+    colour: Vector3 = _WHITE
+    size: float = 1.0
+    orientation: Quaternion | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DebugPoints(DebugItem):
+    """A cloud of points, each with its colour; `size` in pixels."""
+
+    positions: tuple[Vector3, ...] = ()
+    colours: tuple[Vector3, ...] = ()
+    size: float = 1.0
+
+
+@dataclass(slots=True)
+class Slider:
+    """A number the user can set; a button that counts its clicks when `lower > upper`."""
+
+    name: str
+    lower: float
+    upper: float
+    value: float
+
+    @property
+    def is_button(self) -> bool:
+        """Whether it is a button."""
+        return self.lower > self.upper

@@ -1,0 +1,100 @@
+"""Keys as PyBullet reports them: codes, and what happened to them since they were last asked for."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from threading import Lock
+
+DOWN, TRIGGERED, RELEASED = 1, 2, 4
+
+# Keys without a character, by their name in a browser's events.
+_FUNCTION_KEYS = {f"F{number}": 65279 + number for number in range(1, 16)}
+_NAMED = {
+    "ArrowLeft": 65295,
+    "ArrowRight": 65296,
+    "ArrowUp": 65297,
+    "ArrowDown": 65298,
+    "PageUp": 65299,
+    "PageDown": 65300,
+    "End": 65301,
+    "Home": 65302,
+    "Insert": 65303,
+    "Delete": 65304,
+    "Backspace": 65305,
+    "Shift": 65306,
+    "Control": 65307,
+    "Alt": 65308,
+    "Enter": 65309,
+    "Escape": 27,
+    "Tab": 9,
+    **_FUNCTION_KEYS,
+}
+
+
+def key_code(key: str, place: str) -> int | None:
+    """PyBullet's code of a key; None for those it does not know.
+
+    Letters have their lower-case character, whatever Shift and Caps Lock say, and digits stay digits.
+
+    Args:
+        key: `key` of the browser's event: a name or a character.
+        place: `code` of the event: which key of the keyboard it is.
+    """
+    if key in _NAMED:
+        return _NAMED[key]
+    if place.startswith("Digit") and place[5:].isdecimal():
+        return ord(place[5])
+    if len(key) == 1:
+        lower = key.lower()
+        return ord(lower) if len(lower) == 1 else ord(key)
+    return None
+
+
+class Keyboard:
+    """The keys of all pages together. Safe to use from all threads."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        # Codes of the keys each page holds; a key is up when nobody holds it.
+        self._held: defaultdict[int, dict[str, int]] = defaultdict(dict)
+        self._states: dict[int, int] = {}
+
+    def press(self, page: int, key: str, place: str) -> None:
+        """A key goes down on a page. Keyboards repeat held keys; that is no second press."""
+        code = key_code(key, place)
+        if code is None:
+            return
+        with self._lock:
+            if not self._is_held(code):
+                self._states[code] = self._states.get(code, 0) | DOWN | TRIGGERED
+            self._held[page][place or key] = code
+
+    def release(self, page: int, key: str, place: str) -> None:
+        """A key goes up on a page."""
+        with self._lock:
+            code = self._held[page].pop(place or key, None)
+            if code is not None:
+                self._let_go(code)
+
+    def release_all(self, page: int) -> None:
+        """A page has lost the keyboard, or is gone: it will not tell which keys go up."""
+        with self._lock:
+            for code in self._held.pop(page, {}).values():
+                self._let_go(code)
+
+    def events(self) -> dict[int, int]:
+        """What happened since the last call, by key: the sum of `DOWN`, `TRIGGERED` and `RELEASED`.
+
+        A key that went down and up in between is triggered and released.
+        """
+        with self._lock:
+            states = self._states
+            self._states = {code: DOWN for code, state in states.items() if state & DOWN}
+            return states
+
+    def _is_held(self, code: int) -> bool:
+        return any(code in held.values() for held in self._held.values())
+
+    def _let_go(self, code: int) -> None:
+        if not self._is_held(code):
+            self._states[code] = self._states.get(code, 0) & ~DOWN | RELEASED

@@ -1,0 +1,36 @@
+"""Mouse events as PyBullet reports them."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from carom.viewer.keys import DOWN, RELEASED, TRIGGERED
+
+MOVED, CLICKED = 1, 2
+_NO_BUTTON = -1
+# Scripts that never ask must not fill the memory; those that ask do so many times a second.
+_MOST_EVENTS = 1000
+
+MouseEvent = tuple[int, float, float, int, int]
+
+
+class Mouse:
+    """Motions and clicks of the mouse on all pages. Safe to use from all threads."""
+
+    def __init__(self) -> None:
+        self._events: deque[MouseEvent] = deque(maxlen=_MOST_EVENTS)
+
+    def move(self, x: float, y: float) -> None:
+        """The mouse is now at a pixel, counted from the upper left corner."""
+        self._events.append((MOVED, x, y, _NO_BUTTON, 0))
+
+    def button(self, x: float, y: float, button: int, *, down: bool) -> None:
+        """A button, 0 left, 1 in the middle, 2 right, goes down or up."""
+        self._events.append((CLICKED, x, y, button, DOWN | TRIGGERED if down else RELEASED))
+
+    def events(self) -> list[MouseEvent]:
+        """Type, x, y, button and state of what happened since the last call."""
+        events = []
+        while self._events:
+            events.append(self._events.popleft())
+        return events

@@ -1,0 +1,157 @@
+// What scripts draw: lines, points and texts, on links or in the world; and what the view adds itself.
+
+import { add, turned } from "./maths.js";
+
+const WORLD_AXES = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+const AXIS_COLOURS = [
+  [0.86, 0.16, 0.14],
+  [0.13, 0.62, 0.22],
+  [0.16, 0.36, 0.86],
+];
+const TEXT_PIXELS = 15;
+
+export class Drawings {
+  constructor(gl, overlay) {
+    this.gl = gl;
+    this.overlay = overlay;
+    this.items = new Map();
+    this.clouds = [];
+  }
+
+  add(header, payload) {
+    this.remove(header);
+    const item = { ...header };
+    if (header.type === "points") Object.assign(item, this.cloud(header, payload));
+    if (header.type === "text") item.label = this.label(header);
+    this.items.set(header.item, item);
+    this.clouds = [...this.items.values()].filter((other) => other.type === "points");
+  }
+
+  remove({ item }) {
+    const known = this.items.get(item);
+    if (!known) return;
+    known.label?.remove();
+    if (known.buffer) {
+      this.gl.deleteBuffer(known.buffer);
+      this.gl.deleteVertexArray(known.array);
+    }
+    this.items.delete(item);
+    this.clouds = this.clouds.filter((other) => other.item !== item);
+  }
+
+  clear() {
+    for (const item of [...this.items.values()]) this.remove(item);
+  }
+
+  cloud({ body, link, count, size }, payload) {
+    const gl = this.gl;
+    const array = gl.createVertexArray();
+    const buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, payload, gl.STATIC_DRAW);
+    for (const place of [0, 1]) {
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 0, place * count * 12);
+    }
+    gl.bindVertexArray(null);
+    const axes = (scene) => {
+      const pose = scene.linkPose(body, link);
+      return pose && [...WORLD_AXES.map((axis) => turned(pose.orientation, axis)), pose.position];
+    };
+    return { array, buffer, count, size, axes };
+  }
+
+  label({ text, colour, size }) {
+    const label = document.createElement("span");
+    label.textContent = text;
+    label.style.color = `rgb(${colour.map((part) => Math.round(255 * part)).join()})`;
+    label.style.fontSize = `${TEXT_PIXELS * size}px`;
+    this.overlay.append(label);
+    return label;
+  }
+
+  /** Lines as the renderer takes them: start, end, colour and width of each. */
+  lines(scene, options) {
+    const lines = [];
+    for (const item of this.items.values()) {
+      if (item.type !== "line") continue;
+      const pose = scene.linkPose(item.body, item.link);
+      if (pose) lines.push(inFrame(pose, item.start), inFrame(pose, item.end), item.colour, [item.width]);
+    }
+    if (options.frames) addFrames(lines, scene);
+    if (options.bounds) addBounds(lines, scene, options);
+    return new Float32Array(lines.flat().length ? lines.flat() : 0);
+  }
+
+  /** Puts texts where they belong on the page. */
+  placeLabels(scene, camera) {
+    for (const item of this.items.values()) {
+      if (item.type !== "text") continue;
+      const pose = scene.linkPose(item.body, item.link);
+      const pixel = pose && camera.pixel(inFrame(pose, item.position));
+      item.label.hidden = !pixel;
+      if (pixel) item.label.style.transform = `translate(${pixel[0]}px, ${pixel[1]}px) translateY(-100%)`;
+    }
+  }
+}
+
+function inFrame(pose, point) {
+  return add(pose.position, turned(pose.orientation, point));
+}
+
+function addFrames(lines, scene) {
+  for (const body of scene.bodies.values()) {
+    body.links.forEach((_, link) => {
+      const pose = scene.linkPose(body.body, link);
+      if (!pose) return;
+      WORLD_AXES.forEach((axis, i) => {
+        const tip = axis.map((value) => value * 0.1);
+        lines.push(pose.position, inFrame(pose, tip), AXIS_COLOURS[i], [2]);
+      });
+    });
+  }
+}
+
+function addBounds(lines, scene, options) {
+  for (const body of scene.bodies.values()) {
+    body.links.forEach((_, link) => {
+      const bounds = boundsOfLink(scene, body, link, options.collisions);
+      if (bounds) addBox(lines, ...bounds);
+    });
+  }
+}
+
+function boundsOfLink(scene, body, link, collisions) {
+  const pose = body.poses[link];
+  const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions);
+  if (!pose || shapes.length === 0) return null;
+  const lower = [Infinity, Infinity, Infinity];
+  const upper = [-Infinity, -Infinity, -Infinity];
+  for (const shape of shapes) {
+    const mesh = scene.meshes.get(shape.mesh);
+    if (!mesh) continue;
+    for (let corner = 0; corner < 8; corner++) {
+      const local = [0, 1, 2].map((i) => (corner & (1 << i) ? mesh.bounds.upper : mesh.bounds.lower)[i] * shape.scale[i]);
+      const point = inFrame(pose, add(shape.position, turned(shape.orientation, local)));
+      for (let i = 0; i < 3; i++) {
+        lower[i] = Math.min(lower[i], point[i]);
+        upper[i] = Math.max(upper[i], point[i]);
+      }
+    }
+  }
+  return [lower, upper];
+}
+
+function addBox(lines, lower, upper) {
+  const corner = (bits) => [0, 1, 2].map((i) => (bits & (1 << i) ? upper[i] : lower[i]));
+  for (let bits = 0; bits < 8; bits++) {
+    for (let i = 0; i < 3; i++) {
+      if (!(bits & (1 << i))) lines.push(corner(bits), corner(bits | (1 << i)), [0.9, 0.45, 0.1], [1]);
+    }
+  }
+}

@@ -1,0 +1,121 @@
+// The page: brings messages to what they are for, and draws.
+
+import { Camera } from "./camera.js";
+import { Connection } from "./connection.js";
+import { Drawings } from "./drawings.js";
+import { Keys } from "./keys.js";
+import { Options } from "./options.js";
+import { Panel } from "./panel.js";
+import { Pointer } from "./pointer.js";
+import { Renderer } from "./renderer.js";
+import { Scene } from "./scene.js";
+
+const canvas = document.getElementById("view");
+const notice = document.getElementById("notice");
+
+function say(text) {
+  notice.textContent = text ?? "";
+  notice.hidden = !text;
+}
+
+function start() {
+  const renderer = new Renderer(canvas);
+  const scene = new Scene(renderer.gl);
+  const camera = new Camera();
+  const options = new Options();
+  const drawings = new Drawings(renderer.gl, document.getElementById("labels"));
+  let stale = true;
+  let cameraMovedByUser = false;
+  const changed = () => (stale = true);
+  const optionsChanged = () => {
+    camera.yUp = options.yUp;
+    camera.update();
+    panel.showOptions();
+    send({ type: "want", collisions: options.collisions });
+    changed();
+  };
+  const cameraMoved = () => {
+    cameraMovedByUser = true;
+    changed();
+  };
+  const tellSize = () => send({ type: "size", width: camera.width, height: camera.height });
+  const send = (message) => connection.send(message);
+  const panel = new Panel(send, options, optionsChanged);
+  new Keys(send, options, optionsChanged);
+  new Pointer(canvas, camera, send, cameraMoved);
+
+  const answers = {
+    title: (header) => panel.showTitle(header),
+    mesh: (header, payload) => scene.addMesh(header, payload),
+    "no mesh": (header) => scene.removeMesh(header),
+    texture: (header, payload) => scene.addTexture(header, payload),
+    "no texture": (header) => scene.removeTexture(header),
+    body: (header) => scene.addBody(header),
+    "no body": (header) => scene.removeBody(header),
+    layout: (header) => (scene.layout = header),
+    frame: (header, payload) => {
+      scene.place(header, payload);
+      panel.showTime(header);
+    },
+    line: (header) => drawings.add(header),
+    text: (header) => drawings.add(header),
+    points: (header, payload) => drawings.add(header, payload),
+    "no item": (header) => drawings.remove(header),
+    slider: (header) => panel.addSlider(header),
+    "no slider": (header) => panel.removeSlider(header),
+    pause: (header) => panel.showPause(header),
+    camera: (header) => camera.set(header),
+    options: (header) => {
+      options.take(header);
+      optionsChanged();
+    },
+  };
+  const connection = new Connection(
+    (header, payload) => {
+      answers[header.type]?.(header, payload);
+      changed();
+    },
+    (connected) => {
+      say(connected ? null : "The simulation has ended. Waiting for the next…");
+      if (!connected) return;
+      // It tells everything from the beginning.
+      scene.clear();
+      drawings.clear();
+      panel.clear();
+      tellSize();
+    },
+  );
+
+  let frames = 0;
+  let since = performance.now();
+  function draw(now) {
+    requestAnimationFrame(draw);
+    if (renderer.resize()) {
+      camera.resize(canvas.clientWidth, canvas.clientHeight);
+      tellSize();
+      changed();
+    }
+    if (cameraMovedByUser) {
+      cameraMovedByUser = false;
+      send({ type: "camera", ...camera.state() });
+    }
+    frames += 1;
+    if (now - since > 500) {
+      panel.showFps((frames * 1000) / (now - since));
+      [frames, since] = [0, now];
+    }
+    if (!stale) return;
+    stale = false;
+    if (!options.rendering) return;
+    renderer.draw(scene, camera, options, { lines: drawings.lines(scene, options), clouds: drawings.clouds });
+    drawings.placeLabels(scene, camera);
+  }
+  requestAnimationFrame(draw);
+}
+
+try {
+  start();
+} catch (error) {
+  say(error.message);
+  throw error;
+}

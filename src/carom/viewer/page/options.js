@@ -1,0 +1,49 @@
+// What is shown and how: set by scripts (configureDebugVisualizer), by the panel and by keys.
+
+/** Numbers of PyBullet's COV_ENABLE_* flags. */
+const FLAG = {
+  panel: 1,
+  shadows: 2,
+  wireframe: 3,
+  rendering: 7,
+  shortcuts: 9,
+  picking: 10,
+};
+
+export class Options {
+  constructor() {
+    this.panel = true;
+    this.shadows = true;
+    this.wireframe = false;
+    this.rendering = true;
+    this.shortcuts = true;
+    this.picking = true;
+    this.grid = true;
+    this.frames = false;
+    this.bounds = false;
+    this.collisions = false;
+    this.yUp = false;
+    this.background = null;
+    this.lightPosition = [-3, -2.2, 6];
+    this.shadowIntensity = 0.85;
+    this.shadowResolution = 2048;
+    this.shadowWorldSize = null;
+    this.told = {};
+  }
+
+  /** Takes over what the script has changed, and leaves what the user has. */
+  take(message) {
+    for (const [name, flag] of Object.entries(FLAG)) {
+      const value = message.flags?.[flag];
+      if (value !== undefined && value !== this.told[name]) this[name] = this.told[name] = value;
+    }
+    this.yUp = message.up_axis === 1;
+    this.background = message.background;
+    if (message.light_position && message.light_position.some((x) => x !== 0)) {
+      this.lightPosition = message.light_position;
+    }
+    this.shadowIntensity = message.shadow_map_intensity ?? this.shadowIntensity;
+    this.shadowResolution = message.shadow_map_resolution ?? this.shadowResolution;
+    this.shadowWorldSize = message.shadow_map_world_size ? message.shadow_map_world_size / 2 : null;
+  }
+}

@@ -1,0 +1,65 @@
+// The mouse: it moves the camera, and tells the script. Left turns, the middle button or Shift and left move,
+// right or the wheel zooms; with Ctrl or Alt the left button always turns, as in PyBullet's window.
+
+export class Pointer {
+  constructor(canvas, camera, send, cameraMoved) {
+    this.canvas = canvas;
+    this.camera = camera;
+    this.send = send;
+    this.cameraMoved = cameraMoved;
+    this.at = null;
+    this.hovered = null;
+    this.button = null;
+    /** Takes hold of what is under the mouse; see picking.js. */
+    this.grasp = null;
+    canvas.addEventListener("pointerdown", (event) => this.down(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => this.up(event));
+    canvas.addEventListener("pointerleave", () => (this.hovered = null));
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+  }
+
+  down(event) {
+    this.canvas.focus();
+    this.canvas.setPointerCapture(event.pointerId);
+    this.at = [event.offsetX, event.offsetY];
+    this.button = event.button;
+    this.tell(event, { button: event.button, down: true });
+    if (event.button === 0 && !event.ctrlKey && !event.altKey && !event.shiftKey) {
+      this.grasp?.begin(event.offsetX, event.offsetY);
+    }
+  }
+
+  move(event) {
+    const [x, y] = [event.offsetX, event.offsetY];
+    this.hovered = [x, y];
+    this.tell(event, {});
+    if (this.at === null) return;
+    const [dx, dy] = [x - this.at[0], y - this.at[1]];
+    this.at = [x, y];
+    if (this.grasp?.busy) return this.grasp.move(x, y);
+    if (this.button === 0 && !event.shiftKey) this.camera.orbit(dx, dy);
+    else if (this.button === 2) this.camera.zoom(Math.exp(dy * 0.01));
+    else this.camera.pan(dx, dy);
+    this.cameraMoved();
+  }
+
+  up(event) {
+    if (this.at === null) return;
+    this.at = null;
+    this.tell(event, { button: event.button, down: false });
+    this.grasp?.end();
+  }
+
+  wheel(event) {
+    event.preventDefault();
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+    this.camera.zoom(Math.exp(event.deltaY * lines * 0.001));
+    this.cameraMoved();
+  }
+
+  tell(event, more) {
+    this.send({ type: "mouse", x: event.offsetX, y: event.offsetY, ...more });
+  }
+}

@@ -1,0 +1,133 @@
+"""Keeps the board up to date with a world: its bodies, their looks, and where they are."""
+
+from __future__ import annotations
+
+from threading import RLock
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.model.body_spec import BASE
+from carom.render.appearance import Appearance, appearance_of
+from carom.viewer.board import Board
+from carom.viewer.messages import encoded
+from carom.viewer.shapes import Assets, described
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+# How long to wait for a world that is stepping before bodies are looked at in the next frame [s].
+_PATIENCE = 0.02
+# Over what time the real-time factor is an average [s].
+_RATE_WINDOW = 1.0
+
+
+class SceneFeed:
+    """Puts what a world shows on the board. Belongs to one thread.
+
+    A frame copies the poses without asking for the lock: at worst some links are one time step ahead of the
+    others, and stepping waits for nobody. Only when bodies come, go or change their looks is the world
+    held, for as long as it takes to describe them.
+
+    Attributes:
+        collisions: Describe collision shapes, too.
+    """
+
+    def __init__(self, world: World, lock: RLock, board: Board) -> None:  # type: ignore[valid-type]
+        self.collisions = False
+        self._world = world
+        self._lock: Any = lock
+        self._board = board
+        self._assets = Assets(board)
+        self._bodies: list[Body] = []
+        self._arrays: object = None
+        self._appearance: Appearance | None = None
+        self._looks: tuple[object, ...] = ()
+        self._described: dict[int, dict[str, Any]] = {}
+        self._rows: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self._layout = 0
+        self._last = b""
+        self._clock: list[tuple[float, float]] = []
+
+    def frame(self, extras: dict[str, Any]) -> bytes | None:
+        """Where everything is now, as a message; None if nothing has changed.
+
+        Args:
+            extras: What else the message is to say.
+        """
+        self._follow_bodies()
+        poses = self._world.link_pose
+        if self._rows.size and self._rows[-1] >= len(poses):
+            return None
+        payload = poses[self._rows].astype("<f4").tobytes()
+        time = float(self._world.time)
+        header = {"type": "frame", "layout": self._layout, "time": time, "rate": self._rate(time), **extras}
+        message = encoded(header, payload)
+        if message == self._last:
+            return None
+        self._last = message
+        return message
+
+    def _rate(self, time: float) -> float:
+        """Simulated time by real time of late."""
+        now = monotonic()
+        if self._clock and time < self._clock[-1][1]:
+            self._clock.clear()
+        self._clock.append((now, time))
+        while now - self._clock[0][0] > _RATE_WINDOW and len(self._clock) > 2:
+            self._clock.pop(0)
+        passed = now - self._clock[0][0]
+        return round((time - self._clock[0][1]) / passed, 3) if passed > 0.0 else 0.0
+
+    def _follow_bodies(self) -> None:
+        world = self._world
+        # A reset gives a world new arrays.
+        same_world = world.arrays is self._arrays
+        if (
+            same_world
+            and list(world.bodies.values()) == self._bodies
+            and self._looks == self._present_looks()
+        ):
+            return
+        if not self._lock.acquire(timeout=_PATIENCE):
+            return
+        try:
+            self._describe(list(world.bodies.values()))
+        finally:
+            self._lock.release()
+
+    def _present_looks(self) -> tuple[object, ...]:
+        appearance = self._appearance
+        assert appearance is not None
+        return (appearance, appearance.changes, appearance.textures.changes, self.collisions)
+
+    def _describe(self, bodies: list[Body]) -> None:
+        self._appearance = appearance = appearance_of(self._world)
+        appearance.number_textures(self._world)
+        looks = self._present_looks()
+        known = set(map(id, self._bodies)) if looks == self._looks else set()
+        new = {}
+        for body in bodies:
+            if id(body) in known:
+                new[body.id] = self._described[body.id]
+                continue
+            new[body.id] = described(body, appearance, self._assets, collisions=self.collisions)
+            if self._described.get(body.id) != new[body.id]:
+                self._board.put(("body", body.id), new[body.id])
+        for number in self._described.keys() - new.keys():
+            self._board.take_down(("body", number), {"type": "no body", "body": number})
+        self._described = new
+        shapes = [shape for facts in new.values() for shape in facts["shapes"]]
+        self._assets.keep_only({shape["mesh"] for shape in shapes}, {shape["texture"] for shape in shapes})
+        rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
+        self._rows = np.concatenate([np.zeros(0, dtype=np.int64), *rows])
+        self._layout += 1
+        order = [[body.id, body.joint_count - BASE] for body in bodies]
+        self._board.put("layout", {"type": "layout", "layout": self._layout, "bodies": order})
+        # Only what is held for good tells one body from another: ids of objects are used again.
+        self._bodies = bodies
+        self._arrays = self._world.arrays
+        self._looks = looks

@@ -1,0 +1,246 @@
+"""The server of the page: files by HTTP, and a socket to each page that is open."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from http import HTTPStatus
+from pathlib import Path
+from threading import Event, Thread
+from typing import Any
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from carom.viewer.access import host_allowed, origin_allowed
+from carom.viewer.board import Board
+from carom.viewer.messages import MAX_INCOMING_BYTES, received
+
+_log = logging.getLogger("carom")
+# Of the library: browsers that turn away in the middle of a request are no news.
+_quiet = logging.getLogger("carom.viewer.sockets")
+_quiet.setLevel(logging.CRITICAL)
+
+PREFERRED_PORT = 8400
+_FRAMES_PER_SECOND = 60
+_PAGE = Path(__file__).with_name("page")
+_KINDS = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+# Notebooks show the page inside their own, which lives on this machine or in an editor.
+_POLICY = (
+    "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; "
+    "style-src 'self' 'unsafe-inline'; "
+    "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview:"
+)
+
+
+@cache
+def _files() -> dict[str, tuple[str, bytes]]:
+    """Kind and content of everything the server gives out, by path."""
+    files = {
+        f"/{path.name}": (_KINDS[path.suffix], path.read_bytes())
+        for path in sorted(_PAGE.iterdir())
+        if path.suffix in _KINDS
+    }
+    return {**files, "/": files["/index.html"]}
+
+
+class _Page:
+    """One page that is open."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.revision = 0
+        self.news = asyncio.Event()
+
+
+class PageServer:
+    """Keeps every page that is open up to date, at display rate, from a thread of its own.
+
+    Args:
+        host: Address to listen on.
+        port: Port to listen on; None for the usual one or, where that is taken, any; 0 for any.
+        board: What pages show.
+        frame: Called at display rate while pages are open: a message with what moves, or None. Pages get
+            the newest one they have time for.
+        receive: Called with the number of a page and what it sends.
+        gone: Called with the number of a page that has been closed.
+
+    Raises:
+        OSError: The address cannot be listened on.
+    """
+
+    def __init__(
+        self,
+        host: str,
+        port: int | None,
+        board: Board,
+        frame: Callable[[], bytes | None],
+        receive: Callable[[int, dict[str, Any]], None],
+        gone: Callable[[int], None],
+    ) -> None:
+        self.host = host
+        self.port = 0
+        self._wanted_ports = (PREFERRED_PORT, 0) if port is None else (port,)
+        self._board = board
+        self._make_frame = frame
+        self._frame: bytes | None = None
+        self._receive = receive
+        self._gone = gone
+        self._pages: set[_Page] = set()
+        self._numbers = 0
+        self._started = Event()
+        self._problem: OSError | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread = Thread(target=self._run, name="carom viewer", daemon=True)
+        self._thread.start()
+        self._started.wait()
+        if self._problem is not None:
+            raise self._problem
+
+    @property
+    def address(self) -> str:
+        """Where the page is."""
+        name = f"[{self.host}]" if ":" in self.host else self.host
+        return f"http://{'localhost' if name == '0.0.0.0' else name}:{self.port}/"
+
+    @property
+    def page_count(self) -> int:
+        """How many pages are open."""
+        return len(self._pages)
+
+    def stop(self) -> None:
+        """Closes all sockets; pages say that the simulation has ended."""
+        loop = self._loop
+        if loop is not None:
+            with suppress(RuntimeError):
+                loop.call_soon_threadsafe(self._stopping.set)
+        self._thread.join(timeout=5.0)
+
+    def _run(self) -> None:
+        try:
+            asyncio.run(self._serve())
+        except OSError as problem:
+            self._problem = problem
+        except Exception:
+            _log.exception("The viewer has stopped.")
+        finally:
+            self._loop = None
+            self._started.set()
+
+    async def _serve(self) -> None:
+        self._stopping = asyncio.Event()
+        self._somebody = asyncio.Event()
+        async with await self._listen() as server:
+            self.port = next(iter(server.sockets)).getsockname()[1]
+            self._loop = asyncio.get_running_loop()
+            self._started.set()
+            beat = asyncio.create_task(self._beat())
+            await self._stopping.wait()
+            beat.cancel()
+
+    async def _listen(self) -> Server:
+        *first, last = self._wanted_ports
+        for port in first:
+            with suppress(OSError):
+                return await self._listen_on(port)
+        return await self._listen_on(last)
+
+    async def _listen_on(self, port: int) -> Server:
+        return await serve(
+            self._talk,
+            self.host,
+            port,
+            process_request=self._answer,
+            # Poses hardly get smaller, and compressing them costs more than sending them.
+            compression=None,
+            max_size=MAX_INCOMING_BYTES,
+            logger=_quiet,
+            close_timeout=1.0,
+        )
+
+    async def _beat(self) -> None:
+        """Makes frames for as long as somebody watches."""
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        while True:
+            await self._somebody.wait()
+            try:
+                self._frame = self._make_frame() or self._frame
+            except Exception:
+                _log.exception("The viewer could not read the world.")
+            self._board.forget_removals(min((page.revision for page in self._pages), default=0))
+            for page in self._pages:
+                page.news.set()
+            due = max(due + 1.0 / _FRAMES_PER_SECOND, loop.time())
+            await asyncio.sleep(due - loop.time())
+
+    def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
+        host = request.headers.get("Host")
+        if not host_allowed(self.host, host):
+            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
+        path = request.path.partition("?")[0]
+        if path == "/socket":
+            if not origin_allowed(host, request.headers.get("Origin")):
+                return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
+            return None
+        file = _files().get(path)
+        if file is None:
+            return connection.respond(HTTPStatus.NOT_FOUND, "There is no such file.\n")
+        kind, content = file
+        headers = Headers(
+            {
+                "Content-Type": kind,
+                "Content-Length": str(len(content)),
+                "Content-Security-Policy": _POLICY,
+                "X-Content-Type-Options": "nosniff",
+                "Cache-Control": "no-cache",
+                "Connection": "close",
+            }
+        )
+        return Response(HTTPStatus.OK, "OK", headers, content)
+
+    async def _talk(self, connection: ServerConnection) -> None:
+        self._numbers += 1
+        page = _Page(self._numbers)
+        self._pages.add(page)
+        self._somebody.set()
+        sender = asyncio.create_task(self._send(connection, page))
+        try:
+            async for message in connection:
+                try:
+                    self._receive(page.number, received(message))
+                except (KeyError, TypeError, ValueError) as problem:
+                    _log.debug("A page sent something that is not understood: %s", problem)
+        except ConnectionClosed:
+            pass
+        finally:
+            sender.cancel()
+            self._pages.discard(page)
+            if not self._pages:
+                self._somebody.clear()
+            self._gone(page.number)
+
+    async def _send(self, connection: ServerConnection, page: _Page) -> None:
+        sent: bytes | None = None
+        with suppress(ConnectionClosed):
+            while True:
+                await page.news.wait()
+                page.news.clear()
+                messages, revision = self._board.since(page.revision)
+                for message in messages:
+                    await connection.send(message)
+                page.revision = revision
+                frame = self._frame
+                if frame is not None and frame is not sent:
+                    await connection.send(frame)
+                    sent = frame

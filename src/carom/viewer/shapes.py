@@ -1,0 +1,180 @@
+"""What a page is told of the looks of a body: meshes and textures once, and where they are used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.description import Box, Cylinder, Geometry, Pose, Sphere
+from carom.description.pose import Vector3
+from carom.description.transform import compose, inverse
+from carom.model.body_spec import BASE
+from carom.render.appearance import Appearance, ShapeLook
+from carom.render.images import Texels
+from carom.render.meshes import shape_mesh
+from carom.render.primitives import primitive_mesh
+from carom.render.render_mesh import RenderMesh
+from carom.render.textures import NO_TEXTURE
+from carom.viewer.board import Board
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+_MAX_TEXTURE_SIDE = 4096
+_COLLISION_COLOUR = (0.25, 0.7, 0.45, 0.55)
+_NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
+# Shapes of all sizes share one mesh, so that a page draws any number of them at once.
+_UNIT_BOX = primitive_mesh(Box((1.0, 1.0, 1.0)))
+_UNIT_SPHERE = primitive_mesh(Sphere(1.0))
+_UNIT_CYLINDER = primitive_mesh(Cylinder(1.0, 1.0))
+
+
+class Assets:
+    """Meshes and textures that pages have, each sent once however many shapes share it."""
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._meshes: dict[int, tuple[RenderMesh, int]] = {}
+        self._textures: dict[int, tuple[Texels, int]] = {}
+        self._next = 0
+
+    def mesh(self, mesh: RenderMesh) -> int:
+        """Number of a mesh on the pages."""
+        known = self._meshes.get(id(mesh))
+        if known is not None:
+            return known[1]
+        number = self._number()
+        self._meshes[id(mesh)] = (mesh, number)
+        header = {
+            "type": "mesh",
+            "mesh": number,
+            "vertices": len(mesh.positions),
+            "triangles": len(mesh.triangles),
+        }
+        payload = b"".join(
+            np.ascontiguousarray(array, dtype=kind).tobytes()
+            for array, kind in (
+                (mesh.positions, "<f4"),
+                (mesh.normals, "<f4"),
+                (mesh.uvs, "<f4"),
+                (mesh.triangles, "<u4"),
+            )
+        )
+        self._board.put(("mesh", number), header, payload)
+        return number
+
+    def texture(self, image: Texels) -> int:
+        """Number of an image on the pages."""
+        known = self._textures.get(id(image))
+        if known is not None:
+            return known[1]
+        number = self._number()
+        self._textures[id(image)] = (image, number)
+        every = -(-max(image.shape[:2]) // _MAX_TEXTURE_SIDE)
+        texels = image[::every, ::every]
+        header = {"type": "texture", "texture": number, "width": texels.shape[1], "height": texels.shape[0]}
+        # The lower row comes first, as texture coordinates have it.
+        self._board.put(("texture", number), header, np.ascontiguousarray(texels[::-1]).tobytes())
+        return number
+
+    def keep_only(self, meshes: set[int], textures: set[int]) -> None:
+        """Forgets what no shape uses any more; both sets hold numbers."""
+        for kind, known, used in (("mesh", self._meshes, meshes), ("texture", self._textures, textures)):
+            for identity, (_, number) in list(known.items()):
+                if number not in used:
+                    del known[identity]
+                    self._board.take_down((kind, number), {"type": f"no {kind}", kind: number})
+
+    def _number(self) -> int:
+        self._next += 1
+        return self._next
+
+
+def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
+    """Everything a page has to know of a body but where its links are.
+
+    Args:
+        body: The body.
+        appearance: The looks of its world.
+        assets: Where meshes and textures go.
+        collisions: Describe the collision shapes, too.
+    """
+    shapes = []
+    for link in range(BASE, body.joint_count):
+        to_inertial = inverse(body.link_inertial_frame(link))
+        for look in appearance.shapes(body, link):
+            shapes.append(_shape(look, link, to_inertial, appearance, assets))
+        if collisions:
+            shapes.extend(_collisions(body, link, to_inertial, assets))
+    return {
+        "type": "body",
+        "body": body.id,
+        "name": body.name,
+        "links": [_link(body, link) for link in range(BASE, body.joint_count)],
+        "shapes": shapes,
+    }
+
+
+def _link(body: Body, link: int) -> dict[str, Any]:
+    spec = body.link_spec(link)
+    frame = inverse(body.link_inertial_frame(link))
+    facts: dict[str, Any] = {
+        "name": spec.name,
+        "position": frame.position,
+        "orientation": frame.orientation,
+    }
+    if link != BASE:
+        facts |= {"joint": spec.joint_name, "kind": spec.joint_type.value, "axis": spec.joint_axis}
+    return facts
+
+
+def _shape(
+    look: ShapeLook, link: int, to_inertial: Pose, appearance: Appearance, assets: Assets
+) -> dict[str, Any]:
+    mesh, scale = _shared(look.geometry, look.mesh)
+    texture = NO_TEXTURE
+    if look.texture != NO_TEXTURE:
+        texture = assets.texture(appearance.textures.image(look.texture))
+    frame = compose(to_inertial, look.frame)
+    return {
+        "link": link - BASE,
+        "mesh": assets.mesh(mesh),
+        "texture": texture,
+        "rgba": look.rgba,
+        "specular": look.specular,
+        "twoSided": look.two_sided,
+        "position": frame.position,
+        "orientation": frame.orientation,
+        "scale": scale,
+    }
+
+
+def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
+    for shape in body.link_spec(link).collisions:
+        mesh, scale = _shared(shape.geometry, None)
+        frame = compose(to_inertial, shape.frame)
+        yield {
+            "link": link - BASE,
+            "mesh": assets.mesh(mesh),
+            "texture": NO_TEXTURE,
+            "rgba": _COLLISION_COLOUR,
+            "specular": (0.2, 0.2, 0.2),
+            "twoSided": True,
+            "position": frame.position,
+            "orientation": frame.orientation,
+            "scale": scale,
+            "collision": True,
+        }
+
+
+def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[RenderMesh, Vector3]:
+    """A mesh and the scale that makes the shape of it."""
+    if isinstance(geometry, Box):
+        return _UNIT_BOX, geometry.half_extents
+    if isinstance(geometry, Sphere):
+        return _UNIT_SPHERE, (geometry.radius, geometry.radius, geometry.radius)
+    if isinstance(geometry, Cylinder):
+        return _UNIT_CYLINDER, (geometry.radius, geometry.radius, geometry.length)
+    return (shape_mesh(geometry) if mesh is None else mesh), _NO_SCALE

@@ -1,0 +1,161 @@
+"""The window as a page in the browser."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import fields
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from carom.description.pose import Vector3
+from pybullet._errors import fail
+from pybullet._window import DebugCamera, DebugItem, RecordingWindow, Slider, VisualizerOptions
+
+if TYPE_CHECKING:
+    from carom.viewer.viewer import Viewer
+    from pybullet._clients import Client
+
+# Options that are whole numbers, and the least they can be.
+_COUNTS = {"width": 1, "height": 1, "port": 0}
+# A colour component that is not stated, or is no number.
+_DEFAULT_SHADE = 0.8
+
+
+class PageWindow(RecordingWindow):
+    """A window that keeps what the script shows, like its base, and has a viewer show it.
+
+    Args:
+        viewer: The viewer.
+    """
+
+    def __init__(self, viewer: Viewer) -> None:
+        super().__init__(viewer.camera.orbit.width, viewer.camera.orbit.height)
+        self._viewer = viewer
+        self.items = viewer.drawings.items
+        self.sliders = viewer.controls.sliders
+        viewer.on_hold = self._hold
+
+    @property
+    def viewer(self) -> Viewer:
+        """The viewer behind it."""
+        return self._viewer
+
+    def is_open(self) -> bool:
+        return self._viewer.is_open
+
+    def close(self) -> None:
+        self._viewer.close()
+
+    def wait_for_turn(self) -> None:
+        self._viewer.gate.wait()
+
+    def has_turn(self) -> bool:
+        return self._viewer.gate.passes()
+
+    def draw(self, item: DebugItem, replaced: int) -> int:
+        self._viewer.drawings.expire()
+        identifier = super().draw(item, replaced)
+        self._viewer.drawings.draw(identifier, item)
+        return identifier
+
+    def add_slider(self, slider: Slider) -> int:
+        identifier = super().add_slider(slider)
+        self._viewer.controls.add(identifier, slider)
+        return identifier
+
+    def remove(self, item: int) -> None:
+        self._viewer.drawings.remove(item)
+        self._viewer.controls.remove(item)
+
+    def remove_drawings(self) -> None:
+        self._viewer.drawings.clear()
+        super().remove_drawings()
+
+    def remove_sliders(self) -> None:
+        for item in list(self.sliders):
+            self._viewer.controls.remove(item)
+
+    def colour_link(self, body: int, link: int, colour: Vector3 | None) -> None:
+        super().colour_link(body, link, colour)
+        self._show_options()
+
+    def key_events(self) -> dict[int, int]:
+        return self._viewer.keyboard.events()
+
+    def mouse_events(self) -> Sequence[tuple[int, float, float, int, int]]:
+        return self._viewer.mouse.events()
+
+    def configure(self, changes: VisualizerOptions) -> None:
+        super().configure(changes)
+        self._show_options()
+
+    def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
+        self._viewer.camera.move(distance, yaw, pitch, target)
+
+    def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
+        orbit = self._viewer.camera.orbit
+        return DebugCamera(
+            orbit.width,
+            orbit.height,
+            orbit.distance,
+            orbit.yaw,
+            orbit.pitch,
+            orbit.target,
+            self.camera.up_axis,
+        ).info()
+
+    def _hold(self, held: bool) -> None:
+        self.held = held
+
+    def _show_options(self) -> None:
+        options = {field.name: getattr(self.options, field.name) for field in fields(self.options)}
+        colours = [[body, link + 1, colour] for (body, link), colour in self.colours.items()]
+        self._viewer.configure({**options, "up_axis": self.camera.up_axis, "colours": colours})
+
+
+def open_window(client: Client, options: str) -> PageWindow:
+    """Shows the world of a client.
+
+    Args:
+        client: The connection.
+        options: What `connect` was told of the window.
+
+    Raises:
+        pybullet.error: The address asked for cannot be listened on.
+    """
+    from carom.viewer.viewer import Viewer
+
+    values: dict[str, str] = {}
+    for option in options.split():
+        name, _, value = option.lstrip("-").partition("=")
+        if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
+            values[name] = value
+    arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
+    if "host" in values:
+        arguments["host"] = values["host"]
+    try:
+        viewer = Viewer(client.world, client.lock, title=Path(sys.argv[0]).stem or "Carom", **arguments)
+    except OSError as problem:
+        fail("Cannot open the window:", f"{problem}.")
+    window = PageWindow(viewer)
+    background = [values.get(f"background_color_{name}") for name in ("red", "green", "blue")]
+    if any(background):
+        window.configure(VisualizerOptions(background=_colour(background)))
+    print(f"The simulation is shown at {viewer.address}", flush=True)
+    viewer.open_browser()
+    return window
+
+
+def _colour(parts: Sequence[str | None]) -> Vector3:
+    red, green, blue = (_DEFAULT_SHADE if part is None else _number(part) for part in parts)
+    return (red, green, blue)
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        return _DEFAULT_SHADE
+    return value if isfinite(value) else _DEFAULT_SHADE

@@ -1,0 +1,85 @@
+"""The viewer's page in a real browser without a window."""
+
+from __future__ import annotations
+
+import io
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+from tests.viewer.watcher import PATIENCE
+
+BROWSER = next(
+    filter(
+        None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"))
+    ),
+    None,
+)
+needs_browser = pytest.mark.skipif(
+    BROWSER is None, reason="no Chromium here; tests/viewer/test_server.py does what needs no browser"
+)
+# Drawn by the processor: small, so that it is quick.
+WIDTH, HEIGHT = 480, 360
+_ARGUMENTS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+]
+
+
+@contextmanager
+def chromium() -> Iterator:
+    """The browser; it is closed at the end."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=BROWSER, args=_ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+class Page:
+    """The viewer's page, as a user sees it.
+
+    Attributes:
+        page: The page of playwright.
+        complaints: What the browser has complained about so far.
+    """
+
+    def __init__(self, browser, address: str, width: int = WIDTH, height: int = HEIGHT) -> None:
+        self.complaints: list[str] = []
+        self.page = browser.new_page(viewport={"width": width, "height": height})
+        self.page.set_default_timeout(PATIENCE * 1000)
+        self.page.on("console", self._note)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.goto(address)
+
+    def _note(self, message) -> None:
+        # The software renderer warns of being slow when its pictures are read.
+        if message.type in ("error", "warning") and "GPU stall" not in message.text:
+            self.complaints.append(message.text)
+
+    def picture(self) -> NDArray[np.int16]:
+        """What the page shows of the scene alone: (height, width, 3) red, green and blue."""
+        self.page.evaluate(
+            "for (const id of ['panel', 'labels']) document.getElementById(id).style.opacity = 0"
+        )
+        image = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
+        self.page.evaluate(
+            "for (const id of ['panel', 'labels']) document.getElementById(id).style.opacity = 1"
+        )
+        return np.array(image).astype(np.int16)
+
+    def wait_for_picture(self, condition) -> NDArray[np.int16]:
+        """Takes pictures until something holds of one."""
+        for _ in range(60):
+            picture = self.picture()
+            if condition(picture):
+                return picture
+            self.page.wait_for_timeout(200)
+        raise AssertionError("the picture does not become what it should be")

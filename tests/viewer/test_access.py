@@ -1,0 +1,41 @@
+"""Who may talk to the server."""
+
+import pytest
+
+from carom.viewer.access import host_allowed, is_loopback, origin_allowed
+
+
+@pytest.mark.parametrize("host", ["localhost:8400", "127.0.0.1:9", "[::1]:8400", "LOCALHOST"])
+def test_this_machine_is_served_under_its_own_names(host: str):
+    assert host_allowed("127.0.0.1", host)
+
+
+@pytest.mark.parametrize(
+    "host", [None, "", "evil.example", "localhost.evil.example:8400", "10.0.0.7:80", "[::1"]
+)
+def test_other_names_that_lead_here_are_refused(host: str | None):
+    assert not host_allowed("127.0.0.1", host)
+
+
+def test_a_server_for_the_network_answers_to_addresses():
+    assert host_allowed("0.0.0.0", "192.168.1.20:8400")
+    assert host_allowed("robot.lan", "robot.lan:8400")
+    assert not host_allowed("0.0.0.0", "evil.example:8400")
+
+
+def test_sockets_are_for_the_servers_own_page():
+    assert origin_allowed("localhost:8400", "http://localhost:8400")
+    assert origin_allowed("localhost:8400", None)
+    for origin in (
+        "http://evil.example",
+        "http://localhost:8401",
+        "null",
+        "file://",
+        "http://127.0.0.1:8400",
+    ):
+        assert not origin_allowed("localhost:8400", origin)
+
+
+def test_loopback():
+    assert all(map(is_loopback, ("127.0.0.1", "127.1.2.3", "::1", "localhost")))
+    assert not any(map(is_loopback, ("0.0.0.0", "192.168.1.1", "example.org")))

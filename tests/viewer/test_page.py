@@ -1,0 +1,209 @@
+"""The page in a real browser: what it shows, and what users do with it."""
+
+import re
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+from tests.viewer.browser import HEIGHT, WIDTH, Page, chromium, needs_browser
+from tests.viewer.watcher import PATIENCE
+
+import pybullet as p
+import pybullet_data
+from carom.viewer.viewer import Viewer
+
+pytestmark = needs_browser
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator:
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture
+def page(viewer: Viewer, browser) -> Iterator[Page]:
+    page = Page(browser, viewer.address)
+    page.page.wait_for_selector("#panel")
+    yield page
+    page.page.close()
+    assert page.complaints == []
+
+
+def wait_for(condition: Callable[[], object], page: Page) -> None:
+    """Lets the browser work until something holds here."""
+    give_up = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < give_up
+        page.page.wait_for_timeout(20)
+
+
+def pixel_of(point: tuple[float, float, float]) -> tuple[int, int]:
+    """Column and row of a point, by what `getDebugVisualizerCamera` says of the camera."""
+    info = p.getDebugVisualizerCamera()
+    view, projection = (np.array(matrix).reshape(4, 4).T for matrix in info[2:4])
+    x, y, _, w = projection @ view @ (*point, 1)
+    return int((x / w + 1) / 2 * info[0]), int((1 - y / w) / 2 * info[1])
+
+
+def is_red(colour: np.ndarray) -> bool:
+    return bool(colour[0] > 90 and colour[0] > 2 * max(colour[1], colour[2]))
+
+
+def red_ball(position: tuple[float, float, float], radius: float = 0.1) -> int:
+    shape = p.createVisualShape(p.GEOM_SPHERE, radius=radius, rgbaColor=[1, 0, 0, 1], specularColor=[0, 0, 0])
+    return p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=radius), shape, position)
+
+
+def red_at(point: tuple[float, float, float]) -> Callable[[np.ndarray], bool]:
+    column, row = pixel_of(point)
+    return lambda picture: is_red(picture[row, column])
+
+
+def test_things_are_seen_where_the_simulation_has_them(page: Page):
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    p.resetDebugVisualizerCamera(2, 40, -30, [0, 0, 0.3])
+    places = [(0.4, 0.3, 0.2), (-0.5, 0.2, 0.9), (0.1, -0.6, 0.5)]
+    balls = [red_ball(place) for place in places]
+    picture = page.wait_for_picture(lambda picture: all(red_at(place)(picture) for place in places))
+    assert not is_red(picture[5, 5])
+    for place in places:
+        column, row = pixel_of(place)
+        # The middle of what is red near by is the middle of the ball.
+        near = picture[max(0, row - 40) : row + 40, max(0, column - 40) : column + 40]
+        rows, columns = np.nonzero((near[..., 0] > 90) & (near[..., 0] > 2 * near[..., 1]))
+        assert rows.mean() + max(0, row - 40) == pytest.approx(row, abs=3)
+        assert columns.mean() + max(0, column - 40) == pytest.approx(column, abs=3)
+    p.resetBasePositionAndOrientation(balls[0], [0.8, 0.6, 0.2], [0, 0, 0, 1])
+    page.wait_for_picture(red_at((0.8, 0.6, 0.2)))
+    p.removeBody(balls[0])
+    page.wait_for_picture(lambda picture: not red_at((0.8, 0.6, 0.2))(picture))
+
+
+def test_a_robot_on_a_floor_shows_and_the_camera_of_the_user_counts(page: Page):
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.loadURDF("plane.urdf")
+    p.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
+    p.resetDebugVisualizerCamera(1.5, 30, -20, [0, 0, 0.5])
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    page.wait_for_picture(lambda picture: len(np.unique(picture.reshape(-1, 3), axis=0)) > 500)
+    page.page.mouse.move(60, 300)
+    page.page.mouse.wheel(0, 400)
+    wait_for(lambda: p.getDebugVisualizerCamera()[10] > 1.6, page)
+    page.page.keyboard.down("Control")
+    page.page.mouse.down()
+    page.page.mouse.move(90, 300)
+    page.page.mouse.up()
+    page.page.keyboard.up("Control")
+    wait_for(lambda: p.getDebugVisualizerCamera()[8] == pytest.approx(21), page)
+    assert p.getDebugVisualizerCamera()[9] == pytest.approx(-20)
+
+
+def test_a_slider_moves_what_the_script_reads(page: Page):
+    gain = p.addUserDebugParameter("gain", 0, 10, 2)
+    slider = page.page.get_by_label(re.compile("gain"))
+    slider.wait_for()
+    assert float(slider.input_value()) == 2
+    slider.fill("7.5")
+    wait_for(lambda: p.readUserDebugParameter(gain) == 7.5, page)
+    again = p.addUserDebugParameter("again", 1, 0, 3)
+    page.page.get_by_role("button", name="again").click(click_count=2)
+    wait_for(lambda: p.readUserDebugParameter(again) == 5, page)
+    p.removeAllUserParameters()
+    slider.wait_for(state="detached")
+
+
+def key_events(page: Page) -> dict[int, int]:
+    """The next events there are."""
+    events: dict[int, int] = {}
+    wait_for(lambda: events or events.update(p.getKeyboardEvents()), page)
+    return events
+
+
+@pytest.mark.parametrize(
+    ("key", "code"), [("Escape", 27), ("q", ord("q")), ("ArrowUp", p.B3G_UP_ARROW), ("Shift", p.B3G_SHIFT)]
+)
+def test_keys_are_down_triggered_and_released(page: Page, key: str, code: int):
+    page.page.focus("#view")
+    page.page.keyboard.down(key)
+    assert key_events(page) == {code: p.KEY_IS_DOWN | p.KEY_WAS_TRIGGERED}
+    page.page.keyboard.down(key)
+    page.page.wait_for_timeout(50)
+    assert p.getKeyboardEvents() == {code: p.KEY_IS_DOWN}
+    page.page.keyboard.up(key)
+    wait_for(lambda: p.getKeyboardEvents() == {code: p.KEY_WAS_RELEASED}, page)
+    assert p.getKeyboardEvents() == {}
+
+
+def test_shortcuts_change_the_view_unless_switched_off(page: Page):
+    page.page.focus("#view")
+    box = page.page.locator("input[name=wireframe]")
+    page.page.keyboard.press("w")
+    assert box.is_checked()
+    page.page.keyboard.press("g")
+    assert not page.page.locator("#panel").is_visible()
+    page.page.keyboard.press("g")
+    p.configureDebugVisualizer(p.COV_ENABLE_KEYBOARD_SHORTCUTS, 0)
+    p.configureDebugVisualizer(p.COV_ENABLE_WIREFRAME, 0)
+    wait_for(lambda: not box.is_checked(), page)
+    page.page.keyboard.press("w")
+    assert not box.is_checked()
+
+
+def test_lines_points_and_texts_come_and_go(page: Page):
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])
+    column, row = pixel_of((0.5, 0, 0.5))
+    line = p.addUserDebugLine([-1, 0, 0.5], [1, 0, 0.5], [1, 0, 0], 6)
+    page.wait_for_picture(lambda picture: is_red(picture[row, column]))
+    p.removeUserDebugItem(line)
+    page.wait_for_picture(lambda picture: not is_red(picture[row, column]))
+    p.addUserDebugPoints([[0.5, 0, 0.5]], [[1, 0, 0]], 12)
+    page.wait_for_picture(lambda picture: is_red(picture[row, column]))
+    ball = red_ball((-0.5, 0, 0.3))
+    text = p.addUserDebugText("the ball", [0, 0, 0.2], [0, 0, 1], 1.5, parentObjectUniqueId=ball)
+    label = page.page.get_by_text("the ball")
+    label.wait_for()
+    box = label.bounding_box()
+    column, row = pixel_of((-0.5, 0, 0.5))
+    wait_for(lambda: abs(label.bounding_box()["x"] - column) < 3, page)
+    box = label.bounding_box()
+    assert box["y"] + box["height"] == pytest.approx(row, abs=3)
+    p.addUserDebugText("gone soon", [0, 0, 0], lifeTime=0.1, replaceItemUniqueId=text)
+    label.wait_for(state="detached")
+    page.page.get_by_text("gone soon").wait_for(state="detached")
+
+
+def test_a_page_loaded_again_shows_it_all_again(page: Page):
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])
+    red_ball((0.3, 0, 0.4))
+    p.addUserDebugParameter("gain")
+    page.wait_for_picture(red_at((0.3, 0, 0.4)))
+    page.page.reload()
+    page.wait_for_picture(red_at((0.3, 0, 0.4)))
+    page.page.get_by_label("gain").wait_for()
+
+
+def test_the_loop_of_a_script_ends_by_the_close_button(page: Page):
+    ended = threading.Event()
+
+    def script() -> None:
+        while p.isConnected():
+            try:
+                p.stepSimulation()
+            except p.error:
+                break
+            time.sleep(0.001)
+        ended.set()
+
+    thread = threading.Thread(target=script)
+    thread.start()
+    page.page.get_by_title("End the simulation").click()
+    assert ended.wait(PATIENCE)
+    thread.join()
+    page.page.get_by_text("has ended").wait_for()
+    # The browser says that there is nobody to connect to any more.
+    page.complaints.clear()

@@ -1,0 +1,79 @@
+"""A page without a browser: it keeps what it is sent, as the real one does."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from websockets.sync.client import connect
+
+from carom.viewer.messages import decoded
+
+# Long enough for the busiest machine; nothing waits for it when all is well.
+PATIENCE = 60.0
+
+
+class Watcher:
+    """Connected to the socket of a viewer.
+
+    Attributes:
+        shown: Newest header of each kind of thing and number, such as ("body", 0) or ("camera", None).
+        payloads: The numbers that came with them.
+        frame: Header of the newest frame.
+        poses: (links, 7) poses of the newest frame.
+    """
+
+    def __init__(self, address: str, **options: Any) -> None:
+        self._socket = connect(address.replace("http", "ws") + "socket", **options)
+        self.shown: dict[tuple[str, Any], dict[str, Any]] = {}
+        self.payloads: dict[tuple[str, Any], bytes] = {}
+        self.frame: dict[str, Any] = {}
+        self.poses = np.zeros((0, 7))
+
+    def __enter__(self) -> Watcher:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._socket.close()
+
+    def tell(self, kind: str, **facts: Any) -> None:
+        self._socket.send(json.dumps({"type": kind, **facts}))
+
+    def send_raw(self, text: str | bytes) -> None:
+        self._socket.send(text)
+
+    def wait_for(self, condition: Callable[[], Any]) -> Any:
+        """Takes messages until something holds."""
+        give_up = time.monotonic() + PATIENCE
+        while not (result := condition()):
+            message = self._socket.recv(timeout=give_up - time.monotonic())
+            assert isinstance(message, bytes)
+            self._take(*decoded(message))
+        return result
+
+    def _take(self, header: dict[str, Any], payload: bytes) -> None:
+        kind = header["type"]
+        if kind == "frame":
+            self.frame = header
+            self.poses = np.frombuffer(payload, dtype="<f4").reshape(-1, 7)
+        elif kind.startswith("no "):
+            del self.shown[kind[3:], header[kind[3:]]]
+        else:
+            number = next(
+                (header[name] for name in _NUMBERS if name in header and _NUMBERS[name](kind)), None
+            )
+            name = "item" if kind in ("line", "text", "points") else kind
+            self.shown[name, number] = header
+            self.payloads[name, number] = payload
+
+
+_NUMBERS: dict[str, Callable[[str], bool]] = {
+    "item": lambda kind: kind in ("line", "text", "points"),
+    "slider": lambda kind: kind == "slider",
+    "mesh": lambda kind: kind == "mesh",
+    "texture": lambda kind: kind == "texture",
+    "body": lambda kind: kind == "body",
+}
