@@ -38,7 +38,7 @@ def chromium() -> Iterator:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=BROWSER, args=_ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=_ARGUMENTS)
         yield browser
         browser.close()
 

@@ -77,7 +77,9 @@ def test_poses_are_those_of_the_world(viewer: Viewer):
             p.stepSimulation()
         page.wait_for(lambda: page.frame["time"] == pytest.approx(10 / 240))
         for joint in range(p.getNumJoints(arm)):
-            position, orientation = p.getLinkState(arm, joint)[:2]
+            state = p.getLinkState(arm, joint)
+            assert state is not None
+            position, orientation = state[:2]
             np.testing.assert_allclose(page.poses[joint + 1, :3], position, atol=1e-6)
             assert abs(page.poses[joint + 1, 3:] @ orientation) == pytest.approx(1, abs=1e-6)
 
