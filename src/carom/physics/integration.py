@@ -5,19 +5,8 @@ import warp as wp
 from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 from carom.model.real import Int32, Quaternion, Vector3, func, real
 from carom.model.structs import Model, State
-from carom.physics.kinematics import base_omega, base_velocity
+from carom.physics.kinematics import base_omega, base_velocity, load_quaternion
 from carom.physics.rotation import axis_rotation, rotation_step
-
-
-@func
-def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
-    """The quaternion stored from coordinate `q` on."""
-    return Quaternion(
-        state.position[world, q],
-        state.position[world, q + 1],
-        state.position[world, q + 2],
-        state.position[world, q + 3],
-    )
 
 
 @func

@@ -9,18 +9,23 @@ from carom.physics.rotation import axis_rotation, canonical, rotation_matrix
 
 
 @func
+def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
+    """The quaternion stored from coordinate `q` on."""
+    return Quaternion(
+        state.position[world, q],
+        state.position[world, q + 1],
+        state.position[world, q + 2],
+        state.position[world, q + 3],
+    )
+
+
+@func
 def forward_kinematics(model: Model, state: State, poses: TransformRows, world: Int32, tree: Int32):
     """Fill `poses` with the world poses of a tree's inertial frames, from its coordinates."""
     base = model.tree[tree].first_link
     q = model.tree[tree].first_position
     position = Vector3(state.position[world, q], state.position[world, q + 1], state.position[world, q + 2])
-    orientation = Quaternion(
-        state.position[world, q + 3],
-        state.position[world, q + 4],
-        state.position[world, q + 5],
-        state.position[world, q + 6],
-    )
-    poses[world, base] = Transform(position, canonical(orientation))
+    poses[world, base] = Transform(position, canonical(load_quaternion(state, world, q + 3)))
 
     for link in range(base + 1, base + model.tree[tree].link_count):
         parent_pose = poses[world, model.link[link].parent]
@@ -40,12 +45,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
         elif joint_type == PRISMATIC:
             slide = model.link[link].axis * state.position[world, q]
         elif joint_type == SPHERICAL:
-            child_orientation = child_orientation * Quaternion(
-                state.position[world, q],
-                state.position[world, q + 1],
-                state.position[world, q + 2],
-                state.position[world, q + 3],
-            )
+            child_orientation = child_orientation * load_quaternion(state, world, q)
         elif joint_type == PLANAR:
             # The translations are measured along axes that do not turn with the joint.
             pivot += wp.quat_rotate(

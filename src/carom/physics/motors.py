@@ -23,6 +23,7 @@ from carom.model.codes import (
 )
 from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.kinematics import load_quaternion
 from carom.physics.rotation import rotation_matrix
 from carom.physics.rows import add_row, axis_effective_masses, dof_effective_mass
 
@@ -97,13 +98,7 @@ def euler_xyz(r: Matrix3) -> Vector3:
 @func
 def joint_quaternion(model: Model, state: State, world: Int32, link: Int32) -> Quaternion:
     """Position of a spherical joint."""
-    q = model.link[link].first_position
-    return Quaternion(
-        state.position[world, q],
-        state.position[world, q + 1],
-        state.position[world, q + 2],
-        state.position[world, q + 3],
-    )
+    return load_quaternion(state, world, model.link[link].first_position)
 
 
 @func
