@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.model.codes import INVERSE_DYNAMICS
-from carom.model.real import Int32, Vector3, func, kernel
+from carom.model.real import Int32, Vector3, kernel
 from carom.model.structs import Model, Query, Scratch, Settings, State
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
@@ -38,17 +38,6 @@ def mass_matrix_kernel(model: Model, state: State, scratch: Scratch, tree: Int32
             scratch.entry_factor[world, matrix + column * columns + row] = entry
 
 
-@func
-def nearest_dof(model: Model, link: Int32) -> Int32:
-    """The last dof among those that move a link, -1 if none does."""
-    dof = Int32(-1)
-    while link >= 0 and dof < 0:
-        if model.link[link].dof_count > 0:
-            dof = model.link[link].first_dof + model.link[link].dof_count - 1
-        link = model.link[link].parent
-    return dof
-
-
 @kernel
 def jacobian_kernel(model: Model, state: State, scratch: Scratch, query: Query, tree: Int32, link: Int32):
     """Fill `dof_linear` and `dof_angular` of the query with a point's Jacobian, column by column."""
@@ -62,7 +51,7 @@ def jacobian_kernel(model: Model, state: State, scratch: Scratch, query: Query, 
     for dof in range(first, first + model.tree[tree].dof_count):
         query.dof_linear[world, dof] = Vector3(0.0, 0.0, 0.0)
         query.dof_angular[world, dof] = Vector3(0.0, 0.0, 0.0)
-    moved_by = nearest_dof(model, link)
+    moved_by = model.link[link].nearest_dof
     while moved_by >= 0:
         axis = scratch.dof[world, moved_by].angular
         query.dof_angular[world, moved_by] = axis
