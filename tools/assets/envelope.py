@@ -7,6 +7,7 @@ the same bounds as another file's give the same inertia.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import atan2, hypot, sqrt
 
 from tools.assets.parts import QUARTER_TURN, Box, Capsule, Shape, Vector3
 
@@ -20,12 +21,27 @@ ALONG: dict[str, Vector3] = {
 }
 
 
+def rod(start: Vector3, end: Vector3, radius: float) -> Shape:
+    """A capsule whose half balls are centred on two points."""
+    x, y, z = (b - a for a, b in zip(start, end, strict=True))
+    level = hypot(x, y)
+    middle = ((start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0, (start[2] + end[2]) / 2.0)
+    return Shape(Capsule(radius, hypot(level, z)), middle, (0.0, atan2(level, z), atan2(y, x)))
+
+
 @dataclass(frozen=True)
 class Envelope:
     """Axis-aligned bounds in the link frame, as getAABB reports them for a link with several shapes."""
 
     low: Vector3
     high: Vector3
+
+    @classmethod
+    def of_inertia(cls, centre: Vector3, inertia: Vector3, mass: float) -> Envelope:
+        """The box around a centre that has the given principal inertias."""
+        (a, b, c), (x, y, z) = inertia, centre
+        dx, dy, dz = (sqrt(1.5 * part / mass) for part in (b + c - a, c + a - b, a + b - c))
+        return cls((x - dx, y - dy, z - dz), (x + dx, y + dy, z + dz))
 
     def inner(self, axis: str) -> tuple[float, float]:
         """The range the shapes themselves must span along one axis."""

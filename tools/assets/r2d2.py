@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import sqrt
 
 from tools.assets.envelope import Envelope
 from tools.assets.parts import (
@@ -117,23 +116,12 @@ def _pole() -> Link:
     return _link("gripper_pole", 0.05, _one(Cylinder(0.01, 0.2), place, turned), seen)
 
 
-def _extents(inertia: Vector3, mass: float) -> Vector3:
-    """Edges of the box that has the given principal inertias."""
-    x, y, z = inertia
-    return sqrt(6 * (y + z - x) / mass), sqrt(6 * (z + x - y) / mass), sqrt(6 * (x + y - z) / mass)
-
-
-def _around(centre: Vector3, extents: Vector3) -> Envelope:
-    (x, y, z), (a, b, c) = centre, extents
-    return Envelope((x - a / 2, y - b / 2, z - c / 2), (x + a / 2, y + b / 2, z + c / 2))
-
-
 def _finger(side: str) -> tuple[Link, Link]:
     """The swinging jaw and the pad at its end."""
     x, y, z = JAW_CENTRE
     left = side == "left"
-    jaw = _around((x, y if left else -y, z), _extents(JAW_INERTIA[side], 0.05))
-    pad = _around(PAD_CENTRE[side], _extents(PAD_INERTIA[side], 0.05))
+    jaw = Envelope.of_inertia((x, y if left else -y, z), JAW_INERTIA[side], 0.05)
+    pad = Envelope.of_inertia(PAD_CENTRE[side], PAD_INERTIA[side], 0.05)
     near, far = ((None, 0.03), (0.012, None)) if left else ((-0.03, None), (None, -0.012))
     root = jaw.box(x=(None, 0.04), y=near)
     reach = jaw.box(x=(0.0, None), y=far, z=(-0.018, 0.018))

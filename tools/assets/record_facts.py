@@ -10,7 +10,6 @@ It writes tests/pybullet_data/facts/<name>.json, one file per asset, and needs n
 from __future__ import annotations
 
 import json
-import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,10 @@ FACTS = ROOT / "tests" / "pybullet_data" / "facts"
 ASSETS = (
     "TwoJointRobot_w_fixedJoints.urdf",
     "TwoJointRobot_wo_fixedJoints.urdf",
+    "a1/a1.urdf",
+    "aliengo/aliengo.urdf",
+    "bicycle/bike.urdf",
+    "biped/biped2d_pybullet.urdf",
     "block.urdf",
     "cartpole.urdf",
     "cube.urdf",
@@ -31,21 +34,58 @@ ASSETS = (
     "cube_no_rotation.urdf",
     "cube_rotate.urdf",
     "cube_small.urdf",
+    "differential/diff_ring.urdf",
     "domino/domino.urdf",
     "duck_vhacd.urdf",
     "franka_panda/panda.urdf",
+    "gripper/wsg50_one_motor_gripper.sdf",
+    "gripper/wsg50_one_motor_gripper_new.sdf",
+    "gripper/wsg50_one_motor_gripper_new_free_base.sdf",
+    "humanoid/humanoid.urdf",
+    "husky/husky.urdf",
     "jenga/jenga.urdf",
+    "kiva_shelf/model.sdf",
+    "kuka_iiwa/kuka_with_gripper.sdf",
+    "kuka_iiwa/kuka_with_gripper2.sdf",
+    "kuka_iiwa/model.sdf",
     "kuka_iiwa/model.urdf",
     "kuka_iiwa/model_free_base.urdf",
     "kuka_iiwa/model_vr_limits.urdf",
+    "laikago/laikago.urdf",
+    "laikago/laikago_toes.urdf",
+    "laikago/laikago_toes_limits.urdf",
+    "laikago/laikago_toes_zup.urdf",
     "lego/lego.urdf",
+    "mini_cheetah/mini_cheetah.urdf",
+    "mjcf/ant.xml",
+    "mjcf/ground_plane.xml",
+    "mjcf/half_cheetah.xml",
+    "mjcf/hopper.xml",
+    "mjcf/humanoid.xml",
+    "mjcf/humanoid_symmetric.xml",
+    "mjcf/humanoid_symmetric_no_ground.xml",
+    "mjcf/inverted_double_pendulum.xml",
+    "mjcf/inverted_pendulum.xml",
+    "mjcf/reacher.xml",
+    "mjcf/swimmer.xml",
+    "mjcf/walker2d.xml",
     "objects/mug.urdf",
     "pendulum5.urdf",
     "plane.urdf",
     "plane100.urdf",
     "plane_implicit.urdf",
+    "plane_stadium.sdf",
     "plane_transparent.urdf",
+    "pr2_gripper.urdf",
+    "quadruped/minitaur.urdf",
+    "quadruped/minitaur_v1.urdf",
+    "quadruped/quadruped.urdf",
+    "quadruped/spirit40.urdf",
+    "quadruped/vision60.urdf",
     "r2d2.urdf",
+    "racecar/racecar.urdf",
+    "racecar/racecar_differential.urdf",
+    "samurai.urdf",
     "soccerball.urdf",
     "sphere2.urdf",
     "sphere2red.urdf",
@@ -56,14 +96,18 @@ ASSETS = (
     "sphere_transparent.urdf",
     "sphere_with_restitution.urdf",
     "spherical_joint_limit.urdf",
+    "stadium.sdf",
     "table/table.urdf",
     "table_square/table_square.urdf",
+    "teddy_large.urdf",
+    "teddy_vhacd.urdf",
     "tray/tray.urdf",
+    "tray/tray_textured2.urdf",
     "tray/traybox.urdf",
+    "urdf/mug.urdf",
+    "xarm/xarm6_robot.urdf",
+    "xarm/xarm6_with_gripper.urdf",
 )
-
-# The Panda's hand is turned by an eighth of a circle: this joint position squares it with the world.
-SQUARING_POSES: dict[str, list[dict[int, float]]] = {"franka_panda/panda.urdf": [{}, {6: math.pi / 4}]}
 
 LOADING_FLAGS = {"default": 0, "inertia_from_file": p.URDF_USE_INERTIA_FROM_FILE}
 
@@ -105,33 +149,35 @@ def dynamics_facts(body: int, link: int) -> dict[str, Any]:
     }
 
 
-def link_frame(body: int, link: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """World pose of a link frame."""
-    if link >= 0:
-        state = p.getLinkState(body, link, computeForwardKinematics=True)
-        if state is None:
-            raise RuntimeError(f"link {link} of body {body} has no state")
-        return state[4], state[5]
-    inertial = p.getDynamicsInfo(body, -1)[3:5]
-    return p.multiplyTransforms(*p.getBasePositionAndOrientation(body), *p.invertTransform(*inertial))
+def inertial_frame(body: int, link: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """World pose of the inertial frame of a link."""
+    if link < 0:
+        return p.getBasePositionAndOrientation(body)
+    state = p.getLinkState(body, link, computeForwardKinematics=True)
+    if state is None:
+        raise RuntimeError(f"link {link} of body {body} has no state")
+    return state[0], state[1]
 
 
-def squared_bounds(body: int, link: int) -> list[list[float]] | None:
-    """Corners of getAABB in the link frame, or None where the link is askew to the world."""
-    position, orientation = link_frame(body, link)
-    matrix = p.getMatrixFromQuaternion(orientation)
-    if max(min(abs(x), abs(abs(x) - 1.0)) for x in matrix) > 1e-3:
-        return None
-    to_link = p.invertTransform(position, orientation)
-    corners = [p.multiplyTransforms(*to_link, corner, (0, 0, 0, 1))[0] for corner in p.getAABB(body, link)]
-    return [
-        [min(pair) for pair in zip(*corners, strict=True)],
-        [max(pair) for pair in zip(*corners, strict=True)],
+def bounds(body: int, link: int) -> list[list[float]]:
+    """Corners of getAABB in the inertial frame of the link, to which the body is turned for it."""
+    position, orientation = p.getBasePositionAndOrientation(body)
+    _, turn = inertial_frame(body, link)
+    upright = p.multiplyTransforms((0, 0, 0), p.invertTransform((0, 0, 0), turn)[1], (0, 0, 0), orientation)[
+        1
     ]
+    p.resetBasePositionAndOrientation(body, (0, 0, 0), upright)
+    centre, _ = inertial_frame(body, link)
+    corners = [[x - c for x, c in zip(corner, centre, strict=True)] for corner in p.getAABB(body, link)]
+    p.resetBasePositionAndOrientation(body, position, orientation)
+    return corners
 
 
 def collision_facts(body: int, link: int) -> list[dict[str, Any]]:
-    """What getCollisionShapeData says of the link's shapes, file names left out."""
+    """What getCollisionShapeData says of the link's shapes, file names left out.
+
+    It tells the size of a cylinder only where cylinders are not made into hulls.
+    """
     return [
         {
             "type": shape[2],
@@ -143,29 +189,60 @@ def collision_facts(body: int, link: int) -> list[dict[str, Any]]:
     ]
 
 
-def facts_of(path: str, name: str) -> dict[str, Any]:
-    """Everything recorded of one file, loaded in the default way and with inertia from the file."""
-    facts: dict[str, Any] = {"file": name, "pybullet": p.getAPIVersion()}
-    for key, flags in LOADING_FLAGS.items():
-        body = p.loadURDF(path, flags=flags)
-        links = range(-1, p.getNumJoints(body))
-        facts[key] = [dynamics_facts(body, link) for link in links]
-        if flags == 0:
-            base, robot = p.getBodyInfo(body)
-            facts["base"], facts["robot"] = base.decode(), robot.decode()
-            facts["joints"] = [joint_facts(body, joint) for joint in links if joint >= 0]
-            facts["collisions"] = [collision_facts(body, link) for link in links]
-            bounds: list[Any] = [None for _ in links]
-            for pose in SQUARING_POSES.get(name, [{}]):
-                for joint in links:
-                    if joint >= 0:
-                        p.resetJointState(body, joint, pose.get(joint, 0.0))
-                bounds = [
-                    known or squared_bounds(body, link) for known, link in zip(bounds, links, strict=True)
-                ]
-            facts["bounds"] = bounds
-        p.removeBody(body)
+def loaded(path: str, flags: int) -> list[int]:
+    """The bodies of a file."""
+    if path.endswith(".sdf"):
+        return list(p.loadSDF(path))
+    if path.endswith(".xml"):
+        return list(p.loadMJCF(path))
+    return [p.loadURDF(path, flags=flags)]
+
+
+def links_of(body: int) -> range:
+    return range(-1, p.getNumJoints(body))
+
+
+def description_facts(body: int) -> dict[str, Any]:
+    """Names and joints of a body, and where it is."""
+    base, robot = p.getBodyInfo(body)
+    place, turn = p.getBasePositionAndOrientation(body)
+    return {
+        "robot": robot.decode(),
+        "base": base.decode(),
+        "place": [*place, *turn],
+        "joints": [joint_facts(body, joint) for joint in range(p.getNumJoints(body))],
+        "bounds": [bounds(body, link) for link in links_of(body)],
+    }
+
+
+def facts_of(path: str, name: str) -> list[dict[str, Any]]:
+    """Everything recorded of each body of a file."""
+    facts = [{"file": name, "pybullet": p.getAPIVersion()} | description_facts(b) for b in loaded(path, 0)]
+    is_urdf = path.endswith(".urdf")
+    for key, flags in LOADING_FLAGS.items() if is_urdf else [("default", 0)]:
+        p.resetSimulation()
+        for body, fact in zip(loaded(path, flags), facts, strict=True):
+            fact[key] = [dynamics_facts(body, link) for link in links_of(body)]
+    p.resetSimulation()
+    if not path.endswith(".xml"):  # PyBullet crashes when it is asked for the shapes of these
+        for body, fact in zip(loaded(path, p.URDF_USE_IMPLICIT_CYLINDER), facts, strict=True):
+            fact["collisions"] = [collision_facts(body, link) for link in links_of(body)]
+    p.resetSimulation()
     return facts
+
+
+def text_of(facts: list[dict[str, Any]]) -> str:
+    """JSON with a line for each link and joint."""
+    bodies: list[str] = []
+    for fact in facts:
+        rows = [
+            f'  "{key}": [\n' + ",\n".join(f"   {json.dumps(row)}" for row in value) + "\n  ]"
+            if isinstance(value, list) and key != "place"
+            else f'  "{key}": {json.dumps(value)}'
+            for key, value in fact.items()
+        ]
+        bodies.append(" {\n" + ",\n".join(rows) + "\n }")
+    return "[\n" + ",\n".join(bodies) + "\n]\n"
 
 
 def write_facts(name: str) -> None:
@@ -173,7 +250,7 @@ def write_facts(name: str) -> None:
     facts = facts_of(str(Path(pybullet_data.getDataPath()) / name), name)
     target = FACTS / (name.replace("/", "__").removesuffix(".urdf") + ".json")
     target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(json.dumps(facts, indent=1) + "\n")
+    target.write_text(text_of(facts))
 
 
 def main(names: list[str]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from math import asin, atan2, copysign, pi
+from math import atan2, copysign, hypot, pi
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
@@ -32,7 +32,9 @@ from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import rotation_matrix
 from carom.errors import DescriptionError
 
-_GIMBAL_LOCK = 1.0 - 1e-12
+_GIMBAL_LOCK = 1e-10
+"""Cosine of the pitch below which roll and yaw cannot be told apart."""
+
 _UNNAMED = "material"
 
 
@@ -218,9 +220,10 @@ def _origin(pose: Pose, depth: int) -> Iterator[str]:
 def roll_pitch_yaw(quaternion: Quaternion) -> Vector3:
     """Angles about the fixed axes x, y and z [rad]; yaw is 0 where it and roll are the same."""
     m = rotation_matrix(quaternion)
-    if abs(m[2][0]) > _GIMBAL_LOCK:
+    level = hypot(m[0][0], m[1][0])
+    if level < _GIMBAL_LOCK:
         return (atan2(-m[1][2], m[1][1]), copysign(0.5 * pi, -m[2][0]), 0.0)
-    return (atan2(m[2][1], m[2][2]), asin(-m[2][0]), atan2(m[1][0], m[0][0]))
+    return (atan2(m[2][1], m[2][2]), atan2(-m[2][0], level), atan2(m[1][0], m[0][0]))
 
 
 def _attribute(name: str, value: object) -> str:
