@@ -19,7 +19,9 @@ from tools.assets import (
     quadrupeds,
     r2d2,
     rovers,
+    scenes,
     simple_meshes,
+    soft_shapes,
     spheres,
     textures,
     things,
@@ -29,12 +31,13 @@ from tools.assets.fields import Field
 from tools.assets.obj_mesh import ObjMesh, material_text
 from tools.assets.parts import Robot, Vector3
 from tools.assets.png import png_bytes
+from tools.assets.sdf_text import sdf_text
 from tools.assets.surface import mesh_of
 from tools.assets.urdf_text import urdf_text
 
 TARGET = Path(__file__).resolve().parents[2] / "src" / "pybullet_data"
 
-ROBOTS: Mapping[str, Callable[[], Robot]] = {
+ROBOTS: dict[str, Callable[[], Robot]] = {
     "TwoJointRobot_w_fixedJoints.urdf": arms.two_joint_robot_with_fixed_joints,
     "TwoJointRobot_wo_fixedJoints.urdf": arms.two_joint_robot_without_fixed_joints,
     "a1/a1.urdf": quadrupeds.a1,
@@ -93,14 +96,38 @@ ROBOTS: Mapping[str, Callable[[], Robot]] = {
     "spherical_joint_limit.urdf": arms.spherical_joint_limit,
     "table/table.urdf": things.table,
     "table_square/table_square.urdf": things.table_square,
+    "samurai.urdf": soft_shapes.samurai,
+    "teddy_large.urdf": partial(soft_shapes.teddy, "teddy_large.urdf"),
+    "teddy_vhacd.urdf": partial(soft_shapes.teddy, "teddy_vhacd.urdf"),
     "tray/tray.urdf": things.tray,
     "tray/traybox.urdf": things.traybox,
     "xarm/xarm6_robot.urdf": partial(manipulators.xarm6, "xarm/xarm6_robot.urdf"),
     "xarm/xarm6_with_gripper.urdf": partial(manipulators.xarm6, "xarm/xarm6_with_gripper.urdf"),
 }
 
+ROBOTS |= {
+    f"random_urdfs/{n:03d}/{n:03d}.urdf": partial(soft_shapes.blob, n) for n in range(soft_shapes.BLOBS)
+}
+
+SCENES: Mapping[str, Callable[[], scenes.Scene]] = {
+    "gripper/wsg50_one_motor_gripper.sdf": partial(scenes.wsg50, "gripper/wsg50_one_motor_gripper.sdf"),
+    "gripper/wsg50_one_motor_gripper_new.sdf": partial(
+        scenes.wsg50, "gripper/wsg50_one_motor_gripper_new.sdf"
+    ),
+    "gripper/wsg50_one_motor_gripper_new_free_base.sdf": partial(
+        scenes.wsg50, "gripper/wsg50_one_motor_gripper_new_free_base.sdf"
+    ),
+    "kiva_shelf/model.sdf": scenes.kiva_shelf,
+    "kuka_iiwa/kuka_with_gripper.sdf": partial(scenes.kuka_arm, "kuka_iiwa/kuka_with_gripper.sdf"),
+    "kuka_iiwa/kuka_with_gripper2.sdf": partial(scenes.kuka_arm, "kuka_iiwa/kuka_with_gripper2.sdf"),
+    "kuka_iiwa/model.sdf": partial(scenes.kuka_arm, "kuka_iiwa/model.sdf"),
+    "plane_stadium.sdf": partial(scenes.stadium, "plane_stadium.sdf"),
+    "stadium.sdf": partial(scenes.stadium, "stadium.sdf"),
+}
+
 MATERIALS: Mapping[str, tuple[str, str]] = {
     "plane.mtl": ("floor", "checker_blue.png"),
+    "grass.mtl": ("grass", "grass.png"),
     "duck.mtl": ("duck", "duck.png"),
     "cube.mtl": ("cube", "cube.png"),
     "textured_sphere_smooth.mtl": ("ball", "ball.png"),
@@ -115,6 +142,7 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
     "cube.png": textures.framed,
     "ball.png": partial(textures.chessboard, 8, np.array((0.95, 0.95, 0.95)), np.array((0.75, 0.2, 0.18))),
     "duck.png": toys.duck_palette,
+    "grass.png": textures.grass,
     "football.png": textures.football,
     "table/table.png": textures.wood,
     "table_square/table.png": textures.wood,
@@ -124,8 +152,9 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
 
 TRAY_FLOOR: simple_meshes.Rectangle = (-0.21, -0.21, 0.21, 0.21)
 
-MESHES: Mapping[str, Callable[[], ObjMesh]] = {
+MESHES: dict[str, Callable[[], ObjMesh]] = {
     "plane.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
+    "grass.obj": partial(simple_meshes.square, 50.0, 25.0, ("grass", "grass.mtl")),
     "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),
     "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
     "bicycle/wheel.obj": rovers.wheel_disc,
@@ -140,10 +169,15 @@ MESHES: Mapping[str, Callable[[], ObjMesh]] = {
     "soccerball.obj": partial(simple_meshes.globe, 0.5, 24, 14, ("football", "soccerball.mtl")),
     "table/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
     "table_square/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
+    "teddy.obj": soft_shapes.teddy_mesh,
     "tray/tray.obj": partial(simple_meshes.tray, TRAY_FLOOR, (-0.3, -0.3, 0.3, 0.3), (-0.005, 0.125), 0.012),
     "tray/tray_solid.obj": partial(
         simple_meshes.tray, TRAY_FLOOR, (-0.2969, -0.295, 0.2968, 0.3204), (-0.005, 0.1334), 0.012
     ),
+}
+
+MESHES |= {
+    f"random_urdfs/{n:03d}/{n:03d}.obj": partial(soft_shapes.blob_mesh, n) for n in range(soft_shapes.BLOBS)
 }
 
 HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
@@ -162,6 +196,11 @@ def urdf_files() -> dict[str, str]:
     return {path: urdf_text(robot()) for path, robot in ROBOTS.items()}
 
 
+def scene_files() -> dict[str, str]:
+    """The text of every SDF file."""
+    return {path: sdf_text(scene()) for path, scene in SCENES.items()}
+
+
 def mesh_files() -> dict[str, str]:
     """The text of every mesh and material file."""
     made = {path: material_text(name, texture) for path, (name, texture) in MATERIALS.items()}
@@ -177,7 +216,7 @@ def texture_files() -> dict[str, bytes]:
 
 
 def main(names: list[str]) -> None:
-    texts = urdf_files() | mesh_files()
+    texts = urdf_files() | scene_files() | mesh_files()
     for path, content in ({path: text.encode() for path, text in texts.items()} | texture_files()).items():
         if names and not any(name in path for name in names):
             continue

@@ -23,7 +23,9 @@ from tools.assets.parts import (
     Inertial,
     Joint,
     Link,
+    Mesh,
     Paint,
+    Plane,
     Robot,
     Shape,
     Sphere,
@@ -35,6 +37,7 @@ from carom.description.pose import Quaternion
 from carom.description.transform import (
     compose,
     conjugate,
+    inverse,
     multiplied,
     quaternion_from_rpy,
     rotate,
@@ -47,7 +50,7 @@ FACTS = Path(__file__).resolve().parents[2] / "tests" / "pybullet_data" / "facts
 TYPES = {0: "revolute", 1: "prismatic", 2: "spherical", 4: "fixed"}
 """Joint types by PyBullet's numbers."""
 
-SPHERE, BOX, CYLINDER, MESH, CAPSULE = 2, 3, 4, 5, 7
+SPHERE, BOX, CYLINDER, MESH, PLANE, CAPSULE = 2, 3, 4, 5, 6, 7
 """PyBullet's numbers of shapes."""
 
 CONTACT_DEFAULTS = {
@@ -56,6 +59,9 @@ CONTACT_DEFAULTS = {
     "spinning_friction": 0.0,
     "restitution": 0.0,
 }
+MESH_MARGIN = 0.003
+"""How much wider the bounds of a mesh are than its corners, on each side, besides that of a compound [m]."""
+
 FEW_DIGITS = 10
 """Rounding is taken off figures that have at most so many digits after the point."""
 
@@ -70,6 +76,18 @@ def fill_with_box(room: Envelope) -> tuple[Shape, ...]:
     return (room.box(),)
 
 
+def fitted(file: str) -> Filler:
+    """A mesh that spans one unit around its origin, stretched to the bounds."""
+
+    def fill(room: Envelope) -> tuple[Shape, ...]:
+        ends = [room.inner(axis) for axis in "xyz"]
+        x, y, z = (high - low - 2.0 * MESH_MARGIN for low, high in ends)
+        centre_x, centre_y, centre_z = ((low + high) / 2.0 for low, high in ends)
+        return (Shape(Mesh(file, (x, y, z)), (centre_x, centre_y, centre_z)),)
+
+    return fill
+
+
 @dataclass(frozen=True)
 class Dress:
     """What a robot looks like and touches with; link names are patterns, the first that fits counts.
@@ -79,12 +97,14 @@ class Dress:
         fill: What stands in for the meshes of a link; a box where nothing is said.
         seen: Looks of links in their link frames, instead of what touches.
         more: Looks besides that.
+        borrowed: Links of other robots that lend their looks and shapes.
     """
 
     paint: Mapping[str, Paint]
     fill: Mapping[str, Filler] = field(default_factory=dict)
     seen: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
     more: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
+    borrowed: Mapping[str, Link] = field(default_factory=dict)
 
 
 def dressed(file: str, about: str, dress: Dress, number: int = 0) -> Robot:
@@ -104,6 +124,14 @@ def dressed(file: str, about: str, dress: Dress, number: int = 0) -> Robot:
     return Robot(facts["robot"], about, links, joints)
 
 
+def place(file: str, number: int = 0) -> Pose:
+    """Where a body of a scene has the frame of its first link."""
+    facts = recorded(file)[number]
+    x, y, z, *turn = facts["place"]
+    at = compose(Pose((x, y, z), tuple(turn)), inverse(_inertial_frame(facts["default"][0])))
+    return Pose(_tidied(at.position), at.orientation)
+
+
 def recorded(file: str) -> list[dict[str, Any]]:
     """Everything recorded of the bodies of a file."""
     name = file.replace("/", "__").removesuffix(".urdf")
@@ -111,6 +139,9 @@ def recorded(file: str) -> list[dict[str, Any]]:
 
 
 def _link(facts: Mapping[str, Any], dress: Dress, number: int, name: str) -> Link:
+    if name in dress.borrowed:
+        lender = dress.borrowed[name]
+        return Link(name, _inertial(facts, number), lender.seen, lender.touching, _contact(facts, number))
     frame = _inertial_frame(facts["default"][number])
     touching = _touching(facts, dress, number, name, frame)
     painted = tuple(replace(shape, paint=_chosen(dress.paint, name)) for shape in touching)
@@ -153,6 +184,7 @@ def _primitive(fact: Mapping[str, Any]) -> Shape:
         SPHERE: lambda: Sphere(x),
         BOX: lambda: Box((_tidy(x), _tidy(y), _tidy(z))),
         CYLINDER: lambda: Cylinder(y, x),
+        PLANE: lambda: Plane((x, y, z)),
         CAPSULE: lambda: Capsule(y, x),
     }[fact["type"]]()
     return placed(geometry, Pose(tuple(fact["position"]), tuple(fact["orientation"])))

@@ -45,20 +45,22 @@ def aliengo() -> Robot:
 
 
 def _chassis(room: Envelope) -> tuple[Shape, ...]:
-    """A long body with wider shoulders and hips; it lies along z."""
+    """A trunk, a belly under it, and wider shoulders and hips; it lies along z."""
     return (
-        room.box(x=(-0.1, 0.1)),
-        room.box(y=(-0.07, 0.05), z=(0.13, 0.27)),
-        room.box(y=(-0.07, 0.05), z=(-0.295, -0.155)),
+        room.box(x=(-0.09, 0.09), y=(-0.05, 0.06)),
+        room.box(x=(-0.06, 0.06), z=(-0.12, 0.1)),
+        room.box(y=(-0.05, 0.04), z=(0.17, 0.24)),
+        room.box(y=(-0.05, 0.04), z=(-0.265, -0.195)),
     )
 
 
 def _upright_chassis(room: Envelope) -> tuple[Shape, ...]:
     """The same body along x."""
     return (
-        room.box(y=(-0.1, 0.1)),
-        room.box(z=(-0.05, 0.07), x=(0.13, 0.27)),
-        room.box(z=(-0.05, 0.07), x=(-0.28, -0.14)),
+        room.box(y=(-0.09, 0.09), z=(-0.05, 0.06)),
+        room.box(y=(-0.06, 0.06), x=(-0.12, 0.1)),
+        room.box(z=(-0.05, 0.04), x=(0.17, 0.24)),
+        room.box(z=(-0.05, 0.04), x=(-0.265, -0.195)),
     )
 
 

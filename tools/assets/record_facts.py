@@ -85,6 +85,7 @@ ASSETS = (
     "r2d2.urdf",
     "racecar/racecar.urdf",
     "racecar/racecar_differential.urdf",
+    *(f"random_urdfs/{number:03d}/{number:03d}.urdf" for number in range(10)),
     "samurai.urdf",
     "soccerball.urdf",
     "sphere2.urdf",
@@ -102,9 +103,7 @@ ASSETS = (
     "teddy_large.urdf",
     "teddy_vhacd.urdf",
     "tray/tray.urdf",
-    "tray/tray_textured2.urdf",
     "tray/traybox.urdf",
-    "urdf/mug.urdf",
     "xarm/xarm6_robot.urdf",
     "xarm/xarm6_with_gripper.urdf",
 )

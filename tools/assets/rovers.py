@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from tools.assets.envelope import Envelope, rod
-from tools.assets.measured import Dress, dressed
+from tools.assets.measured import Dress, dressed, fitted
 from tools.assets.obj_mesh import ObjMesh
 from tools.assets.parts import (
     QUARTER_TURN,
     Box,
     Capsule,
     Cylinder,
-    Mesh,
     Paint,
     Robot,
     Shape,
@@ -29,8 +28,6 @@ STEEL = Paint("steel", (0.62, 0.64, 0.67, 1.0), (0.6, 0.6, 0.6))
 
 ALONG_X: Vector3 = (0.0, QUARTER_TURN, 0.0)
 ALONG_Y: Vector3 = (QUARTER_TURN, 0.0, 0.0)
-HULL_MARGIN = 0.003
-"""How much wider the bounds of a mesh are than its corners, on each side, besides that of a compound."""
 
 
 def _block(size: Vector3, place: Vector3, paint: Paint, rpy: Vector3 = (0.0, 0.0, 0.0)) -> Shape:
@@ -154,15 +151,8 @@ def diff_ring() -> Robot:
 
 
 def wheel_disc() -> ObjMesh:
-    """A disc of radius 1 and width 1, with corners on the axes: what touches of a bicycle's wheel."""
-    return lathe([(0.0, -0.5), (1.0, -0.5), (1.0, 0.5), (0.0, 0.5)], 48)
-
-
-def _wheel_of_bicycle(room: Envelope) -> tuple[Shape, ...]:
-    """A disc: what PyBullet makes of the mesh of a wheel is its hull."""
-    low, high = room.inner("z")
-    x, y, z = (room.width(axis) - 2.0 * HULL_MARGIN for axis in "xyz")
-    return (Shape(Mesh("wheel.obj", (x / 2.0, y / 2.0, z)), (0.0, 0.0, (low + high) / 2.0)),)
+    """A disc one unit wide, with corners on the axes: what touches of a bicycle's wheel is its hull."""
+    return lathe([(0.0, -0.5), (0.5, -0.5), (0.5, 0.5), (0.0, 0.5)], 48)
 
 
 def _spokes(room_middle: float) -> tuple[Shape, ...]:
@@ -206,7 +196,7 @@ def bike() -> Robot:
         "A bicycle: a frame, handlebars that steer, and two wheels.",
         Dress(
             paint={"*Wheel*": TYRE, "*": RED},
-            fill={"*Wheel*": _wheel_of_bicycle, "handlebarLink": _handlebar},
+            fill={"*Wheel*": fitted("wheel.obj"), "handlebarLink": _handlebar},
             seen={"frameLink": frame, "*WheelLink": _spokes(0.028)},
         ),
     )

@@ -45,6 +45,17 @@ def framed() -> Colours:
     return np.repeat(shade[..., None], 3, axis=2)
 
 
+def grass() -> Colours:
+    """Mown grass: two stripes, blades of many lengths."""
+    u, v = _unit_square(128, 128)
+    blades = sum(
+        np.sin(2.0 * np.pi * (a * u + b * v) + 3.0 * np.sin(2.0 * np.pi * (c * u - d * v))) / 4.0
+        for a, b, c, d in ((31, 9, 5, 7), (-23, 17, 11, 3), (13, -37, 7, 5), (41, 29, 3, 13))
+    )
+    tone = np.where(u < 0.5, 0.92, 1.0) + 0.12 * blades
+    return np.clip(tone[..., None] * np.array((0.36, 0.56, 0.24)), 0.0, 1.0)
+
+
 def wood() -> Colours:
     """Pale planks with grain along u."""
     u, v = _unit_square(128, 128)

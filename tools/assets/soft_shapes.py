@@ -1,0 +1,96 @@
+"""Round things: a teddy, and blobs to clear away; and a courtyard to walk in."""
+
+from __future__ import annotations
+
+import numpy as np
+from tools.assets.envelope import Envelope
+from tools.assets.fields import Field, ball, blend, rod
+from tools.assets.measured import Dress, dressed, fitted
+from tools.assets.obj_mesh import ObjMesh
+from tools.assets.parts import Paint, Robot, Shape
+from tools.assets.surface import mesh_of
+
+FUR = Paint("fur", (0.62, 0.42, 0.24, 1.0))
+STONE = Paint("stone", (0.66, 0.65, 0.62, 1.0))
+COLOURS = (
+    (0.84, 0.3, 0.26),
+    (0.95, 0.66, 0.2),
+    (0.36, 0.65, 0.36),
+    (0.25, 0.5, 0.78),
+    (0.56, 0.38, 0.66),
+)
+BLOBS = 10
+
+
+def spanning(mesh: ObjMesh) -> ObjMesh:
+    """The mesh, moved and stretched so that it spans one unit around the origin along each axis."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    assert mesh.normals is not None
+    normals = mesh.normals * (high - low)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return ObjMesh((mesh.vertices - (low + high) / 2.0) / (high - low), mesh.faces, normals)
+
+
+def _meshed(field: Field, reach: float, cell: float) -> ObjMesh:
+    return spanning(mesh_of(field, np.full(3, -reach), np.full(3, reach), cell))
+
+
+def teddy_mesh() -> ObjMesh:
+    """It sits, with y up, and looks along z."""
+    pairs = [
+        part
+        for side in (-1.0, 1.0)
+        for part in (
+            rod((side * 0.25, -0.45, 0.0), (side * 0.4, -0.6, 0.45), 0.19),
+            rod((side * 0.3, 0.1, 0.0), (side * 0.6, -0.15, 0.25), 0.14),
+            ball((side * 0.28, 0.85, 0.0), 0.14),
+        )
+    ]
+    trunk = (
+        ball((0.0, -0.25, 0.0), 0.45),
+        ball((0.0, 0.5, 0.0), 0.36),
+        ball((0.0, 0.42, 0.3), 0.15),
+    )
+    return _meshed(blend(*trunk, *pairs, width=0.1), 1.1, 0.13)
+
+
+def teddy(file: str) -> Robot:
+    dress = Dress({"*": FUR}, {"*": fitted("teddy.obj")})
+    return dressed(file, "A teddy that touches with its convex hull.", dress)
+
+
+def blob_mesh(number: int) -> ObjMesh:
+    """Three to six balls that have grown together, different for every number."""
+    random = np.random.default_rng(number)
+    count = 3 + number % 4
+    along = np.linspace(-0.6, 0.6, count)
+    balls = [ball((x, *random.uniform(-0.3, 0.3, 2)), random.uniform(0.25, 0.42)) for x in along.tolist()]
+    return _meshed(blend(*balls, width=0.3), 1.2, 0.17)
+
+
+def blob(number: int) -> Robot:
+    name = f"{number:03d}"
+    paint = Paint("blob", (*COLOURS[number % len(COLOURS)], 1.0), (0.2, 0.2, 0.2))
+    dress = Dress({"*": paint}, {"*": fitted(f"{name}.obj")})
+    return dressed(f"random_urdfs/{name}/{name}.urdf", "A blob to grasp and to clear away.", dress)
+
+
+def _courtyard(room: Envelope) -> tuple[Shape, ...]:
+    """A floor, a wall round it, and a tower of three storeys."""
+    (low_x, high_x), (low_y, high_y) = room.inner("x"), room.inner("y")
+    walls = (
+        room.box(x=(None, low_x + 1.0), z=(None, 3.0)),
+        room.box(x=(high_x - 1.0, None), z=(None, 3.0)),
+        room.box(y=(None, low_y + 1.0), z=(None, 3.0)),
+        room.box(y=(high_y - 1.0, None), z=(None, 3.0)),
+    )
+    tower = tuple(
+        room.box(x=(30.0 - half, 30.0 + half), y=(-half, half), z=(None, height))
+        for half, height in ((12.0, 10.0), (9.0, 20.0), (6.0, None))
+    )
+    return (room.box(z=(None, 0.0)), *walls, *tower)
+
+
+def samurai() -> Robot:
+    dress = Dress({"*": STONE}, {"*": _courtyard})
+    return dressed("samurai.urdf", "A walled courtyard with a tower.", dress)
