@@ -11,11 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tools.assets import kuka, panda, simple_meshes
 from tools.assets.envelope import COMPOUND_MARGIN, Envelope
+from tools.assets.envelope import rod as capsule_between
 from tools.assets.fields import ball, blend, block, drum, rod, within, without
+from tools.assets.measured import Dress, dressed
 from tools.assets.obj_mesh import ObjMesh
 from tools.assets.parts import Box, Capsule
 from tools.assets.png import png_bytes
+from tools.assets.quadrupeds import SHELL
+from tools.assets.soft_shapes import blob_mesh, teddy_mesh
 from tools.assets.surface import mesh_of
+
+from carom.description.transform import quaternion_from_rpy, rotate
 
 ORIGIN = (0.0, 0.0, 0.0)
 BOWL = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0), (0.5, 0.2), (0.0, 0.2)]
@@ -154,3 +160,40 @@ def test_png_bytes_hold_the_picture(rows: int, columns: int, seed: int) -> None:
     pixels = pixels.reshape(rows, 1 + 3 * columns)
     assert not pixels[:, 0].any()
     assert np.abs(pixels[:, 1:].reshape(rows, columns, 3) - 255.0 * picture).max() <= 0.5
+
+
+extent = st.floats(0.01, 2.0)
+
+
+@given(x=extent, y=extent, z=extent, mass=st.floats(0.1, 50.0))
+def test_envelope_of_an_inertia_is_the_box_that_has_it(x: float, y: float, z: float, mass: float) -> None:
+    a, b, c = (mass * (p * p + q * q) / 12.0 for p, q in ((y, z), (z, x), (x, y)))
+    room = Envelope.of_inertia((1.0, 2.0, 3.0), (a, b, c), mass)
+    assert room.low == pytest.approx((1.0 - x / 2.0, 2.0 - y / 2.0, 3.0 - z / 2.0), abs=1e-6)
+    assert room.high == pytest.approx((1.0 + x / 2.0, 2.0 + y / 2.0, 3.0 + z / 2.0), abs=1e-6)
+
+
+point = st.tuples(*[st.floats(-1.0, 1.0)] * 3)
+
+
+@given(start=point, end=point)
+def test_capsules_between_points_end_there(
+    start: tuple[float, float, float], end: tuple[float, float, float]
+) -> None:
+    shape = capsule_between(start, end, 0.1)
+    assert isinstance(shape.geometry, Capsule)
+    half = rotate(quaternion_from_rpy(*shape.rpy), (0.0, 0.0, shape.geometry.length / 2.0))
+    assert np.add(shape.xyz, half) == pytest.approx(end, abs=1e-9)
+    assert np.subtract(shape.xyz, half) == pytest.approx(start, abs=1e-9)
+
+
+def test_meshes_that_are_fitted_span_one_unit() -> None:
+    for mesh in (teddy_mesh(), blob_mesh(3)):
+        assert mesh.vertices.min(axis=0) == pytest.approx([-0.5] * 3)
+        assert mesh.vertices.max(axis=0) == pytest.approx([0.5] * 3)
+        assert volume(mesh) > 0.1
+
+
+def test_a_link_that_a_dress_forgets_is_an_error() -> None:
+    with pytest.raises(KeyError, match="FR_upper"):
+        dressed("a1/a1.urdf", "", Dress({"trunk": SHELL, "imu*": SHELL, "*_hip": SHELL, "*shoulder": SHELL}))

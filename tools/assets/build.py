@@ -12,6 +12,8 @@ from tools.assets import (
     arms,
     cubes,
     floors,
+    gym_humanoids,
+    gym_runners,
     kuka,
     manipulators,
     panda,
@@ -28,6 +30,7 @@ from tools.assets import (
     toys,
 )
 from tools.assets.fields import Field
+from tools.assets.mjcf_text import Model, mjcf_text
 from tools.assets.obj_mesh import ObjMesh, material_text
 from tools.assets.parts import Robot, Vector3
 from tools.assets.png import png_bytes
@@ -125,6 +128,21 @@ SCENES: Mapping[str, Callable[[], scenes.Scene]] = {
     "stadium.sdf": partial(scenes.stadium, "stadium.sdf"),
 }
 
+MODELS: Mapping[str, Callable[[], Model]] = {
+    "mjcf/ant.xml": gym_runners.ant,
+    "mjcf/ground_plane.xml": gym_runners.ground_plane,
+    "mjcf/half_cheetah.xml": gym_runners.half_cheetah,
+    "mjcf/hopper.xml": gym_runners.hopper,
+    "mjcf/humanoid.xml": gym_humanoids.humanoid,
+    "mjcf/humanoid_symmetric.xml": partial(gym_humanoids.humanoid_symmetric, 0.8),
+    "mjcf/humanoid_symmetric_no_ground.xml": partial(gym_humanoids.humanoid_symmetric, 0.5),
+    "mjcf/inverted_double_pendulum.xml": gym_runners.inverted_double_pendulum,
+    "mjcf/inverted_pendulum.xml": gym_runners.inverted_pendulum,
+    "mjcf/reacher.xml": gym_runners.reacher,
+    "mjcf/swimmer.xml": gym_runners.swimmer,
+    "mjcf/walker2d.xml": gym_runners.walker2d,
+}
+
 MATERIALS: Mapping[str, tuple[str, str]] = {
     "plane.mtl": ("floor", "checker_blue.png"),
     "grass.mtl": ("grass", "grass.png"),
@@ -197,8 +215,9 @@ def urdf_files() -> dict[str, str]:
 
 
 def scene_files() -> dict[str, str]:
-    """The text of every SDF file."""
-    return {path: sdf_text(scene()) for path, scene in SCENES.items()}
+    """The text of every SDF and MJCF file."""
+    made = {path: sdf_text(scene()) for path, scene in SCENES.items()}
+    return made | {path: mjcf_text(model()) for path, model in MODELS.items()}
 
 
 def mesh_files() -> dict[str, str]:

@@ -98,6 +98,7 @@ class Dress:
         seen: Looks of links in their link frames, instead of what touches.
         more: Looks besides that.
         borrowed: Links of other robots that lend their looks and shapes.
+        inertia_scaling: What PyBullet is told to multiply inertias by.
     """
 
     paint: Mapping[str, Paint]
@@ -105,6 +106,7 @@ class Dress:
     seen: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
     more: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
     borrowed: Mapping[str, Link] = field(default_factory=dict)
+    inertia_scaling: float = 1.0
 
 
 def dressed(file: str, about: str, dress: Dress, number: int = 0) -> Robot:
@@ -139,14 +141,18 @@ def recorded(file: str) -> list[dict[str, Any]]:
 
 
 def _link(facts: Mapping[str, Any], dress: Dress, number: int, name: str) -> Link:
+    inertial = _inertial(facts, number, dress.inertia_scaling)
+    contact = _contact(facts, number)
+    if dress.inertia_scaling != 1.0:
+        contact["inertia_scaling"] = dress.inertia_scaling
     if name in dress.borrowed:
         lender = dress.borrowed[name]
-        return Link(name, _inertial(facts, number), lender.seen, lender.touching, _contact(facts, number))
+        return Link(name, inertial, lender.seen, lender.touching, contact)
     frame = _inertial_frame(facts["default"][number])
     touching = _touching(facts, dress, number, name, frame)
     painted = tuple(replace(shape, paint=_chosen(dress.paint, name)) for shape in touching)
     seen = _chosen(dress.seen, name, painted) + _chosen(dress.more, name, ())
-    return Link(name, _inertial(facts, number), seen, touching, _contact(facts, number))
+    return Link(name, inertial, seen, touching, contact)
 
 
 def _chosen(table: Mapping[str, Part], name: str, otherwise: Part | None = None) -> Part:
@@ -163,17 +169,18 @@ def _touching(
 ) -> tuple[Shape, ...]:
     recorded_shapes = facts["collisions"][number]
     if any(shape["type"] == MESH for shape in recorded_shapes):
-        shapes = _chosen(dress.fill, name, fill_with_box)(_room(facts, number))
+        shapes = _chosen(dress.fill, name, fill_with_box)(_room(facts, number, dress.inertia_scaling))
     else:
         shapes = tuple(_primitive(shape) for shape in recorded_shapes)
     return tuple(_moved(shape, frame) for shape in shapes)
 
 
-def _room(facts: Mapping[str, Any], number: int) -> Envelope:
+def _room(facts: Mapping[str, Any], number: int, scaling: float) -> Envelope:
     """The bounds that the inertia tells of, since getAABB leaves out some of the margins that it counts."""
     low, high = (np.array(corner) for corner in facts["bounds"][number])
-    if (mass := facts["default"][number]["mass"]) > 0.0:
-        return Envelope.of_inertia(tuple((low + high) / 2.0), facts["default"][number]["inertia"], mass)
+    fact = facts["default"][number]
+    if fact["mass"] > 0.0:
+        return Envelope.of_inertia(tuple((low + high) / 2.0), fact["inertia"], scaling * fact["mass"])
     return Envelope(tuple(low), tuple(high))
 
 
@@ -208,7 +215,7 @@ def _inertial_frame(fact: Mapping[str, Any]) -> Pose:
     return Pose(tuple(fact["inertial_position"]), tuple(fact["inertial_orientation"]))
 
 
-def _inertial(facts: Mapping[str, Any], number: int) -> Inertial:
+def _inertial(facts: Mapping[str, Any], number: int, scaling: float) -> Inertial:
     """Mass and inertia; the principal inertias of the file are turned back into the frame they came from."""
     fact = facts["default"][number]
     frame = _inertial_frame(fact)
@@ -217,7 +224,7 @@ def _inertial(facts: Mapping[str, Any], number: int) -> Inertial:
         multiplied(conjugate(frame.orientation), tuple(stated["inertial_orientation"]))
     )
     turn = np.array(to_principal)
-    tensor = turn @ np.diag(stated["inertia"]) @ turn.T
+    tensor = turn @ np.diag(stated["inertia"]) @ turn.T / scaling
     ixx, ixy, ixz, iyy, iyz, izz = (
         float(f"{tensor[i, j]:.12g}") if abs(tensor[i, j]) > 1e-15 else 0.0
         for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))

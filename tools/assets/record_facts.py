@@ -10,6 +10,7 @@ It writes tests/pybullet_data/facts/<name>.json, one file per asset, and needs n
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -253,10 +254,13 @@ def write_facts(name: str) -> None:
 
 
 def main(names: list[str]) -> None:
+    if len(names) != 1:  # one process each: PyBullet numbers the joints of MJCF files through
+        for name in names or ASSETS:
+            subprocess.run([sys.executable, __file__, name], check=True)
+        return
     p.connect(p.DIRECT)
     p.setPhysicsEngineParameter(enableFileCaching=0)
-    for name in names or ASSETS:
-        write_facts(name)
+    write_facts(names[0])
 
 
 if __name__ == "__main__":

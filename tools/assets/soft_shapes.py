@@ -71,7 +71,7 @@ def blob_mesh(number: int) -> ObjMesh:
 def blob(number: int) -> Robot:
     name = f"{number:03d}"
     paint = Paint("blob", (*COLOURS[number % len(COLOURS)], 1.0), (0.2, 0.2, 0.2))
-    dress = Dress({"*": paint}, {"*": fitted(f"{name}.obj")})
+    dress = Dress({"*": paint}, {"*": fitted(f"{name}.obj")}, inertia_scaling=3.0)
     return dressed(f"random_urdfs/{name}/{name}.urdf", "A blob to grasp and to clear away.", dress)
 
 
