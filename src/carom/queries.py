@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from itertools import product
 from typing import Any, NamedTuple, cast
 
@@ -14,7 +15,6 @@ from carom.collision.rays import prepare_rays_kernel, rays_kernel
 from carom.model.codes import PLANE
 from carom.model.launch import Launch
 from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
-from carom.physics.kinematics import link_poses_kernel
 from carom.stepper import argument_indices, launch
 from carom.touch_arrays import TouchArrays
 
@@ -58,21 +58,24 @@ class Queries:
 
     Args:
         structs: Warp structs by the name kernels give them.
-        link_pose: `World.link_pose`, which queries leave as it is.
+        present_poses: `World.present_poses`.
         touch: The arrays of shapes.
         device: Warp device name.
     """
 
     def __init__(
-        self, structs: dict[str, Any], link_pose: np.ndarray, touch: TouchArrays, device: str
+        self,
+        structs: dict[str, Any],
+        present_poses: Callable[[], AbstractContextManager[None]],
+        touch: TouchArrays,
+        device: str,
     ) -> None:
         self._structs = structs
         self._device = device
-        self._link_pose = link_pose
+        self._present_poses = present_poses
         self._shape_count = touch.shapes.shape_count
         self._shapes = touch.shapes.table.numpy
         self._pairs = touch.pairs.numpy
-        self._update_poses = launch(link_poses_kernel, structs, device)
         self._prepare_rays = launch(prepare_rays_kernel, structs, device)
         self._place_shapes = launch(place_shapes_kernel, structs, device)
         self._casts: dict[int, RayCast] = {}
@@ -141,10 +144,8 @@ class Queries:
 
     def _place(self, prepare: Launch) -> None:
         """Run a kernel that places the shapes by poses of the links that are up to date."""
-        kept = self._link_pose.copy()
-        self._update_poses()
-        prepare()
-        self._link_pose[:] = kept
+        with self._present_poses():
+            prepare()
 
     def _shapes_of(self, link: int) -> range:
         first = int(self._shapes["link_first_shape"][link])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -21,10 +22,10 @@ from carom.model.codes import UserConstraintKind
 from carom.model.flags import LoadFlags
 from carom.model.launch import Launch
 from carom.model.structs import Settings
-from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
+from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.queries import Queries
-from carom.stepper import Stepper
+from carom.stepper import Stepper, launch
 from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
 
@@ -261,6 +262,7 @@ class World:
         """Sort and number the constraints again before the next step."""
         self._step = None
         self._queries = None
+        self._all_poses_launch = None
 
     # Time
 
@@ -306,12 +308,14 @@ class World:
         if self.constraints.write(self.arrays, user_rows, self.parameters.minimum_island_size):
             self._take_arrays()
         self.user_constraints.write(self.touch)
-        model, state, scratch = self._structs
-        structs = {"settings": self._settings(), "model": model, "state": state, "scratch": scratch}
-        structs |= self.touch.structs()
         self._queries = None
         self._stepper = Stepper(
-            structs, self.touch, self._fault, self.parameters.substeps, _DEVICE, touching=self._can_touch()
+            self._kernel_structs(),
+            self.touch,
+            self._fault,
+            self.parameters.substeps,
+            _DEVICE,
+            touching=self._can_touch(),
         )
         return self._stepper
 
@@ -360,10 +364,14 @@ class World:
     def queries(self) -> Queries:
         """Rays, nearest points and overlaps for the present coordinates."""
         if self._queries is None:
-            model, state, _ = self._structs
-            structs = {"settings": self._settings(), "model": model, "state": state, **self.touch.structs()}
-            self._queries = Queries(structs, self.link_pose, self.touch, _DEVICE)
+            self._queries = Queries(self._kernel_structs(), self.present_poses, self.touch, _DEVICE)
         return self._queries
+
+    def _kernel_structs(self) -> dict[str, Any]:
+        """Structs over the present arrays, by the name kernels give them."""
+        model, state, scratch = self._structs
+        own = {"settings": self._settings(), "model": model, "state": state, "scratch": scratch}
+        return own | self.touch.structs()
 
     def _settings(self) -> Any:
         p = self.parameters
@@ -423,6 +431,7 @@ class World:
         self._step = None
         self._queries: Queries | None = None
         self._pose_launch: Launch | None = None
+        self._all_poses_launch: Launch | None = None
         self._twist_launch: Launch | None = None
         self._query_space: QuerySpace | None = None
         for name, field in _VIEWS.items():
@@ -436,6 +445,24 @@ class World:
         if self._query_space is None:
             self._query_space = QuerySpace(self._settings(), self._structs, self.arrays, _DEVICE)
         return self._query_space
+
+    @contextmanager
+    def present_poses(self) -> Iterator[None]:
+        """Within it, `link_pose` is up to date with the coordinates of all bodies.
+
+        Afterwards it is as it was: after a step its rows are those of the start of the last substep, and
+        getters count on that.
+        """
+        if self._all_poses_launch is None:
+            model, state, _ = self._structs
+            structs = {"settings": self._settings(), "model": model, "state": state}
+            self._all_poses_launch = launch(link_poses_kernel, structs, _DEVICE)
+        before = self.link_pose.copy()
+        self._all_poses_launch()
+        try:
+            yield
+        finally:
+            self.link_pose[:] = before
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""

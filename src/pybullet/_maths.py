@@ -10,7 +10,14 @@ from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
 from struct import Struct
 
 from carom.description.pose import Quaternion, Vector3
-from carom.description.transform import conjugate, multiplied, rotation_matrix, transposed, turns_about_axes
+from carom.description.transform import (
+    conjugate,
+    multiplied,
+    rotation_matrix,
+    rpy_from_quaternion,
+    transposed,
+    turns_about_axes,
+)
 from pybullet._arguments import Vector, real, rotation, vector3, vector4
 from pybullet._builtin import exported
 from pybullet._errors import fail
@@ -32,8 +39,6 @@ __all__ = [
 ]
 
 _single = Struct("f")
-# Beyond this sine of the pitch, roll and yaw turn about the same axis.
-_GIMBAL_LOCK = 0.99999
 # Ten times the spacing of single-precision numbers at 1.
 _NO_AXIS = 10.0 * 1.1920928955078125e-07
 _TWO_QUATERNIONS = "Require start and end quaternion, each with 4 components [x,y,z,w]."
@@ -77,15 +82,7 @@ def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vect
     Raises:
         pybullet.error: It is not a sequence of four finite numbers.
     """
-    x, y, z, w = vector4(quaternion, "Quaternion need a 4 components [x,y,z,w].", "quaternion")
-    sine = -2.0 * (x * z - w * y)
-    if sine <= -_GIMBAL_LOCK:
-        return (0.0, -0.5 * pi, 2.0 * atan2(x, -y))
-    if sine >= _GIMBAL_LOCK:
-        return (0.0, 0.5 * pi, 2.0 * atan2(-x, y))
-    xx, yy, zz, ww = x * x, y * y, z * z, w * w
-    roll = atan2(2.0 * (y * z + w * x), ww - xx - yy + zz)
-    return (roll, asin(sine), atan2(2.0 * (x * y + w * z), ww + xx - yy - zz))
+    return rpy_from_quaternion(vector4(quaternion, "Quaternion need a 4 components [x,y,z,w].", "quaternion"))
 
 
 @exported

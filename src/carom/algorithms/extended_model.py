@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.extended_nodes import ROOT_COORDINATES, Node, extended_nodes
+from carom.algorithms.extended_nodes import ROOT_COORDINATES, Node, extended_nodes, skew
 from carom.description.pose import Vector3
-from carom.description.transform import rotation_matrix
+from carom.description.transform import NO_ROTATION, rotation_matrix
 from carom.model.codes import JointCode
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ _SUBSPACES = {
     JointCode.SPHERICAL: np.vstack([np.eye(3, 4), np.zeros((3, 4))]),
     JointCode.FIXED: np.zeros((6, 0)),
 }
-_NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class ExtendedModel:
@@ -99,10 +98,10 @@ class ExtendedModel:
 
 def _motion_transforms(nodes: Sequence[Node], position: np.ndarray) -> np.ndarray:
     """What takes motions from the joint frame of the parent to that of the node, (nodes, 6, 6)."""
-    turns, slides = [_NO_TURN], np.zeros(len(nodes))
+    turns, slides = [NO_ROTATION], np.zeros(len(nodes))
     for index, node in enumerate(nodes[1:], start=1):
         own = position[node.first : node.first + node.count].tolist()
-        turn = _NO_TURN
+        turn = NO_ROTATION
         if node.kind == JointCode.REVOLUTE:
             c, s = cos(own[0]), sin(own[0])
             turn = ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
@@ -116,15 +115,8 @@ def _motion_transforms(nodes: Sequence[Node], position: np.ndarray) -> np.ndarra
     back = np.swapaxes(placements @ np.array(turns), 1, 2)
     transforms = np.zeros((len(nodes), 6, 6))
     transforms[:, :3, :3] = transforms[:, 3:, 3:] = back
-    transforms[:, 3:, :3] = -back @ _skew(origins)
+    transforms[:, 3:, :3] = -back @ skew(origins)
     return transforms
-
-
-def _skew(v: np.ndarray) -> np.ndarray:
-    """Matrices of the vector product from the left, (..., 3, 3)."""
-    matrices = np.zeros((*v.shape, 3))
-    matrices[..., 2, 1], matrices[..., 0, 2], matrices[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
-    return matrices - np.swapaxes(matrices, -1, -2)
 
 
 def _cross_motion(v: np.ndarray, m: np.ndarray) -> np.ndarray:

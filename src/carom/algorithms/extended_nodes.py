@@ -8,7 +8,7 @@ x axis of their inertial frame, and a base without shapes is left out when a fix
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import asin, atan2, cos, pi, sin, sqrt
+from math import cos, sin, sqrt
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -16,7 +16,7 @@ import numpy as np
 
 from carom.description import Box, Capsule, Collision, Sphere
 from carom.description.pose import Pose, Quaternion, Vector3
-from carom.description.transform import compose, conjugate, inverse, multiplied, rotate
+from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rpy_from_quaternion
 from carom.model.body_spec import BASE, LinkSpec
 from carom.model.bounds import MARGIN, Bounds, shape_bounds
 from carom.model.codes import JointCode
@@ -36,7 +36,6 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _X, _Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 # PyBullet looks for the axis of a slider where there is none; what it finds is half a quaternion.
 _SLIDER_TURN = (0.0, 0.0, 0.0, sqrt(0.5))
-_GIMBAL_LOCK = 0.99999
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +159,7 @@ def _inertia(body: Body, link: int, frame: _Frame, as_pybullet: bool) -> np.ndar
         implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         moments = _moments(dynamics.mass, spec.collisions, implicit)
     turn = _rotation_by_angles(conjugate(frame.turn))
-    offset = _skew(np.array(frame.com))
+    offset = skew(np.array(frame.com))
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = turn @ np.diag(moments) @ turn.T + dynamics.mass * offset @ offset.T
     inertia[:3, 3:] = dynamics.mass * offset
@@ -198,10 +197,11 @@ def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
     return (across, (0.5 * cylinder + 0.8 * half_ball) * radius * radius, across)
 
 
-def _skew(v: np.ndarray) -> np.ndarray:
-    """The matrix of the vector product from the left."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+def skew(v: np.ndarray) -> np.ndarray:
+    """Matrices of the vector product from the left, (..., 3, 3)."""
+    matrices = np.zeros((*v.shape, 3))
+    matrices[..., 2, 1], matrices[..., 0, 2], matrices[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
+    return matrices - np.swapaxes(matrices, -1, -2)
 
 
 def _shortest_turn(start: Vector3, end: Vector3, opposite: Quaternion) -> Quaternion:
@@ -224,15 +224,7 @@ def _turned(q: Quaternion, v: Vector3) -> Vector3:
 
 def _rotation_by_angles(q: Quaternion) -> np.ndarray:
     """Rotation matrix by way of yaw, pitch and roll; the way matters when the length is not one."""
-    x, y, z, w = q
-    sine = -2.0 * (x * z - w * y)
-    if abs(sine) >= _GIMBAL_LOCK:
-        sign = 1.0 if sine > 0.0 else -1.0
-        roll, pitch, yaw = 0.0, sign * 0.5 * pi, 2.0 * atan2(-sign * x, sign * y)
-    else:
-        pitch = asin(sine)
-        roll = atan2(2.0 * (y * z + w * x), w * w - x * x - y * y + z * z)
-        yaw = atan2(2.0 * (x * y + w * z), w * w + x * x - y * y - z * z)
+    roll, pitch, yaw = rpy_from_quaternion(q)
     sr, cr, sp, cp, sy, cy = sin(roll), cos(roll), sin(pitch), cos(pitch), sin(yaw), cos(yaw)
     return np.array(
         [

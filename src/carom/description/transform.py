@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import asin, atan2, cos, pi, sin, sqrt
 
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
 
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 """Row-major rotation matrix."""
+
+_GIMBAL_LOCK = 0.99999
 
 NO_ROTATION: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -74,6 +76,25 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
     has_positive_trace = w * w > 0.25  # the trace of the matrix is 4 w² - 1
     is_flipped = (w if has_positive_trace else max((x, y, z), key=abs)) < 0.0
     return (-x, -y, -z, -w) if is_flipped else (x, y, z, w)
+
+
+def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
+    """Roll, pitch and yaw [rad] about the fixed axes x, y and z, as Bullet takes them.
+
+    From a sine of the pitch of ±0.99999 on, roll and yaw turn about the same axis, and roll is 0.
+
+    Args:
+        quaternion: (x, y, z, w), of unit length.
+    """
+    x, y, z, w = quaternion
+    sine = -2.0 * (x * z - w * y)
+    if sine <= -_GIMBAL_LOCK:
+        return (0.0, -0.5 * pi, 2.0 * atan2(x, -y))
+    if sine >= _GIMBAL_LOCK:
+        return (0.0, 0.5 * pi, 2.0 * atan2(-x, y))
+    xx, yy, zz, ww = x * x, y * y, z * z, w * w
+    roll = atan2(2.0 * (y * z + w * x), ww - xx - yy + zz)
+    return (roll, asin(sine), atan2(2.0 * (x * y + w * z), ww + xx - yy - zz))
 
 
 def transposed(m: Matrix3) -> Matrix3:

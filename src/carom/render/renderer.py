@@ -69,7 +69,8 @@ class Renderer:
                 raise ValueError(f"the {name} matrix is singular")
         scene = self._present_scene(world)
         target = self._target(scene, width, height)
-        link_to_world = poses_to_matrices(_present_poses(world, scene))
+        with world.present_poses():
+            link_to_world = poses_to_matrices(world.link_pose[scene.link_rows])
         return target.draw(link_to_world, view, projection, light, projector)
 
     def _present_scene(self, world: World) -> SceneArrays:
@@ -91,20 +92,6 @@ class Renderer:
                 self._targets.popitem(last=False)
         self._targets.move_to_end(size)
         return target
-
-
-def _present_poses(world: World, scene: SceneArrays) -> Matrix:
-    """Poses (links, 7) of what is shown.
-
-    After a step the rows of the poses in the world are those of its start, and getters count on that: so
-    they are put back.
-    """
-    before = world.link_pose.copy()
-    for body in world.bodies.values():
-        body.update_link_poses()
-    present = world.link_pose[scene.link_rows]
-    world.link_pose[:] = before
-    return present
 
 
 def renderer_of(world: World) -> Renderer:
