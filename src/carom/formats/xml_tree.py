@@ -143,6 +143,18 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     return builder.roots
 
 
+def parse_root(data: bytes, file: Path, *tags: str) -> Element:
+    """The element of a document that has one of these names.
+
+    Raises:
+        DescriptionError: There is none, or the document is broken.
+    """
+    root = next((element for element in parse_xml(data, file) if element.tag in tags), None)
+    if root is None:
+        raise DescriptionError(f"there is no <{tags[0]}> element", file=file)
+    return root
+
+
 def _run_expat(text: str, builder: TreeBuilder) -> None:
     # The text is decoded already: an encoding named in the declaration must not be applied again.
     parser = expat.ParserCreate("utf-8")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.formats.files import read_bounded
-from carom.formats.mesh.collada import ColladaReader, collada_reader
+from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, primitives, referenced
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.xml_tree import Element
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
@@ -69,19 +69,16 @@ def _placed(corners: _Corners, placement: Floats) -> _Corners:
 
 def _read_geometry(reader: ColladaReader, geometry: Element) -> list[_Corners]:
     result = []
-    for mesh in geometry.all("mesh"):
-        for primitive in mesh.children:
-            if primitive.tag not in ("triangles", "polylist", "polygons"):
-                continue
-            source, offset, stride = reader.position_input(mesh, primitive)
-            positions = source[reader.corner_indices(primitive, offset, stride)]
-            normals = _attribute(reader, mesh, primitive, "NORMAL", 3, stride)
-            if normals is None:
-                normals = np.repeat(face_normals(positions), 3, axis=0)
-            uvs = _attribute(reader, mesh, primitive, "TEXCOORD", 2, stride)
-            if uvs is None:
-                uvs = np.full((3 * len(positions), 2), NO_TEXTURE_UV)
-            result.append(_Corners(positions.reshape(-1, 3), normals, uvs))
+    for mesh, primitive in primitives(geometry):
+        source, offset, stride = reader.position_input(mesh, primitive)
+        positions = source[reader.corner_indices(primitive, offset, stride)]
+        normals = _attribute(reader, mesh, primitive, "NORMAL", 3, stride)
+        if normals is None:
+            normals = np.repeat(face_normals(positions), 3, axis=0)
+        uvs = _attribute(reader, mesh, primitive, "TEXCOORD", 2, stride)
+        if uvs is None:
+            uvs = np.full((3 * len(positions), 2), NO_TEXTURE_UV)
+        result.append(_Corners(positions.reshape(-1, 3), normals, uvs))
     return result
 
 
@@ -89,26 +86,19 @@ def _attribute(
     reader: ColladaReader, mesh: Element, primitive: Element, semantic: str, width: int, stride: int
 ) -> Floats | None:
     """(3 m, width) values of an attribute at all corners; None if the mesh does not have it."""
-    offset = 0
-    owners = [primitive]
-    for entry in primitive.all("input"):
-        if entry.attributes.get("semantic") == "VERTEX":
-            name = entry.attributes.get("source", "")[1:]
-            owners += [v for v in mesh.all("vertices") if v.attributes.get("id", "") == name]
-            offset = int(reader.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
-    for owner in owners:
-        for entry in owner.all("input"):
-            if entry.attributes.get("semantic") != semantic:
-                continue
-            identifier = entry.attributes.get("source", "")[1:]
-            source = next((s for s in mesh.all("source") if s.attributes.get("id", "") == identifier), None)
-            if source is None:
-                return None
-            if owner is primitive:
-                offset = int(reader.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
-            rows = reader.source_rows(source, width)
-            indices = reader.corner_indices(primitive, offset, stride).reshape(-1)
-            if len(indices) and not 0 <= indices.min() <= indices.max() < len(rows):
-                return None
-            return rows[indices]
-    return None
+    entry, offset = next(inputs(primitive, semantic), None), 0
+    if entry is not None:
+        offset = reader.offset(entry)
+    else:
+        shared = reader.shared_input(mesh, primitive)
+        if shared is not None:
+            vertices, offset = shared
+            entry = next(inputs(vertices, semantic), None)
+    source = None if entry is None else referenced(mesh, "source", entry)
+    if source is None:
+        return None
+    rows = reader.source_rows(source, width)
+    indices = reader.corner_indices(primitive, offset, stride).reshape(-1)
+    if len(indices) and not 0 <= indices.min() <= indices.max() < len(rows):
+        return None
+    return rows[indices]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
-from carom.formats.xml_tree import Element, parse_xml
+from carom.formats.xml_tree import Element, parse_root
 
 MAX_PARTS = 4096
 """Most geometries a scene may show."""
@@ -36,10 +36,7 @@ def read_collada(data: bytes, file: Path) -> list[MeshPart]:
 
 def collada_reader(data: bytes, file: Path) -> ColladaReader:
     """A reader of the content of a DAE file; DescriptionError if it is not COLLADA or broken."""
-    root = next((element for element in parse_xml(data, file) if element.tag == "COLLADA"), None)
-    if root is None:
-        raise DescriptionError("there is no <COLLADA> element", file=file)
-    return ColladaReader(root, file)
+    return ColladaReader(parse_root(data, file, "COLLADA"), file)
 
 
 class ColladaReader:
@@ -68,7 +65,7 @@ class ColladaReader:
         """Geometry id and 4x4 placement, unit included, of everything the scene shows."""
         scene = self.root.first("scene")
         instance = None if scene is None else scene.first("instance_visual_scene")
-        wanted = "" if instance is None else instance.attributes.get("url", "")[1:]
+        wanted = "" if instance is None else _target(instance, "url")
         placement = np.diag([self._metres_per_unit()] * 3 + [1.0])
         shown = 0
         for library in self.root.all("library_visual_scenes"):
@@ -92,7 +89,7 @@ class ColladaReader:
     def _nodes(self, node: Element, parent: NDArray[np.float64]) -> Iterator[tuple[str, NDArray[np.float64]]]:
         placement = parent @ self._local_transform(node)
         for instance in node.all("instance_geometry"):
-            identifier = instance.attributes.get("url", "")[1:]
+            identifier = _target(instance, "url")
             if identifier not in self.geometries:
                 raise self.error(instance, f"there is no geometry {identifier!r}")
             yield identifier, placement
@@ -127,39 +124,40 @@ class ColladaReader:
         positions: list[NDArray[np.float64]] = []
         corners: list[NDArray[np.int64]] = []
         known = 0
-        for mesh in geometry.all("mesh"):
-            for primitive in mesh.children:
-                if primitive.tag not in ("triangles", "polylist", "polygons"):
-                    continue
-                source, offset, stride = self.position_input(mesh, primitive)
-                indices = self.corner_indices(primitive, offset, stride)
-                if len(indices) and not 0 <= indices.min() <= indices.max() < len(source):
-                    raise self.error(primitive, f"it names a vertex outside 0..{len(source) - 1}")
-                positions.append(source)
-                corners.append(indices + known)
-                known += len(source)
+        for mesh, primitive in primitives(geometry):
+            source, offset, stride = self.position_input(mesh, primitive)
+            indices = self.corner_indices(primitive, offset, stride)
+            if len(indices) and not 0 <= indices.min() <= indices.max() < len(source):
+                raise self.error(primitive, f"it names a vertex outside 0..{len(source) - 1}")
+            positions.append(source)
+            corners.append(indices + known)
+            known += len(source)
         if not positions:
             return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
         return np.concatenate(positions), np.concatenate(corners)
 
     def position_input(self, mesh: Element, primitive: Element) -> tuple[NDArray[np.float64], int, int]:
         """Positions (k, 3), the place of their index among those of a corner, and how many those are."""
-        stride, offset, vertices_id = 1, None, ""
-        for entry in primitive.all("input"):
-            here = int(self.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
-            stride = max(stride, here + 1)
-            if entry.attributes.get("semantic") == "VERTEX":
-                offset, vertices_id = here, entry.attributes.get("source", "")[1:]
-        vertices = next((v for v in mesh.all("vertices") if v.attributes.get("id", "") == vertices_id), None)
-        if offset is None or vertices is None:
+        stride = max((self.offset(entry) + 1 for entry in primitive.all("input")), default=1)
+        shared = self.shared_input(mesh, primitive)
+        if shared is None:
             raise self.error(primitive, "it has no VERTEX input")
-        for entry in vertices.all("input"):
-            if entry.attributes.get("semantic") == "POSITION":
-                source_id = entry.attributes.get("source", "")[1:]
-                for source in mesh.all("source"):
-                    if source.attributes.get("id", "") == source_id:
-                        return self.source_rows(source, 3), offset, stride
+        vertices, offset = shared
+        for entry in inputs(vertices, "POSITION"):
+            source = referenced(mesh, "source", entry)
+            if source is not None:
+                return self.source_rows(source, 3), offset, stride
         raise self.error(vertices, "it has no POSITION input with a source in this mesh")
+
+    def shared_input(self, mesh: Element, primitive: Element) -> tuple[Element, int] | None:
+        """What the corners at one place are the same in, `<vertices>`, and the place of its index."""
+        entries = list(inputs(primitive, "VERTEX"))
+        vertices = referenced(mesh, "vertices", entries[-1]) if entries else None
+        return None if vertices is None else (vertices, self.offset(entries[-1]))
+
+    def offset(self, entry: Element) -> int:
+        """The place of an input's index among those of a corner."""
+        return int(self.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
 
     def source_rows(self, source: Element, width: int) -> NDArray[np.float64]:
         """(k, width) the first entries of each row of a source."""
@@ -214,6 +212,30 @@ class ColladaReader:
         if not np.isfinite(values).all():
             raise self.error(element, "it must hold finite numbers")
         return values
+
+
+def primitives(geometry: Element) -> Iterator[tuple[Element, Element]]:
+    """All elements of a geometry that hold triangles or polygons, each with its `<mesh>`."""
+    for mesh in geometry.all("mesh"):
+        for primitive in mesh.children:
+            if primitive.tag in ("triangles", "polylist", "polygons"):
+                yield mesh, primitive
+
+
+def inputs(owner: Element, semantic: str) -> Iterator[Element]:
+    """The inputs of an element that mean this."""
+    return (entry for entry in owner.all("input") if entry.attributes.get("semantic") == semantic)
+
+
+def referenced(mesh: Element, tag: str, entry: Element) -> Element | None:
+    """The element of a mesh that an input names as its source."""
+    identifier = _target(entry, "source")
+    return next((it for it in mesh.all(tag) if it.attributes.get("id", "") == identifier), None)
+
+
+def _target(element: Element, attribute: str) -> str:
+    """The id in a reference `#id`."""
+    return element.attributes.get(attribute, "")[1:]
 
 
 def _rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:

@@ -11,10 +11,10 @@ from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, locate, parse_root
+from carom.formats.robot.file import MAX_FILE_BYTES, locate
 from carom.formats.robot.includes import Includes
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import MAX_ELEMENTS, Element
+from carom.formats.xml_tree import MAX_ELEMENTS, Element, parse_root
 
 _log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""Robot files: where they are, how large they may be, and the element that holds everything."""
+"""Robot files: where they are and how large they may be."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from pathlib import Path
 from carom.errors import DescriptionError
 from carom.formats.robot.context import MAX_MAGNITUDE, FileContext
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import Element, parse_xml
 
 _log = logging.getLogger(__name__)
 
@@ -26,18 +25,6 @@ def locate(path: Path, search: AssetSearch) -> Path:
     if found is None:
         raise DescriptionError(f"no such file: {path}", file=path)
     return found.absolute()
-
-
-def parse_root(data: bytes, file: Path, *tags: str) -> Element:
-    """The element of a document that has one of these names.
-
-    Raises:
-        DescriptionError: There is none, or the document is broken.
-    """
-    root = next((element for element in parse_xml(data, file) if element.tag in tags), None)
-    if root is None:
-        raise DescriptionError(f"there is no <{tags[0]}> element", file=file)
-    return root
 
 
 def check_scale(scale: float) -> None:

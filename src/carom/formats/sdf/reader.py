@@ -8,12 +8,12 @@ from pathlib import Path
 from carom.description.transform import compose
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
-from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, parse_root, warn_of_assumed_masses
+from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.includes import Includes
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import Element
+from carom.formats.xml_tree import Element, parse_root
 
 _MODEL_FILE = "model.sdf"
 

@@ -7,13 +7,14 @@ from pathlib import Path
 
 from carom.description import Joint, Link, Material, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
-from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, parse_root, warn_of_assumed_masses
+from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
 from carom.formats.urdf.context import UrdfContext
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.link import read_link
 from carom.formats.urdf.material import read_global_materials
+from carom.formats.xml_tree import parse_root
 
 
 def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
