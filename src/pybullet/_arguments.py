@@ -96,6 +96,12 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
     Raises:
         pybullet.error: It is not a sequence, or an item is not a finite number.
     """
+    if isinstance(values, (list, tuple)):
+        try:
+            if -inf < sum(values) < inf:
+                return tuple(map(float, values))
+        except (TypeError, ValueError):
+            pass
     result = array("d")
     try:
         result.extend(values)

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.kernels import inverse_dynamics_kernel
+from carom.algorithms.query import reals
 from carom.description.transform import rotation_matrix
+from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 
 if TYPE_CHECKING:
     from carom.body import Body
+
+_AT_REST = reals((0.0,) * BASE_VELOCITIES)
 
 
 def inverse_dynamics(
@@ -43,23 +47,21 @@ def inverse_dynamics(
     at = space.coordinates(body)
     if body.fixed_base:
         first = body.first_position
-        at.base_position[:] = body.world.position[first : first + 7]
+        at.base_position[:] = body.world.position_memory[first : first + BASE_POSITIONS]
         if base_orientation is not None:
-            at.base_position[3:] = base_orientation
-        at.joint_position[:] = positions
-        at.velocity[6:] = velocities
-        at.acceleration[6:] = accelerations
-        space.run(inverse_dynamics_kernel, tree=body.rows.tree)
-        return -at.force[6:]
+            at.base_position[3:] = reals(base_orientation)
+        at.joint_position[:] = reals(positions)
+        at.velocity[:] = _AT_REST + reals(velocities)
+        at.acceleration[:] = _AT_REST + reals(accelerations)
+        space.run(inverse_dynamics_kernel, body.rows.tree)
+        return -at.force[BASE_VELOCITIES:]
 
     q, v, a = (np.asarray(values, dtype=float) for values in (positions, velocities, accelerations))
     x, y, z, w = q[3:7]
     to_world = np.array(rotation_matrix((x, y, z, w)))
-    at.base_position[:] = q[:7]
-    at.joint_position[:] = q[7:]
+    at.base_position[:] = reals(q[:BASE_POSITIONS])
+    at.joint_position[:] = reals(q[BASE_POSITIONS:])
     for target, values in ((at.velocity, v), (at.acceleration, a)):
-        target[:3] = to_world @ values[:3]
-        target[3:6] = to_world @ values[3:6]
-        target[6:] = values[6:]
-    space.run(inverse_dynamics_kernel, tree=body.rows.tree)
+        target[:] = reals(np.concatenate([to_world @ values[:3], to_world @ values[3:6], values[6:]]))
+    space.run(inverse_dynamics_kernel, body.rows.tree)
     return -np.concatenate([at.force[3:6] @ to_world, at.force[:3] @ to_world, at.force[6:]])

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.kernels import jacobian_kernel
-from carom.algorithms.query import active_dofs
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -34,8 +33,8 @@ def jacobian(
         (3, n); of a free body (3, 6 + n), the base first: angular, then linear.
     """
     space = body.world.query_space()
-    space.coordinates(body).joint_position[:] = positions
+    at = space.coordinates(body)
+    at.take_joints_of_resting_base(positions)
     space.answer["point_on_link"][0, 0] = local_position
-    space.run(jacobian_kernel, tree=body.rows.tree, link=body.first_link + 1 + link)
-    dofs = active_dofs(body, space.model)
-    return space.answer["dof_linear"][0, dofs].T.copy(), space.answer["dof_angular"][0, dofs].T.copy()
+    space.run(jacobian_kernel, body.rows.tree, body.first_link + 1 + link)
+    return space.answer["dof_linear"][0, at.dofs].T.copy(), space.answer["dof_angular"][0, at.dofs].T.copy()

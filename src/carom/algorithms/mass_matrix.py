@@ -25,9 +25,9 @@ def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarr
         linear velocity along its own axes.
     """
     space = body.world.query_space()
-    space.coordinates(body).joint_position[:] = positions
+    space.coordinates(body).take_joints_of_resting_base(positions)
     tree = body.rows.tree
-    space.run(mass_matrix_kernel, tree=tree)
+    space.run(mass_matrix_kernel, tree)
     count = int(space.model["tree_dof_count"][tree])
     blocks = (count + 3) // 4
     first = int(space.model["tree_first_block"][tree])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from array import array
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,12 +12,15 @@ from carom.model.arrays import ArrayTable
 from carom.model.builder import WorldArrays
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.model.launch import Launch
+from carom.model.real import NUMPY_REAL
 from carom.model.structs import Query, State
 
 if TYPE_CHECKING:
     from carom.body import Body
 
 IDENTITY_BASE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
+_ORIGIN = array(_TYPE_CODE, IDENTITY_BASE)
 
 
 class QuerySpace:
@@ -47,38 +52,36 @@ class QuerySpace:
             "query": query.struct(device),
         }
         self._device = device
-        self._launches: dict[Any, tuple[Launch, dict[str, int]]] = {}
+        self._runs: dict[tuple[Any, ...], Callable[[], None]] = {}
         self._coordinates: dict[int, BodyCoordinates] = {}
 
     def coordinates(self, body: Body) -> BodyCoordinates:
-        """Spare coordinates of a body, at the origin and at rest."""
+        """Spare coordinates of a body; whatever the last question left is still in them."""
         coordinates = self._coordinates.get(body.id)
         if coordinates is None:
             coordinates = self._coordinates[body.id] = BodyCoordinates(self, body)
-        coordinates.clear()
         return coordinates
 
     def forget_bodies(self) -> None:
         """Bodies have moved in the arrays."""
         self._coordinates.clear()
+        self._runs.clear()
 
-    def run(self, kernel: Any, **integers: int) -> None:
-        """Run a kernel on the spare coordinates with the given integer arguments."""
-        if kernel not in self._launches:
-            names = [argument.label for argument in kernel.adj.args]
-            arguments = [self._structs.get(name, 0) for name in names]
-            self._launches[kernel] = (
-                Launch(kernel, 1, arguments, self._device),
-                {name: index for index, name in enumerate(names) if name not in self._structs},
-            )
-        launch, index = self._launches[kernel]
-        for name, value in integers.items():
-            launch.replace(index[name], value)
-        launch()
+    def run(self, kernel: Any, *integers: int) -> None:
+        """Run a kernel on the spare coordinates with the given integer arguments, in order."""
+        run = self._runs.get((kernel, *integers))
+        if run is None:
+            run = self._runs[(kernel, *integers)] = self._prepare(kernel, iter(integers))
+        run()
+
+    def _prepare(self, kernel: Any, integers: Iterator[int]) -> Callable[[], None]:
+        names = [argument.label for argument in kernel.adj.args]
+        arguments = [self._structs[name] if name in self._structs else next(integers) for name in names]
+        return Launch(kernel, 1, arguments, self._device).function
 
 
 class BodyCoordinates:
-    """Views of one body's spare coordinates and of what kernels find for it.
+    """Memory of one body's spare coordinates and of what kernels find for it.
 
     Attributes:
         base_position: Position (3) and quaternion (4) of the base's inertial frame.
@@ -86,28 +89,29 @@ class BodyCoordinates:
         velocity: Angular (3) and linear (3) velocity of the base, then the joint rates.
         acceleration: Their derivatives.
         force: Minus the generalized forces of `inverse_dynamics_kernel`, in that order.
+        dofs: Rows of the dofs that dynamics may change.
     """
 
     def __init__(self, space: QuerySpace, body: Body) -> None:
         first = body.first_position
-        positions = space.state["position"][0]
+        positions = memoryview(space.state["position"][0])
         joints = first + BASE_POSITIONS
         self.base_position = positions[first:joints]
         self.joint_position = positions[joints : joints + sum(body.position_count)]
         dofs = slice(body.first_velocity, body.first_velocity + BASE_VELOCITIES + sum(body.velocity_count))
-        self.velocity = space.state["dof_velocity"][0, dofs]
-        self.acceleration = space.scratch["dof_acceleration"][0, dofs]
+        self.velocity = memoryview(space.state["dof_velocity"][0])[dofs]
+        self.acceleration = memoryview(space.scratch["dof_acceleration"][0])[dofs]
         self.force = space.scratch["dof_force"][0, dofs]
+        model, tree = space.model, body.rows.tree
+        first_dof = int(model["tree_first_dof"][tree])
+        self.dofs = slice(first_dof, first_dof + int(model["tree_dof_count"][tree]))
 
-    def clear(self) -> None:
-        """Put the body to rest at the origin; joint positions are left for the caller to set."""
-        self.base_position[:] = IDENTITY_BASE
-        self.velocity.fill(0.0)
-        self.acceleration.fill(0.0)
+    def take_joints_of_resting_base(self, positions: Sequence[float] | np.ndarray) -> None:
+        """Set the joint positions, the base at the origin."""
+        self.base_position[:] = _ORIGIN
+        self.joint_position[:] = reals(positions)
 
 
-def active_dofs(body: Body, model: dict[str, np.ndarray]) -> slice:
-    """Rows of the dofs that dynamics may change."""
-    tree = body.rows.tree
-    first = int(model["tree_first_dof"][tree])
-    return slice(first, first + int(model["tree_dof_count"][tree]))
+def reals(values: Sequence[float] | np.ndarray) -> array[float]:
+    """Numbers as the memory of coordinates takes them."""
+    return array(_TYPE_CODE, values)
