@@ -6,7 +6,7 @@ from typing import Any
 
 from carom.collision.capacity import scratch_capacity
 from carom.collision.hierarchy import PAIRS
-from carom.collision.manifold import THERE, WANTED
+from carom.collision.manifold import REPEATED, THERE, WANTED
 from carom.model.arrays import ArrayTable
 from carom.model.builder import WorldArrays
 from carom.model.contact_structs import COUPLING_ENTRY_VIEWS, Contacts, Couplings, Pairs, UserConstraints
@@ -45,7 +45,8 @@ class TouchArrays:
         return self.contacts.reserve({"contact": contacts}) or grown
 
     def grow_couplings(self) -> None:
-        """Double the room for rows over two trees."""
+        """Double the room for rows over two trees; the step will be repeated, its detection as well."""
+        self.contacts.numpy["count_contacts"][:, REPEATED] = 1
         capacity = self.couplings.capacity
         self.couplings.reserve({"coupling": 2 * capacity["coupling"], "jacobian": 2 * capacity["jacobian"]})
 

@@ -393,6 +393,7 @@ class World:
         settings.friction_erp = p.friction_erp
         settings.contact_softness = p.global_cfm
         settings.contact_slop = p.contact_slop
+        settings.contact_warm_starting = p.contact_warm_starting
         settings.restitution_threshold = p.restitution_velocity_threshold
         settings.cone_friction = int(p.cone_friction)
         settings.shape_count = self.touch.shapes.shape_count

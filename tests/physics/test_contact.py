@@ -71,6 +71,15 @@ def test_a_stack_of_ten_boxes_stands() -> None:
         assert np.abs(motion(box)).max() < 0.01
 
 
+def test_a_stack_that_starts_from_its_last_impulses_comes_to_rest() -> None:
+    world = earth(contact_warm_starting=0.85)
+    add_floor(world)
+    stack = [add_box(world, (0.0, 0.0, HALF + 2 * HALF * i)) for i in range(10)]
+    world.step(960)
+    assert max(np.abs(motion(box)).max() for box in stack) < 1e-3
+    assert place(stack[-1])[2] == pytest.approx(19 * HALF, abs=4e-4)
+
+
 @pytest.mark.parametrize("offset", [0.0, 0.07])
 def test_balls_that_collide_keep_momentum_and_energy(offset: float) -> None:
     speed, steps = 2.0, 40

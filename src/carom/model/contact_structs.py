@@ -139,7 +139,9 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    contact_impulse: Vector4Rows  # normal, along direction 1, along direction 2, 0; of the last substep
+    contact_impulse: (
+        Vector4Rows  # of the last substep: normal, along directions 1 and 2; normal of the one before
+    )
     contact_age: IntRows  # substeps
     count_contacts: IntRows  # see its columns in `collision.manifold`
 

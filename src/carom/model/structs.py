@@ -44,6 +44,7 @@ class Settings:
     friction_erp: real
     contact_softness: real
     contact_slop: real
+    contact_warm_starting: real
     restitution_threshold: real
     cone_friction: Int32
     split_impulse: Int32

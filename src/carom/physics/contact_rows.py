@@ -12,7 +12,7 @@ from carom.model.codes import (
 from carom.model.contact_structs import Contacts, Couplings, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.couplings import write_pair_jacobian, write_row
+from carom.physics.couplings import begin_with, write_pair_jacobian, write_row
 
 _UNBOUNDED = real(1e10)
 _GREATEST_FRICTION = real(10.0)
@@ -83,6 +83,20 @@ def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
 
 
 @func
+def starting_impulse(settings: Settings, last: Vector4) -> Vector3:
+    """Impulses along the normal and both friction directions that the solver starts from.
+
+    A contact starts from the lesser of its last two normal impulses: at rest they are alike, and the
+    impulse of an impact, which will not be needed again, is not among them.
+    """
+    normal = settings.contact_warm_starting * wp.min(last[0], last[3])
+    if normal <= 0.0:
+        return Vector3(0.0, 0.0, 0.0)
+    share = normal / last[0]
+    return Vector3(normal, share * last[1], share * last[2])
+
+
+@func
 def add_contact_rows(
     settings: Settings,
     model: Model,
@@ -120,6 +134,7 @@ def add_contact_rows(
         rows[SPINNING_ROW] = end
         end += 1
     couplings.contact_rows[world, contact] = rows
+    start = starting_impulse(settings, contacts.contact_impulse[world, contact])
 
     zero = Vector3(0.0, 0.0, 0.0)
     for place in range(row, end):
@@ -160,16 +175,19 @@ def add_contact_rows(
             softness = soft[0]
         write_row(couplings, world, place, found[0], change, softness, lower, upper, coefficient)
         couplings.coupling_bound[world, place] = row
+        if place < row + 3 and start[0] > 0.0:
+            begin_with(scratch, couplings, world, place, start[place - row])
     return Index4(end, block, 0, 0)
 
 
 @func
 def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32, contact: Int32):
     """Report the impulses of a contact's rows."""
+    before = contacts.contact_impulse[world, contact][0]
     rows = couplings.contact_rows[world, contact]
     contacts.contact_impulse[world, contact] = Vector4(
         couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
         couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
         couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
-        0.0,
+        before,
     )

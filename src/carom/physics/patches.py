@@ -270,7 +270,6 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
     """Make a patch of `count` contacts, from `first` on, whose rows have been written."""
     a = place[1]
     b = place[3]
-    zero = Vector4(0.0, 0.0, 0.0, 0.0)
     couplings.patch[world, patch].place = place
     couplings.patch[world, patch].first_contact = first
     couplings.patch[world, patch].count = count
@@ -282,7 +281,7 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
         couplings, world, first, count, 0, ROW_INVERSE_MASS
     )
     couplings.patch[world, patch].effective_mass0 = mass0
-    couplings.patch[world, patch].impulse0 = zero
+    couplings.patch[world, patch].impulse0 = gather_numbers(couplings, world, first, count, 0, ROW_IMPULSE)
     jacobian0_a = jacobians(couplings, world, first, count, 0, a, 0)
     jacobian0_b = jacobians(couplings, world, first, count, 0, b, a)
     response0_a = responses(couplings, world, first, count, 0, a, 0)
@@ -306,8 +305,8 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
     )
     couplings.patch[world, patch].effective_mass1 = mass1
     couplings.patch[world, patch].effective_mass2 = mass2
-    couplings.patch[world, patch].impulse1 = zero
-    couplings.patch[world, patch].impulse2 = zero
+    couplings.patch[world, patch].impulse1 = gather_numbers(couplings, world, first, count, 1, ROW_IMPULSE)
+    couplings.patch[world, patch].impulse2 = gather_numbers(couplings, world, first, count, 2, ROW_IMPULSE)
     jacobian1_a = jacobians(couplings, world, first, count, 1, a, 0)
     jacobian1_b = jacobians(couplings, world, first, count, 1, b, a)
     jacobian2_a = jacobians(couplings, world, first, count, 2, a, 0)
