@@ -15,7 +15,8 @@ from carom.physics.quarantine import OVERFLOW
 from carom.physics.step import step_kernel
 from carom.touch_arrays import TouchArrays
 
-_SUBSTEPS, _BEGINS, _ENDS = "substeps", "begins", "ends"
+# Arguments of a step's kernel.
+SUBSTEPS, BEGINS, ENDS = "substeps", "begins", "ends"
 
 
 class Detection:
@@ -36,14 +37,17 @@ class Detection:
         Returns:
             False if pairs or contacts did not fit; then the arrays have been replaced by longer ones.
         """
-        self._poses()
-        self._collide()
+        self._detect()
         fits = (
             self._pair_counts[PAIRS] <= self._pair_room and self._contact_counts[WANTED] <= self._contact_room
         )
         if not fits:
             self._touch.grow_detection()
         return fits
+
+    def _detect(self) -> None:
+        self._poses()
+        self._collide()
 
 
 class Stepper:
@@ -74,8 +78,8 @@ class Stepper:
     ) -> None:
         self._coupled = touching or touch.user_count > 0
         kernel = coupled_step_kernel if self._coupled else step_kernel
-        self._launch = launch(kernel, structs, device, **{_SUBSTEPS: 1, _BEGINS: 1, _ENDS: 1})
-        self._index = argument_indices(kernel)
+        self._launch: Any = launch(kernel, structs, device, **{SUBSTEPS: 1, BEGINS: 1, ENDS: 1})
+        self._index: dict[str, Any] = argument_indices(kernel)
         self._touch = touch
         self._fault = fault
         self.detection = Detection(structs, touch, device) if touching else None
@@ -101,15 +105,15 @@ class Stepper:
         """
         rounds = max(1, substeps)
         if self.detection is None:
-            self._launch.replace(self._index[_SUBSTEPS], substeps)
+            self._launch.replace(self._index[SUBSTEPS], substeps)
             self._launch()
             return rounds if self._fits() else 0
         for substep in range(done, rounds):
             if not self.detection.run():
                 return substep
-            self._launch.replace(self._index[_SUBSTEPS], min(1, substeps))
-            self._launch.replace(self._index[_BEGINS], int(substep == 0))
-            self._launch.replace(self._index[_ENDS], int(substep >= substeps - 1))
+            self._launch.replace(self._index[SUBSTEPS], min(1, substeps))
+            self._launch.replace(self._index[BEGINS], int(substep == 0))
+            self._launch.replace(self._index[ENDS], int(substep >= substeps - 1))
             self._launch()
             if self._fault[0]:
                 # Whatever went wrong, the coordinates are those of the start of the step.

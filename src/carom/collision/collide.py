@@ -40,6 +40,21 @@ def make_contacts(
 
 
 @func
+def find_contacts(shapes: Shapes, state: State, contacts: Contacts, pairs: Pairs, world: Int32):
+    """Contacts of all pairs, if the pairs did fit; those that persist keep their impulses."""
+    if pairs.count_pairs[world, PAIRS] <= pairs.pair_shapes.shape[1]:
+        previous_count = keep_previous(contacts, pairs, world)
+        wanted = make_contacts(shapes, state, contacts, pairs, world, previous_count)
+        contacts.count_contacts[world, WANTED] = wanted
+        if wanted <= contacts.contact_shapes.shape[1]:
+            contacts.count_contacts[world, THERE] = wanted
+            contacts.count_contacts[world, REPEATED] = 0
+        else:
+            contacts.count_contacts[world, THERE] = 0
+            contacts.count_contacts[world, REPEATED] = 1
+
+
+@func
 def collide(
     shapes: Shapes,
     model: Model,
@@ -55,16 +70,7 @@ def collide(
     else is done with the contacts.
     """
     find_pairs(shapes, model, state, settings, pairs, world)
-    if pairs.count_pairs[world, PAIRS] <= pairs.pair_shapes.shape[1]:
-        previous_count = keep_previous(contacts, pairs, world)
-        wanted = make_contacts(shapes, state, contacts, pairs, world, previous_count)
-        contacts.count_contacts[world, WANTED] = wanted
-        if wanted <= contacts.contact_shapes.shape[1]:
-            contacts.count_contacts[world, THERE] = wanted
-            contacts.count_contacts[world, REPEATED] = 0
-        else:
-            contacts.count_contacts[world, THERE] = 0
-            contacts.count_contacts[world, REPEATED] = 1
+    find_contacts(shapes, state, contacts, pairs, world)
 
 
 @func

@@ -3,11 +3,29 @@
 import warp as wp
 
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
-from carom.model.real import Int32, kernel
+from carom.model.real import Int32, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.islands import build_islands
 from carom.physics.solver import solve_island
 from carom.physics.step import begin_step, constrained_motion, end_step, free_motion
+
+
+@func
+def solve_islands(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    world: Int32,
+):
+    """Solve one island after the other."""
+    for tree in range(settings.tree_count):
+        if state.tree_island[world, tree] == tree:
+            solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
 
 
 @kernel
@@ -36,8 +54,6 @@ def coupled_step_kernel(
         build_islands(settings, model, state, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
             free_motion(model, settings, state, scratch, world, tree, couplings.tree_touches[world, tree])
-        for tree in range(settings.tree_count):
-            if state.tree_island[world, tree] == tree:
-                solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
+        solve_islands(model, settings, state, scratch, shapes, contacts, users, couplings, world)
         constrained_motion(settings, model, state, scratch, world)
     end_step(settings, model, state, scratch, world, ends)
