@@ -57,8 +57,11 @@ class Agreement:
 
 def tolerance_of(scenario: Scenario, series: str) -> float:
     """The greatest relative error promised for a series."""
-    if scenario.tolerance is not None:
+    if isinstance(scenario.tolerance, float):
         return scenario.tolerance
+    for ending, tolerance in (scenario.tolerance or {}).items():
+        if series.endswith(ending):
+            return tolerance
     if scenario.is_single_precision(series):
         return SINGLE_PRECISION_TOLERANCE
     return INFO_TOLERANCE if scenario.kind is Kind.INFO else MOTION_TOLERANCE

@@ -35,7 +35,8 @@ class Scenario:
         single_precision: Names of series (or endings of names) that PyBullet rounds to float32.
         group: Name of the module it comes from.
         title: First line of its docstring.
-        tolerance: Greatest relative error, where the scenario's docstring says why the usual one cannot hold.
+        tolerance: Greatest relative error, where the scenario's docstring says why the usual one cannot hold;
+            of all series, or by names of series (or endings of names).
     """
 
     name: str
@@ -44,7 +45,7 @@ class Scenario:
     single_precision: tuple[str, ...]
     group: str
     title: str
-    tolerance: float | None = None
+    tolerance: float | Mapping[str, float] | None = None
 
     def is_single_precision(self, series: str) -> bool:
         """Whether PyBullet rounds this series to float32 before handing it out."""
@@ -65,7 +66,9 @@ ScenarioFunction = Callable[[Any], Mapping[str, Any]]
 
 
 def scenario(
-    kind: Kind = Kind.MOTION, single_precision: tuple[str, ...] = (), tolerance: float | None = None
+    kind: Kind = Kind.MOTION,
+    single_precision: tuple[str, ...] = (),
+    tolerance: float | Mapping[str, float] | None = None,
 ) -> Callable[[ScenarioFunction], ScenarioFunction]:
     """Register a function `(pybullet) -> {series name: values}` as a scenario."""
 

@@ -84,6 +84,16 @@ def test_a_scenario_may_have_a_tolerance_of_its_own() -> None:
     assert not agreement.holds
 
 
+def test_tolerances_may_go_by_the_endings_of_names() -> None:
+    mixed = replace(_scenario(), tolerance={"way": 1e-2})
+    golden = {name: np.ones(2) for name in ("fast/way", "fast/speed")}
+    measured = {name: np.array([1.0, 1.005]) for name in golden}
+    assert {a.series: a.holds for a in compare(mixed, golden, measured)} == {
+        "fast/way": True,
+        "fast/speed": False,
+    }
+
+
 def test_archive_gives_back_what_was_written(tmp_path: Path) -> None:
     series = {
         "case/real": np.array([[1.5, -0.0], [np.pi, 1e-300]]),

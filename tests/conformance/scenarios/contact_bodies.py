@@ -95,12 +95,12 @@ def box_dropped_flat(p: Any) -> dict[str, Any]:
 
 @scenario()
 def balls_that_bounce(p: Any) -> dict[str, Any]:
-    """Balls of four restitutions fall side by side."""
+    """Balls of six restitutions fall side by side."""
     p.setGravity(0, 0, -9.81)
     _floor(p, restitution=0.9)
     bodies = {
         f"restitution {e}": _ball(p, [0.5 * i, 0, 1.0], restitution=e)
-        for i, e in enumerate((0.0, 0.3, 0.8, 1.0))
+        for i, e in enumerate((0.0, 0.3, 0.5, 0.8, 0.9, 1.0))
     }
     return simulate(p, 2.0, lambda: _observe_fall(p, bodies), stride=4)
 
