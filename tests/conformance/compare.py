@@ -57,7 +57,7 @@ class Agreement:
 
 def tolerance_of(scenario: Scenario, series: str) -> float:
     """The greatest relative error promised for a series."""
-    if isinstance(scenario.tolerance, float):
+    if isinstance(scenario.tolerance, (int, float)):
         return scenario.tolerance
     for ending, tolerance in (scenario.tolerance or {}).items():
         if series.endswith(ending):
