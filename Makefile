@@ -9,7 +9,8 @@
 #   make record       record what real PyBullet does in every conformance scenario
 #   make conformance  compare Carom with real PyBullet, live
 #   make report       the comparison as tables and plots, in docs/conformance/
-#   make bench        speed, beside real PyBullet's in the same run
+#   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
+#   make growth       how the time of a step grows with the number of bodies: a plot in docs/
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
@@ -28,7 +29,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record conformance report soak bench clean
+.PHONY: help demo test check lint types docs figures oracle record conformance report soak bench growth clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -61,6 +62,12 @@ $(VENV)/docs: $(VENV)/carom
 	@touch $@
 
 oracle: .oracle/pybullet
+
+.mujoco/mujoco:
+	@test -n "$(PYTHON)" || { echo "No Python >= 3.10 found; name one: make PYTHON=..." >&2; exit 1; }
+	$(PYTHON) -m venv .mujoco
+	.mujoco/bin/python -m pip --quiet --disable-pip-version-check install 'mujoco>=3.2,<5'
+	@touch $@
 
 # --- what users run ------------------------------------------------------------------------------
 
@@ -97,9 +104,12 @@ report: $(VENV)/dev
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak
 
-bench: oracle $(VENV)/dev
+bench: oracle .mujoco/mujoco $(VENV)/dev
 	$(RUN) -m carom warmup
 	$(RUN) benchmarks/run.py --oracle .oracle/bin/python
+
+growth: oracle $(VENV)/dev
+	$(RUN) benchmarks/growth.py --oracle .oracle/bin/python
 
 docs: $(VENV)/docs
 	$(RUN) tools/docs/drop_in.py
@@ -109,5 +119,5 @@ figures: $(VENV)/dev
 	$(RUN) tools/docs/plots.py
 
 clean:
-	rm -rf $(VENV) .oracle .bench build dist site demo-output .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .oracle .mujoco .bench build dist site demo-output .pytest_cache .ruff_cache .hypothesis
 	find src tests examples benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -14,12 +14,14 @@ class Case:
         title: Its row in the table.
         speedup: PyBullet's time over Carom's that we want at least, if any.
         seconds: Time Carom may take at most, if any.
+        no_slower_than: Another engine that Carom is to be no slower than, if any.
     """
 
     key: str
     title: str
     speedup: float | None = None
     seconds: float | None = None
+    no_slower_than: str | None = None
 
 
 IN_PROCESS = (
@@ -28,6 +30,12 @@ IN_PROCESS = (
     Case("step_kuka", "stepSimulation, KUKA, default motors", speedup=3.0),
     Case("step_kuka_free", "stepSimulation, KUKA, motors off", speedup=3.0),
     Case("step_tree", "stepSimulation, floating tree of 20 links, motors off"),
+    Case("step_r2d2", "stepSimulation, R2D2 at rest on the plane", speedup=4.0),
+    Case("step_27_boxes", "stepSimulation, 9 towers of 3 boxes", speedup=5.0, no_slower_than="MuJoCo"),
+    Case("step_125_boxes", "stepSimulation, 25 towers of 5 boxes", speedup=5.0, no_slower_than="MuJoCo"),
+    Case("step_1000_balls", "stepSimulation, 1,000 balls in a pile", speedup=3.0),
+    Case("step_1000_apart", "stepSimulation, 1,000 bodies side by side on the floor"),
+    Case("rays", "rayTestBatch, 1,024 rays at a pile of 200 balls", speedup=3.0),
     Case("control_loop", "control loop: 9 targets by one call, step, read 9 joints", speedup=3.0),
     Case("get_joint_state", "getJointState", speedup=1.0),
     Case("get_joint_states", "getJointStates, 9 joints"),

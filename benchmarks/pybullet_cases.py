@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
+
+import crowds
 
 import pybullet as p
 
@@ -17,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 ASSETS = ROOT / "src" / "pybullet_data"
 PANDA = str(ASSETS / "franka_panda" / "panda.urdf")
 PLANE = str(ASSETS / "plane.urdf")
+R2D2 = str(ASSETS / "r2d2.urdf")
 KUKA = str(ASSETS / "kuka_iiwa" / "model.urdf")
 TREE = str(ROOT / "tests" / "conformance" / "robots" / "random_tree.urdf")
 MOVABLE = [0, 1, 2, 3, 4, 5, 6, 9, 10]
@@ -69,6 +73,53 @@ def step_kuka(original_data: str) -> Prepared:
 def step_kuka_free(original_data: str) -> Prepared:
     _release(_kuka(), list(range(7)))
     return p.stepSimulation
+
+
+def step_r2d2(original_data: str) -> Prepared:
+    _world()
+    p.loadURDF(PLANE)
+    p.loadURDF(R2D2, [0.0, 0.0, 0.5])
+    crowds.settle(300)
+    return p.stepSimulation
+
+
+def step_27_boxes(original_data: str) -> Prepared:
+    _world()
+    crowds.towers(3)
+    return p.stepSimulation
+
+
+def step_125_boxes(original_data: str) -> Prepared:
+    _world()
+    crowds.towers(5)
+    return p.stepSimulation
+
+
+def step_1000_balls(original_data: str) -> Prepared:
+    _world()
+    crowds.pile(1000)
+    return p.stepSimulation
+
+
+def _step_apart(count: int, original_data: str) -> Prepared:
+    _world()
+    crowds.scattered(count)
+    return p.stepSimulation
+
+
+step_100_apart = partial(_step_apart, 100)
+step_200_apart = partial(_step_apart, 200)
+step_500_apart = partial(_step_apart, 500)
+step_1000_apart = partial(_step_apart, 1000)
+step_2000_apart = partial(_step_apart, 2000)
+step_5000_apart = partial(_step_apart, 5000)
+
+
+def rays(original_data: str) -> Prepared:
+    _world()
+    crowds.pile(200)
+    starts, ends = crowds.fans_of_rays(1024)
+    return lambda: p.rayTestBatch(starts, ends)
 
 
 def _tree() -> tuple[int, list[int], list[int]]:

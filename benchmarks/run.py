@@ -1,6 +1,6 @@
 """Times Carom against PyBullet: medians, ratios, and whether they are what we want.
 
-    python benchmarks/run.py [--oracle .oracle/bin/python] [--repetitions 5] [--json FILE]
+    python benchmarks/run.py [--oracle .oracle/bin/python] [--mujoco .mujoco/bin/python] [--repetitions 5]
 
 Every engine has an interpreter and processes of its own. The engines take turns at every case, so
 that a busy moment of the machine hits them alike; a figure is the median over the turns. The exit
@@ -61,7 +61,13 @@ def verdict(case: Case, times: dict[str, float]) -> tuple[str, str]:
         return f"≤ {case.seconds:g} s", "" if met is None else "PASS" if met else "FAIL"
     if case.speedup is not None:
         met = None if ours is None or theirs is None else theirs / ours >= case.speedup
-        return f"≥ {case.speedup:g}×", "" if met is None else "PASS" if met else "FAIL"
+        wanted = f"≥ {case.speedup:g}×"
+        if case.no_slower_than is not None:
+            wanted += f", ≤ {case.no_slower_than}"
+            limit = times.get(case.no_slower_than)
+            if met and ours is not None and limit is not None:
+                met = ours <= limit
+        return wanted, "" if met is None else "PASS" if met else "FAIL"
     return "", ""
 
 
@@ -110,6 +116,7 @@ def main() -> None:
     known = [case.key for case in (*IN_PROCESS, IMPORT, FIRST_STEP, COLD_BUILD)]
     parser = argparse.ArgumentParser(description="Time Carom against PyBullet.")
     parser.add_argument("--oracle", type=Path, default=ROOT / ".oracle" / "bin" / "python")
+    parser.add_argument("--mujoco", type=Path, default=ROOT / ".mujoco" / "bin" / "python")
     parser.add_argument("--repetitions", type=int, default=5, help="turns each engine takes")
     parser.add_argument("--seconds", type=float, default=0.2, help="time spent on each case in each turn")
     parser.add_argument("--only", nargs="+", default=known, choices=known, metavar="CASE")
@@ -125,6 +132,8 @@ def main() -> None:
         data = original_data_directory(arguments.oracle.absolute())
     else:
         print(f"no PyBullet at {arguments.oracle} (make oracle): figures of Carom alone", file=sys.stderr)
+    if arguments.mujoco.exists():
+        engines.append(Engine("MuJoCo", arguments.mujoco.absolute(), "mujoco_cases", runs_scripts=False))
     cases = [key for key in arguments.only if data or key != "load_original_panda"]
 
     engines[0].time_first_step()

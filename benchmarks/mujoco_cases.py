@@ -1,0 +1,38 @@
+"""The cases MuJoCo can be compared in: the same bodies, time step and friction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import mujoco  # pyright: ignore[reportMissingImports]
+
+EDGE = 0.2
+FRICTION = 0.25
+SETTLING_STEPS = 60
+
+
+def _towers(side: int) -> Callable[[], None]:
+    boxes = "".join(
+        f'<body pos="{1.05 * EDGE * i} {1.05 * EDGE * j} {EDGE * (k + 0.5)}"><freejoint/>'
+        f'<geom type="box" size="{EDGE / 2} {EDGE / 2} {EDGE / 2}" mass="1" friction="{FRICTION}"/></body>'
+        for i in range(side)
+        for j in range(side)
+        for k in range(side)
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option timestep="{1 / 240}" gravity="0 0 -9.81"/><worldbody>'
+        f'<geom type="plane" size="50 50 1" friction="{FRICTION}"/>{boxes}</worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    for _ in range(SETTLING_STEPS):
+        mujoco.mj_step(model, data)
+    return partial(mujoco.mj_step, model, data)
+
+
+def step_27_boxes(original_data: str) -> Callable[[], None]:
+    return _towers(3)
+
+
+def step_125_boxes(original_data: str) -> Callable[[], None]:
+    return _towers(5)
