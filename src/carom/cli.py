@@ -34,7 +34,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         process with 2 when it does not understand the command.
     """
     options = _parser().parse_args(arguments)
-    return options.command(options)
+    try:
+        options.command(options)
+    except (CaromError, OSError) as problem:
+        print(f"carom: {problem}", file=sys.stderr)
+        return FAILED
+    return OK
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -75,41 +80,29 @@ def _positive(text: str) -> float:
     return value
 
 
-def _info(options: argparse.Namespace) -> int:
+def _info(options: argparse.Namespace) -> None:
     flags = LoadFlags.NONE
     if options.inertia_from_file:
         flags |= LoadFlags.USE_INERTIA_FROM_FILE
     if options.merge_fixed_links:
         flags |= LoadFlags.MERGE_FIXED_LINKS
     search = AssetSearch(Path(pybullet_data.getDataPath()))
-    try:
-        robot = read_urdf(options.file, scale=options.scale, search=search)
-        spec = assemble(robot, flags=flags, fixed_base=options.fixed_base)
-    except (CaromError, OSError) as problem:
-        print(f"carom: {problem}", file=sys.stderr)
-        return FAILED
-    print(describe(spec))
-    return OK
+    robot = read_urdf(options.file, scale=options.scale, search=search)
+    print(describe(assemble(robot, flags=flags, fixed_base=options.fixed_base)))
 
 
-def _convert(options: argparse.Namespace) -> int:
+def _convert(options: argparse.Namespace) -> None:
     from carom.formats.convert import convert
 
-    try:
-        convert(options.input, options.output, options.model)
-    except (CaromError, OSError) as problem:
-        print(f"carom: {problem}", file=sys.stderr)
-        return FAILED
-    return OK
+    convert(options.input, options.output, options.model)
 
 
-def _warmup(_options: argparse.Namespace) -> int:
+def _warmup(_options: argparse.Namespace) -> None:
     from carom.warmup import warmup
 
     began = time.perf_counter()
     warmup()
     print(f"The physics kernels are ready, after {time.perf_counter() - began:.1f} s.")
-    return OK
 
 
 def describe(spec: BodySpec) -> str:

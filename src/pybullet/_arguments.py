@@ -7,7 +7,7 @@ not work do they come here, to find out what is wrong or to convert what is mere
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import inf, isfinite, nan
 from operator import index
 from typing import Any, SupportsFloat
@@ -83,6 +83,34 @@ def _as_float(value: Any, name: str) -> float:
         return float(value)
     except (TypeError, ValueError):
         raise TypeError(f"must be real number, not {type(value).__name__} ({name})") from None
+
+
+def by_name(
+    function: str, names: Sequence[str], arguments: tuple[Any, ...], keywords: dict[str, Any]
+) -> dict[str, Any]:
+    """The arguments of a call that follow its first one, by name.
+
+    For functions whose arguments mean different things in different calls.
+
+    Args:
+        function: Name of the function.
+        names: Of the arguments, in order.
+        arguments: Those given by position.
+        keywords: Those given by name.
+
+    Raises:
+        TypeError: There are too many, an unknown one, or one is given twice.
+    """
+    if len(arguments) > len(names):
+        raise TypeError(f"{function}() takes at most {len(names) + 1} arguments ({len(arguments) + 1} given)")
+    given = dict(zip(names, arguments, strict=False))
+    for name, value in keywords.items():
+        if name not in names:
+            raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+        if name in given:
+            raise TypeError(f"{function}() got multiple values for argument {name!r}")
+        given[name] = value
+    return given
 
 
 def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:

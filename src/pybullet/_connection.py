@@ -5,7 +5,7 @@ from __future__ import annotations
 import atexit
 from typing import overload
 
-from pybullet._arguments import integer, real, text
+from pybullet._arguments import by_name, integer, real, text
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import MAX_CLIENTS, Client, client_of, clients, free_slot, living_client
 from pybullet._constants import (
@@ -223,15 +223,7 @@ def _connect_options(arguments: tuple[int | str, ...], keywords: dict[str, int |
         {"hostName", "port"} & set(keywords)
     )
     names = ("hostName", "port", "options") if server_named else ("key", "options")
-    if len(arguments) > len(names):
-        raise TypeError(f"connect() takes at most {len(names) + 1} arguments ({len(arguments) + 1} given)")
-    given: dict[str, int | str] = dict(zip(names, arguments, strict=False))
-    for name, value in keywords.items():
-        if name not in names:
-            raise TypeError(f"connect() got an unexpected keyword argument {name!r}")
-        if name in given:
-            raise TypeError(f"connect() got multiple values for argument {name!r}")
-        given[name] = value
+    given = by_name("connect", names, arguments, keywords)
     for name, value in given.items():
         if name in ("hostName", "options"):
             text(value, name)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from carom.description import Pose
-from pybullet._arguments import Vector, integer, real, rotation, text, vector3
+from pybullet._arguments import Vector, by_name, integer, real, rotation, text, vector3
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._errors import fail
@@ -128,16 +128,7 @@ _DEFAULTS = {
 
 def _named(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any]:
     """The options of a call in the usual form; None stands for the default of a pose."""
-    names = tuple(_DEFAULTS)
-    if len(arguments) > len(names):
-        raise TypeError(f"loadURDF() takes at most {len(names) + 1} arguments ({len(arguments) + 1} given)")
-    given = dict(zip(names, arguments, strict=False))
-    for name, value in keywords.items():
-        if name not in _DEFAULTS:
-            raise TypeError(f"loadURDF() got an unexpected keyword argument {name!r}")
-        if name in given:
-            raise TypeError(f"loadURDF() got multiple values for argument {name!r}")
-        given[name] = value
+    given = by_name("loadURDF", tuple(_DEFAULTS), arguments, keywords)
     for name in ("basePosition", "baseOrientation"):
         if given.get(name, ()) is None:
             del given[name]

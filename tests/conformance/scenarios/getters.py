@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable
 from typing import Any
 
-from ..scenario import Kind, load, load_asset, movable_joints, scenario, under
+from ..scenario import Kind, base_motion, load, load_asset, movable_joints, scenario, under
 
 # PyBullet computes the link frame (fields 4 and 5 of a link state) in single precision.
 SINGLE_PRECISION = ("frame_position", "frame_orientation")
@@ -98,18 +98,6 @@ def joint_states(p: Any, body: int) -> dict[str, Any]:
     }
 
 
-def base_state(p: Any, body: int) -> dict[str, Any]:
-    """Pose and velocity of the base."""
-    position, orientation = p.getBasePositionAndOrientation(body)
-    linear, angular = p.getBaseVelocity(body)
-    return {
-        "base_position": position,
-        "base_orientation": orientation,
-        "base_velocity": linear,
-        "base_spin": angular,
-    }
-
-
 def randomise(p: Any, body: int, seed: int) -> None:
     """Put base and joints into a reproducible random state, within the joints' limits."""
     generator = random.Random(seed)
@@ -147,7 +135,7 @@ def everything(p: Any, load_robot: Callable[..., int], seed: int) -> dict[str, A
         for state in ("zero", "random"):
             if state == "random":
                 randomise(p, body, seed)
-            seen = base_state(p, body) | link_states(p, body) | joint_states(p, body)
+            seen = base_motion(p, body) | link_states(p, body) | joint_states(p, body)
             results |= under(f"{name}/{state}", seen)
     return results
 
@@ -260,7 +248,7 @@ def getters_with_loading_flags(p: Any) -> dict[str, Any]:
             body = load(p, file, flags=value)
             randomise(p, body, 11)
             seen = body_info(p, body) | joint_info(p, body) | dynamics_info(p, body)
-            results |= under(f"{file}/{name}", seen | link_states(p, body) | base_state(p, body))
+            results |= under(f"{file}/{name}", seen | link_states(p, body) | base_motion(p, body))
     return results
 
 
