@@ -54,6 +54,16 @@ MARGIN_ALLOWANCE = 2.5 * MARGIN
 PRINCIPAL_AXES = {"default": 1e-9, "inertia_from_file": 1e-5}
 """How closely turns of inertial frames agree: PyBullet ends its search for principal axes early."""
 
+FLAGS = {"default": LoadFlags.NONE, "inertia_from_file": LoadFlags.USE_INERTIA_FROM_FILE}
+LOADED_WITH_FLAGS = [(name, key) for name in NAMES for key in FLAGS if key in facts(name)]
+"""Only `loadURDF` takes flags."""
+
+WITH_BOUNDS = [name for name in NAMES if not facts(name)["file"].endswith(".xml")]
+"""Of MJCF files `getAABB` tells of swept spheres, with margins of 4 cm, that stand for capsules."""
+
+WITH_COLLISIONS = [name for name in NAMES if "collisions" in facts(name)]
+"""PyBullet crashes when it is asked for the shapes of the others."""
+
 
 def exactly(value: Any) -> Any:
     """A figure or several, compared up to rounding."""
@@ -129,19 +139,12 @@ def test_names_and_joints_are_those_of_the_original(name: str) -> None:
         assert same_turn(turn, recorded_turn), link.name
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize(
-    ("key", "flags"),
-    [("default", LoadFlags.NONE), ("inertia_from_file", LoadFlags.USE_INERTIA_FROM_FILE)],
-)
+@pytest.mark.parametrize(("name", "key"), LOADED_WITH_FLAGS)
 def test_masses_and_inertias_are_those_of_the_original(
-    name: str, key: str, flags: LoadFlags, caplog: pytest.LogCaptureFixture
+    name: str, key: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.ERROR)
-    original = facts(name)
-    if key not in original:
-        pytest.skip("only loadURDF takes flags")
-    for link, recorded in zip(all_links(body(name, flags)), original[key], strict=True):
+    for link, recorded in zip(all_links(body(name, FLAGS[key])), facts(name)[key], strict=True):
         assert link.mass == exactly(recorded["mass"])
         assert link.inertia == pytest.approx(recorded["inertia"], rel=1e-6, abs=0.0), link.name
         assert link.inertial_frame.position == exactly(recorded["inertial_position"])
@@ -178,14 +181,9 @@ def bounds_of(link: LinkSpec) -> Bounds:
     return reduce(Bounds.joined, boxes)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", WITH_BOUNDS)
 def test_collision_shapes_span_the_room_of_the_original(name: str) -> None:
-    original = facts(name)
-    if original["file"].endswith(".xml"):
-        pytest.skip(
-            "getAABB tells of the swept spheres, and their margin of 4 cm, that PyBullet makes of capsules"
-        )
-    for link, recorded in zip(all_links(body(name)), original["bounds"], strict=True):
+    for link, recorded in zip(all_links(body(name)), facts(name)["bounds"], strict=True):
         if not link.collisions or isinstance(link.collisions[0].geometry, Plane):
             continue
         bounds = bounds_of(link)
@@ -220,12 +218,9 @@ def primitive(geometry: Geometry) -> tuple[int, tuple[float, float, float]]:
     raise AssertionError(f"the original has a primitive here, not {geometry}")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", WITH_COLLISIONS)
 def test_where_the_original_has_primitives_so_have_we(name: str) -> None:
-    original = facts(name)
-    if "collisions" not in original:
-        pytest.skip("PyBullet crashes when it is asked for these shapes")
-    for link, recorded in zip(all_links(body(name)), original["collisions"], strict=True):
+    for link, recorded in zip(all_links(body(name)), facts(name)["collisions"], strict=True):
         if any(shape["type"] == MESH_NUMBER for shape in recorded):
             assert link.collisions, link.name
         else:
