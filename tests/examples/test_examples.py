@@ -76,6 +76,55 @@ def test_the_modern_api_example_reaches_its_goal(example):
     assert record["shoulder"][-1] == pytest.approx(record["path"][-1], abs=0.01)
 
 
+def test_the_camera_sees_many_colours_and_no_empty_picture(example):
+    image = example("camera").main(size=(120, 80))["image"]
+    assert image.shape == (80, 120, 3)
+    assert len(np.unique(image.reshape(-1, 3), axis=0)) > 200
+
+
+def test_r2d2_lands_on_its_wheels_and_balls_bounce_by_their_restitutions(example):
+    record = example("dropping").main(duration=3.0)
+    assert record["R2D2"][-1] == pytest.approx(0.471, abs=1e-3)
+    ball_radius, fall = 0.09, 1.5 - 0.09
+    for restitution in (0.5, 0.9):
+        heights = np.array(record[f"restitution {restitution}"])
+        landed = int(np.argmin(heights[:240]))
+        # The rise after the first bounce is e² of the fall; a step is 1/240 s, and damping takes some.
+        rise = heights[landed : landed + 240].max() - ball_radius
+        assert rise == pytest.approx(restitution**2 * fall, rel=0.1)
+    assert max(record["restitution 0.0"][240:]) == pytest.approx(ball_radius, abs=1e-3)
+
+
+def test_the_tower_stands_until_the_ball_comes(example):
+    record = example("stacking").main(duration=1.5)
+    heights = np.array(record["heights"])
+    assert heights[359] == pytest.approx(0.05 + 0.1 * np.arange(10), abs=2e-3)
+    assert heights[-1].max() < 0.3
+
+
+def test_the_panda_lifts_the_cube_with_the_force_of_its_fingers(example):
+    record = example("grasping").main(duration=1.0)
+    assert record["cube"][-1] == pytest.approx(0.3, abs=2e-3)
+    assert record["press"][-1] == pytest.approx(20.0, rel=0.02)
+    assert record["opening"][-1] == pytest.approx(0.05, abs=5e-3)
+
+
+def test_the_vehicles_turn_to_their_sides(example):
+    record = example("driving").main(duration=3.0)
+    (rover_x, rover_y), (car_x, car_y) = record["rover"][-1], record["car"][-1]
+    assert rover_x > 1.5
+    assert rover_y > 0.9
+    assert car_x > 1.5
+    assert car_y < -1.0
+
+
+def test_the_robot_stands_takes_the_push_and_sits_down(example):
+    record = example("standing").main(duration=3.0)
+    assert record["height"][239] == pytest.approx(0.313, abs=2e-3)
+    assert 0.003 < max(record["way aside"]) < 0.05
+    assert record["height"][-1] == pytest.approx(0.165, abs=5e-3)
+
+
 def test_the_demo_writes_a_table_and_a_plot(example, tmp_path, capsys):
     results, plot = example("demo").main(duration=0.25, output=tmp_path)
     assert plot.read_bytes().startswith(b"\x89PNG")

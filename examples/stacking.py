@@ -1,0 +1,56 @@
+"""Ten cubes stand on each other until a ball hits them."""
+
+from camera import picture
+
+import pybullet as p
+import pybullet_data
+
+TIME_STEP = 1 / 240
+EDGE = 0.1
+CUBES = 10
+
+
+def load():
+    """The floor and the tower."""
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.setGravity(0, 0, -9.81)
+    p.loadURDF("plane.urdf")
+    return [
+        p.loadURDF("cube.urdf", [0, 0, EDGE * (level + 0.5)], globalScaling=EDGE) for level in range(CUBES)
+    ]
+
+
+def throw_ball():
+    """A heavy ball on its way to the middle of the tower."""
+    ball = p.loadURDF("sphere2red.urdf", [-1.2, 0, 0.6], globalScaling=0.2)
+    p.changeDynamics(ball, -1, mass=5)
+    p.resetBaseVelocity(ball, [5, 0, 1])
+
+
+def run(cubes, record, duration):
+    """Step for a time and note the height of every cube."""
+    for _ in range(round(duration / TIME_STEP)):
+        p.stepSimulation()
+        heights = [p.getBasePositionAndOrientation(cube)[0][2] for cube in cubes]
+        record["time"].append((len(record["time"]) + 1) * TIME_STEP)
+        record["heights"].append(heights)
+
+
+def main(duration=2.0):
+    """The tower stands for a while and falls for a while; heights and a picture of each."""
+    p.connect(p.DIRECT)
+    cubes = load()
+    record = {"time": [], "heights": []}
+    run(cubes, record, duration)
+    record["image"] = picture([0, 0, 0.5], 1.7)
+    print(f"top of the tower after {duration} s: {record['heights'][-1][-1] + EDGE / 2:.4f} m")
+    throw_ball()
+    run(cubes, record, duration)
+    record["image after"] = picture([0.3, 0, 0.2], 1.9)
+    print(f"highest cube after the ball: {max(record['heights'][-1]):.3f} m")
+    p.disconnect()
+    return record
+
+
+if __name__ == "__main__":
+    main()
