@@ -51,7 +51,7 @@ def command(panda, height, opening):
 
 
 def main(duration=1.0):
-    """Run through the phases, `duration` seconds each; heights, the opening, and how hard the fingers press."""
+    """Run through the phases, `duration` seconds each; heights, the fingers' opening and their force."""
     p.connect(p.DIRECT)
     panda, cube = load()
     record = {"time": [], "cube": [], "hand": [], "opening": [], "press": []}
