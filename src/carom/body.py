@@ -179,6 +179,13 @@ class Body:
         change_body(self, {name: changes[name] for name in _WHOLE_BODY if name in changes})
         change_link(self, link, {name: value for name, value in changes.items() if name not in _WHOLE_BODY})
 
+    def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
+        """Take over all numbers of a link at once, but for the bounds of its joint; -1 is the base."""
+        from carom.dynamics_changes import write_link
+
+        self._dynamics[link + 1] = dynamics
+        write_link(self, link)
+
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
         return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint])

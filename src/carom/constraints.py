@@ -50,19 +50,24 @@ class JointConstraint:
 
 
 class JointConstraints:
-    """All motors and limits of a world."""
+    """All motors and limits of a world.
+
+    Attributes:
+        all: They and the constraints of users, in an order that matters: the solver's follows from it.
+        tags: The links of the bodies, in an order that matters likewise.
+    """
 
     def __init__(self) -> None:
-        self._constraints: list[JointConstraint] = []
-        self._tags = IslandTags()
+        self.all: list[JointConstraint] = []
+        self.tags = IslandTags()
 
     def add_body(self, body: Body) -> None:
         """Append the limits, then the motors, of a new body."""
-        self._tags.add(body.id, moving_links(body))
+        self.tags.add(body.id, moving_links(body))
         for joint, link in enumerate(body.spec.links):
             if link.joint_type == JointType.SPHERICAL:
                 if link.lower > 0.0 and link.upper > 0.0 and link.twist > 0.0 and link.effort > 0.0:
-                    self._constraints.append(
+                    self.all.append(
                         JointConstraint(
                             body,
                             joint,
@@ -74,42 +79,38 @@ class JointConstraints:
                         )
                     )
             elif link.limited:
-                self._constraints.append(
-                    JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper)
-                )
+                self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper))
         for joint, code in enumerate(body.joint_types):
             if code in (JointCode.REVOLUTE, JointCode.PRISMATIC):
-                self._constraints.append(JointConstraint(body, joint, ConstraintKind.MOTOR))
+                self.all.append(JointConstraint(body, joint, ConstraintKind.MOTOR))
             elif code == JointCode.SPHERICAL:
-                self._constraints.append(JointConstraint(body, joint, ConstraintKind.SPHERICAL_MOTOR))
+                self.all.append(JointConstraint(body, joint, ConstraintKind.SPHERICAL_MOTOR))
 
     def remove_body(self, body: Body) -> None:
         """Remove the constraints of a body, the last first."""
-        for constraint in reversed(self._constraints.copy()):
+        for constraint in reversed(self.all.copy()):
             if constraint.body is body or (constraint.user is not None and constraint.user.child is body):
-                remove_unordered(self._constraints, constraint)
-        self._tags.remove(body.id, 1 + body.joint_count)
+                remove_unordered(self.all, constraint)
+        self.tags.remove(body.id, 1 + body.joint_count)
 
     def set_limit(self, body: Body, joint: int, lower: float, upper: float) -> None:
         """Set, add or (with lower > upper) remove the limit of a joint."""
         limit = self.limit_of(body, joint)
         if lower > upper:
             if limit is not None:
-                remove_unordered(self._constraints, limit)
+                remove_unordered(self.all, limit)
         elif limit is None:
-            self._constraints.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
+            self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
         else:
             limit.lower, limit.upper = lower, upper
 
     def add_user(self, user: UserConstraint) -> None:
         """Append a constraint that a user creates."""
-        self._constraints.append(
-            JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user)
-        )
+        self.all.append(JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user))
 
     def remove_user(self, user: UserConstraint) -> None:
         """Remove a constraint that a user created."""
-        remove_unordered(self._constraints, next(c for c in self._constraints if c.user is user))
+        remove_unordered(self.all, next(c for c in self.all if c.user is user))
 
     def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
         """Constraints that can act, and the island of each.
@@ -117,7 +118,7 @@ class JointConstraints:
         A constraint between two bodies makes their islands one; one between two fixed bodies does
         nothing.
         """
-        tags = self._tags.tags()
+        tags = self.tags.tags()
         above = {tag: tag for tag in tags.values()}
 
         def root(tag: int) -> int:
@@ -125,7 +126,7 @@ class JointConstraints:
                 tag = above[tag]
             return tag
 
-        for constraint in self._constraints:
+        for constraint in self.all:
             user = constraint.user
             if (
                 user is not None
@@ -135,12 +136,12 @@ class JointConstraints:
             ):
                 parent, child = root(tags[user.parent.id]), root(tags[user.child.id])
                 above[parent] = child
-        active = [constraint for constraint in self._constraints if constraint.moving_body.id in tags]
+        active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
         return active, [root(tags[constraint.moving_body.id]) for constraint in active]
 
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
-        for constraint in self._constraints:
+        for constraint in self.all:
             if (
                 constraint.body is body
                 and constraint.joint == joint
@@ -151,7 +152,7 @@ class JointConstraints:
 
     def base_freedom_changed(self, body: Body) -> None:
         """Number the islands anew after the base of a body was freed or held."""
-        self._tags.move_base_to_end(body.id, moving_links(body))
+        self.tags.move_base_to_end(body.id, moving_links(body))
 
     def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> bool:
         """Write the sorted constraints, and which trees are solved together, to the model.

@@ -51,6 +51,15 @@ def change_link(body: Body, link: int, changes: Mapping[str, Any]) -> None:
         body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
+def write_link(body: Body, link: int) -> None:
+    """Bring the engine up to date with `Body.dynamics` of a link, but for the bounds of its joint."""
+    dynamics = body.dynamics(link)
+    _write(body, link)
+    if link != BASE:
+        _set_joint_damping(body, link, dynamics.joint_damping)
+    body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics)
+
+
 def _set_mass(body: Body, link: int, mass: float) -> None:
     """Set the mass and the inertia the collision shapes have with it; a massless base is fixed."""
     dynamics = body.dynamics(link)

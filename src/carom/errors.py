@@ -32,3 +32,7 @@ class DescriptionError(CaromError):
 
 class SimulationError(CaromError):
     """A step could not be completed; the world is as it was before it."""
+
+
+class StateError(CaromError):
+    """A saved state does not fit the bodies there are; the world is as it was."""

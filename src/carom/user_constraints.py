@@ -64,11 +64,15 @@ class UserConstraint:
 
 
 class UserConstraints:
-    """The user constraints of a world, by number."""
+    """The user constraints of a world, by number.
+
+    Attributes:
+        next_id: Number of the next one.
+    """
 
     def __init__(self) -> None:
         self._by_id: dict[int, UserConstraint] = {}
-        self._next_id = 1
+        self.next_id = 1
 
     def __len__(self) -> int:
         return len(self._by_id)
@@ -95,11 +99,15 @@ class UserConstraints:
     ) -> UserConstraint:
         """Create a constraint; see `UserConstraint` for the arguments."""
         constraint = UserConstraint(
-            self._next_id, kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
+            self.next_id, kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
         )
-        self._by_id[constraint.id] = constraint
-        self._next_id += 1
+        self.put(constraint)
         return constraint
+
+    def put(self, constraint: UserConstraint) -> None:
+        """Take in a constraint under the number it has; later ones get higher numbers."""
+        self._by_id[constraint.id] = constraint
+        self.next_id = max(self.next_id, constraint.id + 1)
 
     def remove(self, constraint_id: int) -> None:
         """Remove a constraint.

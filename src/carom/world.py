@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
@@ -26,9 +26,11 @@ from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.queries import Queries
+from carom.snapshot import Layout, Snapshot, layout, put_back, take
 from carom.stepper import Stepper, launch
 from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
+from carom.user_data import UserData
 
 _DEVICE = "cpu"
 # Flat arrays of the state that users read or write: attribute of `World`, field of `State`.
@@ -52,6 +54,12 @@ class World:
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
     of the state, and `position_memory` and so on the same memory as flat `memoryview` of doubles.
     They may be replaced when bodies are added or removed.
+
+    Attributes:
+        parameters: Parameters of the engine; call `apply_parameters` after a change.
+        bodies: The bodies by their numbers, in the order they were added.
+        time: Simulated time [s].
+        user_data: Texts attached to bodies.
 
     Args:
         time_step: Duration of one step [s].
@@ -83,6 +91,7 @@ class World:
         self.bodies: dict[int, Body] = {}
         self.time = 0.0
         self._stepper_type: Callable[..., Stepper] = Stepper
+        self.unspent_time = 0.0
         self._start_empty()
 
     def _start_empty(self) -> None:
@@ -91,10 +100,12 @@ class World:
         self.touch = TouchArrays(self.arrays, _DEVICE)
         self.constraints = JointConstraints()
         self.user_constraints = UserConstraints()
-        self._free_ids: list[int] = []
-        self._next_id = 0
-        self._unspent_time = 0.0
+        self.user_data = UserData()
+        self.free_ids: list[int] = []
+        self.next_id = 0
+        self.unspent_time = 0.0
         self._step: Callable[[], None] | None = None
+        self._layout: Layout | None = None
         self._take_arrays()
 
     def __enter__(self) -> World:
@@ -107,43 +118,74 @@ class World:
 
     # Bodies
 
+    @overload
+    def load(
+        self, what: BodySpec, position: Sequence[float] = ..., orientation: Sequence[float] = ...
+    ) -> Body: ...
+    @overload
+    def load(self, what: str | Path) -> list[Body]: ...
     def load(
         self,
-        spec: BodySpec,
+        what: BodySpec | str | Path,
         position: Sequence[float] = (0.0, 0.0, 0.0),
         orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
-    ) -> Body:
-        """Add a body at rest.
+    ) -> Body | list[Body]:
+        """Add a body at rest, or all bodies of a world that was saved by `save`.
+
+        A world without bodies becomes the one that was saved, parameters and time included, and goes on
+        exactly as that one did. To any other the bodies are added as they were, with what ties them.
 
         Args:
-            spec: The body.
-            position: Of the base's link frame [m].
+            what: The body, or the file.
+            position: Of the base's link frame [m]; bodies of a file are where they were.
             orientation: Of the base's link frame, quaternion (x, y, z, w).
 
         Returns:
-            Its handle. The number it gets is that of the body removed last, if any.
+            The body's handle, or those of the file's bodies. The number a body gets is that of the body
+            removed last, if any.
 
         Raises:
-            carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
+            carom.errors.DescriptionError: The file, or that of a mesh, cannot be used; the world is as
+                before.
         """
+        if not isinstance(what, BodySpec):
+            from carom.world_file import load_world
+
+            return load_world(self, Path(what))
+        return self._add(what, position, orientation)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything there is to a file: bodies, meshes, constraints, parameters, looks, state.
+
+        Raises:
+            OSError: The file cannot be written; one that was there is as it was.
+        """
+        from carom.world_file import save_world
+
+        save_world(self, Path(path))
+
+    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
+        """Add a body at rest."""
         px, py, pz = position
         qx, qy, qz, qw = orientation
         pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
         rows, grown = self.arrays.append(spec, pose)
-        body_id = self._free_ids.pop() if self._free_ids else self._next_id
-        self._next_id = max(self._next_id, body_id + 1)
+        body_id = self.free_ids.pop() if self.free_ids else self.next_id
+        self.next_id = max(self.next_id, body_id + 1)
         body = Body(self, body_id, spec, rows)
         try:
             surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
             self.touch.shapes.append(spec, rows, surfaces)
         except Exception:
             self.arrays.remove(rows, [])
-            self._free_ids.append(body_id)
+            self.free_ids.append(body_id)
             if grown:
                 self._take_arrays()
             raise
         self.bodies[body_id] = body
+        self._layout = None
         self.constraints.add_body(body)
+        self.user_data.add_stated(body_id, spec)
         if grown:
             self._take_arrays()
         self.constraints_changed()
@@ -189,8 +231,10 @@ class World:
             KeyError: There is no such body.
         """
         body = self.bodies.pop(body_id)
+        self._layout = None
         self.constraints.remove_body(body)
         self.user_constraints.remove_body(body)
+        self.user_data.remove_body(body_id)
         self.touch.forget_contacts()
         self.touch.shapes.remove(body.rows)
         self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
@@ -198,7 +242,7 @@ class World:
             other.relocate()
         if self._query_space is not None:
             self._query_space.forget_bodies()
-        self._free_ids.append(body_id)
+        self.free_ids.append(body_id)
         self.constraints_changed()
 
     def reset(self) -> None:
@@ -239,6 +283,39 @@ class World:
         body.fixed_base = not free
         self.constraints.base_freedom_changed(body)
         self.constraints_changed()
+
+    # State
+
+    def snapshot(self) -> Snapshot:
+        """The present state, to come back to by `restore` as often as needed.
+
+        It holds positions and velocities, motors, applied forces, contacts and time; not what bodies
+        are made of, constraints, gravity and the other parameters.
+        """
+        if self._layout is None:
+            self._layout = layout(self)
+        return take(self, self._layout)
+
+    def restore(self, state: Snapshot | str | Path) -> None:
+        """Go back to a state. What follows is then the same, to the last bit, as it was the first time.
+
+        Args:
+            state: The state, or a file of `save`, of which only the state is read.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as it was.
+            carom.errors.StateError: Bodies have come or gone, or one has other joints than it had; the
+                world is as it was. A body that was removed and loaded again under its number is no
+                hindrance, but contacts are then found anew.
+        """
+        if not isinstance(state, Snapshot):
+            from carom.world_file import restore_world
+
+            restore_world(self, Path(state))
+            return
+        if self._layout is None:
+            self._layout = layout(self)
+        put_back(self, self._layout, state)
 
     # Parameters
 
@@ -326,7 +403,7 @@ class World:
         """The function that performs one step with the bodies and parameters there are."""
         stepper = self._make_stepper()
         if self.parameters.substeps <= 1:
-            self._unspent_time = 0.0
+            self.unspent_time = 0.0
         self._step = stepper.single or self._step_with_care
         return self._step
 
@@ -378,9 +455,9 @@ class World:
         if self.parameters.substeps <= 1:
             return 1
         part = self.parameters.substep_time
-        self._unspent_time += self.parameters.time_step
-        count = int(self._unspent_time / part)
-        self._unspent_time -= count * part
+        self.unspent_time += self.parameters.time_step
+        count = int(self.unspent_time / part)
+        self.unspent_time -= count * part
         return min(count, self.parameters.substeps)
 
     def detect_collisions(self) -> None:

@@ -37,7 +37,9 @@ from pybullet._multi_body import *
 from pybullet._nearby import *
 from pybullet._rays import *
 from pybullet._shape_data import *
+from pybullet._states import *
 from pybullet._textures import *
 from pybullet._unavailable import *
+from pybullet._user_data import *
 from pybullet._vhacd import *
 from pybullet._visual_shapes import *

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from carom.body import Body
+    from carom.snapshot import Snapshot
     from carom.world import World
     from pybullet._body_access import BodyTable
     from pybullet._real_time import RealTimeClock
@@ -35,6 +36,7 @@ class Client:
         report_analytics: `stepSimulation` returns the statistics of the solver.
         search_path: Directory that is searched for files besides the usual ones.
         shapes: Shapes the script has created.
+        states: States the script has saved, by id.
         window: What the script sees of a graphical interface.
         clock: Steps the world by the wall clock while that is asked for.
         lock: Held during a step and while bodies come, go or change shape. Getters and setters of the
@@ -50,6 +52,7 @@ class Client:
         "report_analytics",
         "search_path",
         "shapes",
+        "states",
         "time_step",
         "window",
         "world",
@@ -65,6 +68,7 @@ class Client:
         self.report_analytics = False
         self.search_path: Path | None = None
         self.shapes = ShapeRegistry()
+        self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.lock = RLock()
         bodies.client = self

@@ -79,6 +79,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
         client.bodies.clear()
         client.world.reset()
         client.shapes = ShapeRegistry()
+        client.states.clear()
         client.report_analytics = False
         client.window.remove_drawings()
 

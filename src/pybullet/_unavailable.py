@@ -15,29 +15,17 @@ from pybullet._builtin import exported_as
 from pybullet._errors import fail
 
 __all__ = [
-    "addUserData",
     "createSoftBodyAnchor",
     "executePluginCommand",
-    "getNumUserData",
     "getTetraMeshData",
-    "getUserData",
-    "getUserDataId",
-    "getUserDataInfo",
-    "loadBullet",
     "loadPlugin",
     "loadSoftBody",
-    "removeState",
-    "removeUserData",
     "renderImage",
     "resetMeshData",
-    "restoreState",
-    "saveBullet",
-    "saveState",
     "saveWorld",
     "startStateLogging",
     "stopStateLogging",
     "submitProfileTiming",
-    "syncUserData",
     "unloadPlugin",
     "unsupportedChangeScaling",
 ]
@@ -84,10 +72,7 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
     return Parameter(argument.arg, kind, default=value)
 
 
-syncUserData = _later("syncUserData", "bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None")
 submitProfileTiming = _later("submitProfileTiming", "eventName=None, physicsClientId=0")
-loadBullet = _later("loadBullet", "bulletFileName, physicsClientId=0")
-saveBullet = _later("saveBullet", "bulletFileName, physicsClientId=0")
 saveWorld = _later("saveWorld", "worldFileName, physicsClientId=0")
 loadSoftBody = _later(
     "loadSoftBody",
@@ -102,9 +87,6 @@ createSoftBodyAnchor = _later(
     "softBodyBodyUniqueId, nodeIndex, bodyUniqueId=-1, linkIndex=-1, bodyFramePosition=None, "
     "physicsClientId=0",
 )
-saveState = _later("saveState", "physicsClientId=0")
-restoreState = _later("restoreState", "stateId=-1, fileName=None, physicsClientId=0")
-removeState = _later("removeState", "stateUniqueId, physicsClientId=0")
 startStateLogging = _later(
     "startStateLogging",
     "loggingType, fileName, objectUniqueIds=None, maxLogDof=-1, bodyUniqueIdA=-1, bodyUniqueIdB=-1, "
@@ -115,18 +97,6 @@ unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, sca
 getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
 resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")
 renderImage = _later("renderImage", "*arguments")
-addUserData = _later(
-    "addUserData",
-    "bodyUniqueId, key, value, linkIndex=-1, visualShapeIndex=-1, physicsClientId=0",
-)
-getUserData = _later("getUserData", "userDataId, physicsClientId=0")
-getUserDataId = _later(
-    "getUserDataId",
-    "bodyUniqueId, key, linkIndex=-1, visualShapeIndex=-1, physicsClientId=0",
-)
-getNumUserData = _later("getNumUserData", "bodyUniqueId, physicsClientId=0")
-getUserDataInfo = _later("getUserDataInfo", "bodyUniqueId, userDataIndex, physicsClientId=0")
-removeUserData = _later("removeUserData", "userDataId, physicsClientId=0")
 loadPlugin = _later("loadPlugin", "pluginPath, postFix=None, physicsClientId=0")
 unloadPlugin = _later("unloadPlugin", "pluginUniqueId, physicsClientId=0")
 executePluginCommand = _later(

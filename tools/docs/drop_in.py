@@ -39,6 +39,8 @@ TITLES = {
     "_camera": "Camera images",
     "_camera_maths": "Camera matrices",
     "_textures": "Colours and textures",
+    "_states": "States and world files",
+    "_user_data": "User data",
     "_maths": "Maths",
 }
 UNAVAILABLE = "_unavailable"

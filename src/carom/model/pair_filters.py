@@ -25,6 +25,12 @@ class PairFilters:
         """How many rules there are."""
         return len(self._pairs)
 
+    @property
+    def all(self) -> list[tuple[int, int, bool]]:
+        """Rows of two links, and whether they collide, of every rule."""
+        enabled = self._table.numpy["filter_enabled"]
+        return [(a, b, bool(enabled[row])) for row, (a, b) in enumerate(self._pairs)]
+
     def set(self, link_a: int, link_b: int, *, enabled: bool) -> bool:
         """Let two links collide, or keep them from it, whatever their groups and masks say.
 

@@ -81,6 +81,20 @@ class IslandTags:
     def __init__(self) -> None:
         self._objects: list[tuple[Hashable, bool]] = []
 
+    @property
+    def links(self) -> list[tuple[Hashable, int]]:
+        """Body and link, the base being 0, of every object in the order of the list."""
+        return [key for key, _ in self._objects]  # type: ignore[misc]
+
+    def reorder(self, links: Sequence[tuple[Hashable, int]]) -> None:
+        """Put the objects in another order, given as `links` gives it.
+
+        Raises:
+            KeyError: There is no such link.
+        """
+        moves = dict(self._objects)
+        self._objects = [(link, moves[link]) for link in links]
+
     def add(self, body: Hashable, moving: Sequence[bool]) -> None:
         """Append the links of a body, base first; `moving` tells those that are not static."""
         self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))

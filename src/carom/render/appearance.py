@@ -119,6 +119,10 @@ class Appearance:
             look.two_sided = look.two_sided if two_sided is None else two_sided
         self.changes += 1
 
+    def knows(self, body: Body) -> bool:
+        """Whether anybody has asked for the looks of a body yet."""
+        return body in self._looks
+
     def number_textures(self, world: World) -> None:
         """Gives the textures of all bodies their numbers, in the order the bodies were loaded."""
         for body in world.bodies.values():

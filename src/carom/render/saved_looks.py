@@ -1,0 +1,106 @@
+"""Colours and textures in the file of a world."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description.link import Rgba
+from carom.description.pose import Vector3
+from carom.model.body_spec import BASE
+from carom.render.appearance import appearance_of
+from carom.render.textures import NO_TEXTURE
+from carom.saved.records import Reader, Writer
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+
+@dataclass(slots=True)
+class SavedLook:
+    """How one shape looks; `texture` counts those of the file, -1 for none."""
+
+    rgba: Rgba
+    specular: Vector3
+    texture: int
+    two_sided: bool
+
+
+@dataclass(slots=True)
+class SavedLooks:
+    """The looks of a world.
+
+    Attributes:
+        textures: Their images (height, width, 3).
+        bodies: For each body that has been seen or changed its shapes by link, the base first; None for
+            the others, which look as their descriptions say.
+    """
+
+    textures: list[NDArray[np.uint8]]
+    bodies: list[list[list[SavedLook]] | None]
+
+
+def save(world: World, writer: Writer) -> Any:
+    """What to write."""
+    appearance = appearance_of(world)
+    places: dict[int, int] = {}
+    bodies: list[list[list[SavedLook]] | None] = []
+    for body in world.bodies.values():
+        if not appearance.knows(body):
+            bodies.append(None)
+            continue
+        links = []
+        for link in range(BASE, body.joint_count):
+            looks = []
+            for look in appearance.shapes(body, link):
+                place = NO_TEXTURE
+                if look.texture != NO_TEXTURE and look.texture in appearance.textures:
+                    place = places.setdefault(look.texture, len(places))
+                looks.append(SavedLook(look.rgba, look.specular, place, look.two_sided))
+            links.append(looks)
+        bodies.append(links)
+    images = [np.asarray(appearance.textures.image(number)) for number in places]
+    return writer.write(SavedLooks(images, bodies))
+
+
+def load(bodies: list[Body], reader: Reader, data: Any) -> None:
+    """Take over what was written for these bodies.
+
+    Raises:
+        carom.errors.DescriptionError: It is not what `save` writes.
+        ValueError: It is that of other bodies.
+    """
+    saved = reader.record(SavedLooks, data, "parts.looks")
+    if len(saved.bodies) != len(bodies):
+        raise ValueError("the looks are those of other bodies")
+    if not bodies:
+        return
+    appearance = appearance_of(bodies[0].world)
+    for image in saved.textures:
+        if image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
+            raise ValueError("a texture is no image")
+    numbers = {NO_TEXTURE: NO_TEXTURE}
+    for body, links in zip(bodies, saved.bodies, strict=True):
+        if links is None:
+            continue
+        if len(links) != 1 + body.joint_count:
+            raise ValueError(f"body {body.id} has {1 + body.joint_count} links")
+        for link, looks in enumerate(links, start=BASE):
+            if len(looks) != len(appearance.shapes(body, link)):
+                raise ValueError(f"link {link} of body {body.id} has another number of shapes")
+            for place, look in enumerate(looks):
+                if look.texture not in numbers:
+                    numbers[look.texture] = appearance.textures.add(saved.textures[look.texture])
+                appearance.change(
+                    body,
+                    link,
+                    place,
+                    rgba=look.rgba,
+                    specular=look.specular,
+                    texture=numbers[look.texture],
+                    two_sided=look.two_sided,
+                )

@@ -1,0 +1,82 @@
+"""What has to hold of a body in a file before the engine may see it, besides the types of its fields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from carom.description import ConvexHull, Geometry, Heightfield, Pose, TriangleMesh
+from carom.model.body_spec import BodySpec
+
+# What may be infinite: bounds, which then do not bound.
+_BOUNDS = frozenset(
+    ("lower", "upper", "effort", "velocity", "twist", "joint_lower_limit", "joint_upper_limit")
+)
+_UNIT_TOLERANCE = 1e-3
+
+
+def check_body(spec: BodySpec) -> None:
+    """See that links form a tree, shapes have the corners they name, and numbers are numbers.
+
+    Raises:
+        ValueError: They do not.
+    """
+    for index, link in enumerate(spec.links):
+        if not -1 <= link.parent < index:
+            raise ValueError(f"link {index} hangs on link {link.parent}")
+    check_finite(spec)
+    for link in (spec.base, *spec.links):
+        for shape in (*link.collisions, *link.visuals):
+            _check_geometry(shape.geometry)
+
+
+def check_finite(value: Any) -> None:
+    """See that no number of a dataclass is infinite and every orientation has length 1.
+
+    Raises:
+        ValueError: One is, or has not.
+    """
+    for part in _parts(value):
+        if isinstance(part, float) and not isfinite(part):
+            raise ValueError("a number is infinite")
+        if isinstance(part, np.ndarray) and not np.isfinite(part).all():
+            raise ValueError("an array holds a number that is infinite")
+        if isinstance(part, Pose) and abs(sum(q * q for q in part.orientation) - 1.0) > _UNIT_TOLERANCE:
+            raise ValueError("a quaternion does not have length 1")
+
+
+def _parts(value: Any) -> Iterator[Any]:
+    yield value
+    if is_dataclass(value):
+        for field in fields(value):
+            if field.name not in _BOUNDS:
+                yield from _parts(getattr(value, field.name))
+    elif isinstance(value, (list, tuple)):
+        for item in value:
+            yield from _parts(item)
+
+
+def _check_geometry(geometry: Geometry) -> None:
+    if isinstance(geometry, ConvexHull):
+        _check_rows(geometry.points, 3, 1)
+    elif isinstance(geometry, Heightfield):
+        if geometry.heights.ndim != 2 or min(geometry.heights.shape) < 2:
+            raise ValueError("a heightfield has fewer than 2 x 2 points")
+    elif isinstance(geometry, TriangleMesh):
+        _check_rows(geometry.vertices, 3, 0)
+        _check_rows(geometry.triangles, 3, 0)
+        count = len(geometry.vertices)
+        if geometry.triangles.size and not 0 <= geometry.triangles.min() <= geometry.triangles.max() < count:
+            raise ValueError("a triangle has a corner that does not exist")
+        for rows, width in ((geometry.normals, 3), (geometry.uvs, 2)):
+            if rows is not None:
+                _check_rows(rows, width, count)
+
+
+def _check_rows(rows: np.ndarray, width: int, least: int) -> None:
+    if rows.ndim != 2 or rows.shape[1] != width or len(rows) < least:
+        raise ValueError(f"an array of shape {rows.shape} does not hold points")

@@ -1,0 +1,92 @@
+"""Texts that files and users attach to bodies, links and shapes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from carom.model.body_spec import BASE, BodySpec
+
+WHOLE = -1
+"""In the place of a visual shape: the text belongs to the link, or to the body if that is its base."""
+
+
+@dataclass(slots=True)
+class UserDatum:
+    """One text.
+
+    Attributes:
+        id: Its number.
+        body: Number of the body.
+        link: Index of the link; -1 is the base.
+        shape: Index of the visual shape, -1 for none.
+        key: Its name.
+        value: The text.
+    """
+
+    id: int
+    body: int
+    link: int
+    shape: int
+    key: str
+    value: str
+
+
+class UserData:
+    """The texts of a world. Numbers of removed ones are given out again, the last one first."""
+
+    def __init__(self) -> None:
+        self._by_id: dict[int, UserDatum] = {}
+        self._of_body: dict[int, list[UserDatum]] = {}
+        self._free: list[int] = []
+
+    def of_body(self, body: int) -> list[UserDatum]:
+        """All texts of a body; removing one puts the last in its place."""
+        return self._of_body.get(body, [])
+
+    def get(self, number: int) -> UserDatum | None:
+        """The text of a number, or None."""
+        return self._by_id.get(number)
+
+    def find(self, body: int, link: int, shape: int, key: str) -> UserDatum | None:
+        """The text of that place and name, or None."""
+        for datum in self.of_body(body):
+            if (datum.link, datum.shape, datum.key) == (link, shape, key):
+                return datum
+        return None
+
+    def add(self, body: int, link: int, shape: int, key: str, value: str) -> UserDatum:
+        """Attach a text; one of the same place and name is replaced and keeps its number."""
+        datum = self.find(body, link, shape, key)
+        if datum is not None:
+            datum.value = value
+            return datum
+        number = self._free.pop() if self._free else len(self._by_id)
+        datum = UserDatum(number, body, link, shape, key, value)
+        self._by_id[number] = datum
+        self._of_body.setdefault(body, []).append(datum)
+        return datum
+
+    def add_stated(self, body: int, spec: BodySpec) -> None:
+        """Attach what the file of a new body states."""
+        for key, value in spec.user_data.items():
+            self.add(body, BASE, WHOLE, key, value)
+        for index, link in enumerate((spec.base, *spec.links), start=BASE):
+            for key, value in link.user_data.items():
+                self.add(body, index, WHOLE, key, value)
+            for place, visual in enumerate(link.visuals):
+                for key, value in visual.user_data.items():
+                    self.add(body, index, place, key, value)
+
+    def remove(self, datum: UserDatum) -> None:
+        """Take a text away."""
+        others = self._of_body[datum.body]
+        others[others.index(datum)] = others[-1]
+        others.pop()
+        del self._by_id[datum.id]
+        self._free.append(datum.id)
+
+    def remove_body(self, body: int) -> None:
+        """Take away all texts of a body that goes."""
+        for datum in self._of_body.pop(body, []):
+            del self._by_id[datum.id]
+            self._free.append(datum.id)

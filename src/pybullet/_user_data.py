@@ -1,0 +1,206 @@
+"""Texts attached to bodies, links and visual shapes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pybullet._arguments import integer, sequence, text
+from pybullet._builtin import exported, exported_as
+from pybullet._clients import client_of
+from pybullet._errors import fail
+from pybullet._lookup import body_of, no_body
+
+__all__ = [
+    "addUserData",
+    "getNumUserData",
+    "getUserData",
+    "getUserDataId",
+    "getUserDataInfo",
+    "removeUserData",
+    "syncUserData",
+]
+
+_NONE = -1
+
+
+@exported
+def addUserData(
+    bodyUniqueId: int,
+    key: str,
+    value: str,
+    linkIndex: int = -1,
+    visualShapeIndex: int = -1,
+    physicsClientId: int = 0,
+) -> int:
+    """Attaches a text to a body. One of the same place and key is replaced and keeps its id.
+
+    Args:
+        bodyUniqueId: The body.
+        key: Its name.
+        value: The text.
+        linkIndex: The link it belongs to; -1 for the base, or the whole body. Need not exist.
+        visualShapeIndex: The visual shape of that link; -1 for none. Need not exist.
+        physicsClientId: The connection.
+
+    Returns:
+        Its id. Those of removed texts are given out again, the last one first.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body.
+    """
+    client = client_of(physicsClientId)
+    name, content = _c_string(key, "key"), _c_string(value, "value")
+    link, shape = integer(linkIndex, "linkIndex"), integer(visualShapeIndex, "visualShapeIndex")
+    with client.lock:
+        body = body_of(client, bodyUniqueId, "Error in addUserData command.")
+        return client.world.user_data.add(body.id, link, shape, name, content).id
+
+
+@exported
+def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
+    """A text.
+
+    Args:
+        userDataId: Its id.
+        physicsClientId: The connection.
+
+    Returns:
+        The text, as bytes; None when there is no such id.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    datum = client.world.user_data.get(integer(userDataId, "userDataId"))
+    return None if datum is None else datum.value.encode()
+
+
+@exported
+def getUserDataId(
+    bodyUniqueId: int,
+    key: str,
+    linkIndex: int = -1,
+    visualShapeIndex: int = -1,
+    physicsClientId: int = 0,
+) -> int:
+    """The id of a text.
+
+    Args:
+        bodyUniqueId: The body.
+        key: Name of the text.
+        linkIndex: The link it belongs to; -1 for the base, or the whole body.
+        visualShapeIndex: The visual shape it belongs to; -1 for none.
+        physicsClientId: The connection.
+
+    Returns:
+        Its id, or -1 when there is none.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    datum = client.world.user_data.find(
+        integer(bodyUniqueId, "bodyUniqueId"),
+        integer(linkIndex, "linkIndex"),
+        integer(visualShapeIndex, "visualShapeIndex"),
+        _c_string(key, "key"),
+    )
+    return _NONE if datum is None else datum.id
+
+
+@exported
+def getNumUserData(bodyUniqueId: int, physicsClientId: int = 0) -> int:
+    """How many texts a body has, its links and shapes included.
+
+    Args:
+        bodyUniqueId: The body.
+        physicsClientId: The connection.
+
+    Returns:
+        The number; 0 when there is no such body.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    return len(client.world.user_data.of_body(integer(bodyUniqueId, "bodyUniqueId")))
+
+
+@exported
+def getUserDataInfo(
+    bodyUniqueId: int, userDataIndex: int, physicsClientId: int = 0
+) -> tuple[int, bytes, int, int, int]:
+    """Name and place of a text.
+
+    Args:
+        bodyUniqueId: The body.
+        userDataIndex: From 0 to `getNumUserData() - 1`. Removing a text puts the last in its place.
+        physicsClientId: The connection.
+
+    Returns:
+        (id, key, body, link, visual shape); link and shape are -1 where the text belongs to none.
+
+    Raises:
+        pybullet.error: Not connected, or there are not that many texts.
+    """
+    client = client_of(physicsClientId)
+    number, index = integer(bodyUniqueId, "bodyUniqueId"), integer(userDataIndex, "userDataIndex")
+    data = client.world.user_data.of_body(number)
+    if not 0 <= index < len(data):
+        fail("Could not get user data info.", f"Body {number} has {len(data)} texts, so there is no {index}.")
+    datum = data[index]
+    return datum.id, datum.key.encode(), datum.body, datum.link, datum.shape
+
+
+@exported
+def removeUserData(userDataId: int, physicsClientId: int = 0) -> None:
+    """Removes a text.
+
+    Args:
+        userDataId: Its id.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such id.
+    """
+    client = client_of(physicsClientId)
+    number = integer(userDataId, "userDataId")
+    with client.lock:
+        datum = client.world.user_data.get(number)
+        if datum is None:
+            fail("Error in removeUserData command.", f"There is no user data {number}.")
+        client.world.user_data.remove(datum)
+
+
+@exported_as("(bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None)")
+def syncUserData(bodyUniqueId: Any = -1, physicsClientId: int = 0, *, bodyUniqueIds: Any = None) -> None:
+    """Reads texts from the server. A world in the same process is always up to date.
+
+    Args:
+        bodyUniqueId: The body, or a sequence of bodies; -1 for all.
+        physicsClientId: The connection.
+        bodyUniqueIds: Several bodies.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body.
+    """
+    client = client_of(physicsClientId)
+    problem = "Error in syncUserInfo command."
+    try:
+        number = integer(bodyUniqueId, "bodyUniqueId")
+        asked_for = () if number == _NONE else (number,)
+    except TypeError:
+        asked_for = sequence(bodyUniqueId, problem, "bodyUniqueId")
+    if bodyUniqueIds is not None:
+        asked_for = sequence(bodyUniqueIds, problem, "bodyUniqueIds")
+    for body_id in asked_for:
+        if client.body(body_id) is None:
+            fail(problem, no_body(body_id))
+
+
+def _c_string(value: Any, name: str) -> str:
+    """A text that C can hold."""
+    words = text(value, name)
+    if "\0" in words:
+        raise ValueError(f"embedded null character in {name}")
+    return words
