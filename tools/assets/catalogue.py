@@ -1,0 +1,228 @@
+"""Every file of src/pybullet_data, and what makes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+import numpy as np
+from tools.assets import (
+    arms,
+    cubes,
+    floors,
+    gym_humanoids,
+    gym_runners,
+    kuka,
+    manipulators,
+    panda,
+    people,
+    quadrupeds,
+    r2d2,
+    rovers,
+    scenes,
+    simple_meshes,
+    soft_shapes,
+    spheres,
+    textures,
+    things,
+    toys,
+)
+from tools.assets.fields import Field
+from tools.assets.mjcf_text import Model
+from tools.assets.obj_mesh import ObjMesh
+from tools.assets.parts import Robot, Vector3
+
+ROBOTS: dict[str, Callable[[], Robot]] = {
+    "TwoJointRobot_w_fixedJoints.urdf": arms.two_joint_robot_with_fixed_joints,
+    "TwoJointRobot_wo_fixedJoints.urdf": arms.two_joint_robot_without_fixed_joints,
+    "a1/a1.urdf": quadrupeds.a1,
+    "aliengo/aliengo.urdf": quadrupeds.aliengo,
+    "bicycle/bike.urdf": rovers.bike,
+    "biped/biped2d_pybullet.urdf": people.biped2d,
+    "block.urdf": cubes.block,
+    "cartpole.urdf": arms.cartpole,
+    "cube.urdf": cubes.cube,
+    "cube_collisionfilter.urdf": cubes.cube_collisionfilter,
+    "cube_no_rotation.urdf": cubes.cube_no_rotation,
+    "cube_rotate.urdf": cubes.cube_rotate,
+    "cube_small.urdf": cubes.cube_small,
+    "differential/diff_ring.urdf": rovers.diff_ring,
+    "domino/domino.urdf": things.domino,
+    "duck_vhacd.urdf": toys.duck,
+    "franka_panda/panda.urdf": panda.panda,
+    "humanoid/humanoid.urdf": people.humanoid,
+    "husky/husky.urdf": rovers.husky,
+    "jenga/jenga.urdf": things.jenga,
+    "kuka_iiwa/model.urdf": kuka.model,
+    "kuka_iiwa/model_free_base.urdf": kuka.model_free_base,
+    "kuka_iiwa/model_vr_limits.urdf": kuka.model_vr_limits,
+    "lego/lego.urdf": things.lego,
+    "mini_cheetah/mini_cheetah.urdf": quadrupeds.mini_cheetah,
+    "objects/mug.urdf": toys.mug,
+    "pendulum5.urdf": arms.pendulum5,
+    "plane.urdf": floors.plane,
+    "plane100.urdf": floors.plane100,
+    "plane_implicit.urdf": floors.plane_implicit,
+    "plane_transparent.urdf": floors.plane_transparent,
+    "pr2_gripper.urdf": manipulators.pr2_gripper,
+    "quadruped/quadruped.urdf": quadrupeds.quadruped,
+    "r2d2.urdf": r2d2.r2d2,
+    "racecar/racecar.urdf": rovers.racecar,
+    "racecar/racecar_differential.urdf": rovers.racecar_differential,
+    "rrbot.urdf": arms.rrbot,
+    "simple_arm.urdf": arms.simple_arm,
+    "soccerball.urdf": spheres.soccerball,
+    "sphere2.urdf": spheres.sphere2,
+    "sphere2red.urdf": spheres.sphere2red,
+    "sphere2red_nocol.urdf": spheres.sphere2red_nocol,
+    "sphere8cube.urdf": spheres.sphere8cube,
+    "sphere_1cm.urdf": spheres.sphere_1cm,
+    "sphere_small.urdf": spheres.sphere_small,
+    "sphere_transparent.urdf": spheres.sphere_transparent,
+    "sphere_with_restitution.urdf": spheres.sphere_with_restitution,
+    "spherical_joint_limit.urdf": arms.spherical_joint_limit,
+    "table/table.urdf": things.table,
+    "table_square/table_square.urdf": things.table_square,
+    "samurai.urdf": soft_shapes.samurai,
+    "tray/tray.urdf": things.tray,
+    "tray/traybox.urdf": things.traybox,
+}
+
+FAMILIES: Mapping[Callable[[str], Robot], tuple[str, ...]] = {
+    quadrupeds.laikago: (
+        "laikago/laikago.urdf",
+        "laikago/laikago_toes.urdf",
+        "laikago/laikago_toes_limits.urdf",
+        "laikago/laikago_toes_zup.urdf",
+        "laikago/laikago_toes_zup_lores.urdf",
+    ),
+    quadrupeds.minitaur: (
+        "quadruped/microtaur/microtaur.urdf",
+        "quadruped/minitaur.urdf",
+        "quadruped/minitaur_derpy.urdf",
+        "quadruped/minitaur_fixed_all.urdf",
+        "quadruped/minitaur_fixed_knees.urdf",
+        "quadruped/minitaur_rainbow_dash.urdf",
+        "quadruped/minitaur_rainbow_dash_v1.urdf",
+        "quadruped/minitaur_single_motor.urdf",
+        "quadruped/minitaur_v1.urdf",
+    ),
+    quadrupeds.ghost: (
+        "quadruped/spirit40.urdf",
+        "quadruped/spirit40newer.urdf",
+        "quadruped/vision60.urdf",
+    ),
+    manipulators.xarm6: (
+        "xarm/xarm6_robot.urdf",
+        "xarm/xarm6_robot_white.urdf",
+        "xarm/xarm6_with_gripper.urdf",
+    ),
+    soft_shapes.teddy: (
+        "teddy_large.urdf",
+        "teddy_vhacd.urdf",
+    ),
+}
+"""Robots that are made alike, by what makes them of the name of their file."""
+
+ROBOTS |= {path: partial(make, path) for make, paths in FAMILIES.items() for path in paths}
+ROBOTS |= {
+    f"random_urdfs/{n:03d}/{n:03d}.urdf": partial(soft_shapes.blob, n) for n in range(soft_shapes.BLOBS)
+}
+
+SCENE_FAMILIES: Mapping[Callable[[str], scenes.Scene], tuple[str, ...]] = {
+    scenes.wsg50: (
+        "gripper/wsg50_one_motor_gripper.sdf",
+        "gripper/wsg50_one_motor_gripper_new.sdf",
+        "gripper/wsg50_one_motor_gripper_new_free_base.sdf",
+    ),
+    scenes.kuka_arm: (
+        "kuka_iiwa/kuka_with_gripper.sdf",
+        "kuka_iiwa/kuka_with_gripper2.sdf",
+        "kuka_iiwa/model.sdf",
+    ),
+    scenes.stadium: (
+        "plane_stadium.sdf",
+        "stadium.sdf",
+    ),
+}
+
+SCENES: dict[str, Callable[[], scenes.Scene]] = {
+    "kiva_shelf/model.sdf": scenes.kiva_shelf,
+}
+SCENES |= {path: partial(make, path) for make, paths in SCENE_FAMILIES.items() for path in paths}
+
+MODELS: Mapping[str, Callable[[], Model]] = {
+    "mjcf/ant.xml": gym_runners.ant,
+    "mjcf/ground_plane.xml": gym_runners.ground_plane,
+    "mjcf/half_cheetah.xml": gym_runners.half_cheetah,
+    "mjcf/hopper.xml": gym_runners.hopper,
+    "mjcf/humanoid.xml": gym_humanoids.humanoid,
+    "mjcf/humanoid_symmetric.xml": partial(gym_humanoids.humanoid_symmetric, 0.8),
+    "mjcf/humanoid_symmetric_no_ground.xml": partial(gym_humanoids.humanoid_symmetric, 0.5),
+    "mjcf/inverted_double_pendulum.xml": gym_runners.inverted_double_pendulum,
+    "mjcf/inverted_pendulum.xml": gym_runners.inverted_pendulum,
+    "mjcf/reacher.xml": gym_runners.reacher,
+    "mjcf/swimmer.xml": gym_runners.swimmer,
+    "mjcf/walker2d.xml": gym_runners.walker2d,
+}
+
+MATERIALS: Mapping[str, tuple[str, str]] = {
+    "plane.mtl": ("floor", "checker_blue.png"),
+    "grass.mtl": ("grass", "grass.png"),
+    "duck.mtl": ("duck", "duck.png"),
+    "cube.mtl": ("cube", "cube.png"),
+    "textured_sphere_smooth.mtl": ("ball", "ball.png"),
+    "soccerball.mtl": ("football", "football.png"),
+    "table/table.mtl": ("wood", "table.png"),
+    "table_square/table.mtl": ("wood", "table.png"),
+}
+"""Material libraries: name of the material in it, and its texture."""
+
+TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
+    "checker_blue.png": textures.floor,
+    "cube.png": textures.framed,
+    "ball.png": partial(textures.chessboard, 8, np.array((0.95, 0.95, 0.95)), np.array((0.75, 0.2, 0.18))),
+    "duck.png": toys.duck_palette,
+    "grass.png": textures.grass,
+    "football.png": textures.football,
+    "table/table.png": textures.wood,
+    "table_square/table.png": textures.wood,
+    "tex256.png": partial(textures.chessboard, 8, np.array((0.9, 0.9, 0.9)), np.array((0.35, 0.4, 0.5)), 256),
+    "uvmap.png": textures.colour_grid,
+}
+
+TRAY_FLOOR: simple_meshes.Rectangle = (-0.21, -0.21, 0.21, 0.21)
+
+MESHES: dict[str, Callable[[], ObjMesh]] = {
+    "plane.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
+    "grass.obj": partial(simple_meshes.square, 50.0, 25.0, ("grass", "grass.mtl")),
+    "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),
+    "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
+    "bicycle/wheel.obj": rovers.wheel_disc,
+    "cube.obj": partial(simple_meshes.textured_box, ("cube", "cube.mtl")),
+    "duck.obj": toys.duck_mesh,
+    "franka_panda/meshes/finger.obj": panda.finger_hull,
+    "objects/mug.obj": toys.mug_mesh,
+    "sphere_smooth.obj": partial(simple_meshes.globe, 1.0, 24, 14),
+    "textured_sphere_smooth.obj": partial(
+        simple_meshes.globe, 1.0, 24, 14, ("ball", "textured_sphere_smooth.mtl")
+    ),
+    "soccerball.obj": partial(simple_meshes.globe, 0.5, 24, 14, ("football", "soccerball.mtl")),
+    "table/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
+    "table_square/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
+    "teddy.obj": soft_shapes.teddy_mesh,
+    "tray/tray.obj": partial(simple_meshes.tray, TRAY_FLOOR, (-0.3, -0.3, 0.3, 0.3), (-0.005, 0.125), 0.012),
+    "tray/tray_solid.obj": partial(
+        simple_meshes.tray, TRAY_FLOOR, (-0.2969, -0.295, 0.2968, 0.3204), (-0.005, 0.1334), 0.012
+    ),
+}
+
+MESHES |= {
+    f"random_urdfs/{n:03d}/{n:03d}.obj": partial(soft_shapes.blob_mesh, n) for n in range(soft_shapes.BLOBS)
+}
+
+HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
+    "franka_panda/meshes": (panda.fields, 0.019),
+    "kuka_iiwa/meshes": (kuka.fields, 0.0235),
+}
+"""Folders of blended bodies: the fields, and the grid cell they are meshed with [m]."""
