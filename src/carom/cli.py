@@ -1,4 +1,4 @@
-"""The command line: `python -m carom info robot.urdf`, `convert robot.sdf robot.urdf`, `warmup`."""
+"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert robot.sdf robot.urdf`, `warmup`."""
 
 from __future__ import annotations
 
@@ -59,6 +59,12 @@ def _parser() -> argparse.ArgumentParser:
     info.add_argument("--merge-fixed-links", action="store_true", help="merge links that cannot move")
     info.set_defaults(command=_info)
 
+    view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
+    view.add_argument("file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data")
+    view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
+    view.add_argument("--port", type=int, help="port to serve the page at (default 8400, or any other that is free)")
+    view.set_defaults(command=_view)
+
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
     convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
     convert.add_argument("output", type=Path, help="URDF file to write")
@@ -89,6 +95,20 @@ def _info(options: argparse.Namespace) -> None:
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     robot = read_urdf(options.file, scale=options.scale, search=search)
     print(describe(assemble(robot, flags=flags, fixed_base=options.fixed_base)))
+
+
+def _view(options: argparse.Namespace) -> None:
+    from carom.viewer.robot import RobotView
+
+    search = AssetSearch(Path(pybullet_data.getDataPath()))
+    view = RobotView(options.file, search, options.host, options.port)
+    print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    try:
+        view.run()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        view.viewer.close()
 
 
 def _convert(options: argparse.Namespace) -> None:

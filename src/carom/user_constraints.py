@@ -73,14 +73,15 @@ class UserConstraints:
     def __init__(self) -> None:
         self._by_id: dict[int, UserConstraint] = {}
         self.next_id = 1
+        self._next_hidden_id = -1
 
     def __len__(self) -> int:
-        return len(self._by_id)
+        return len(self.all)
 
     @property
     def all(self) -> list[UserConstraint]:
-        """All constraints in the order they were made."""
-        return list(self._by_id.values())
+        """All constraints that are not hidden, in the order they were made."""
+        return [constraint for number, constraint in self._by_id.items() if number > 0]
 
     def get(self, constraint_id: int) -> UserConstraint | None:
         """The constraint of a number, or None."""
@@ -96,12 +97,23 @@ class UserConstraints:
         axis: Vector3,
         parent_frame: Pose,
         child_frame: Pose,
+        *,
+        hidden: bool = False,
     ) -> UserConstraint:
-        """Create a constraint; see `UserConstraint` for the arguments."""
+        """Create a constraint; see `UserConstraint` for the arguments.
+
+        One that is hidden, such as the hand of a user of the viewer, has a negative number, and takes none
+        from those that scripts see.
+        """
+        number = self._next_hidden_id if hidden else self.next_id
+        if hidden:
+            self._next_hidden_id -= 1
+        else:
+            self.next_id += 1
         constraint = UserConstraint(
-            self.next_id, kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
+            number, kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
         )
-        self.put(constraint)
+        self._by_id[number] = constraint
         return constraint
 
     def put(self, constraint: UserConstraint) -> None:

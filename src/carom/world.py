@@ -262,10 +262,14 @@ class World:
         axis: Vector3 = (0.0, 0.0, 0.0),
         parent_frame: Pose = IDENTITY,
         child_frame: Pose = IDENTITY,
+        hidden: bool = False,
     ) -> UserConstraint:
-        """Tie a link to another, or to the world; see `UserConstraint` for the arguments."""
+        """Tie a link to another, or to the world; see `UserConstraint` for the arguments.
+
+        A hidden constraint is not among `user_constraints.all`.
+        """
         constraint = self.user_constraints.add(
-            kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
+            kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame, hidden=hidden
         )
         self.constraints.add_user(constraint)
         self.constraints_changed()

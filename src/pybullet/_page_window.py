@@ -14,6 +14,9 @@ from pybullet._errors import fail
 from pybullet._window import DebugCamera, DebugItem, RecordingWindow, Slider, VisualizerOptions
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from carom.viewer.viewer import Viewer
     from pybullet._clients import Client
 
@@ -93,6 +96,12 @@ class PageWindow(RecordingWindow):
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         self._viewer.camera.move(distance, yaw, pitch, target)
+
+    def show_image(
+        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+    ) -> None:
+        if self._viewer.page_count:
+            self._viewer.previews.show(rgba, depth, labels)
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         orbit = self._viewer.camera.orbit

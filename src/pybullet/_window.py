@@ -11,11 +11,16 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import hypot
+from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
 from carom.viewer.items import DebugItem, DebugLine, DebugPoints, DebugText, Slider
 from pybullet._camera_maths import Y_UP, Z_UP, Matrix16, cross, frustum, look_at, orbit, subtracted, unit
 from pybullet._constants import COV_ENABLE_Y_AXIS_UP
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 __all__ = [
     "NO_ITEM",
@@ -164,6 +169,12 @@ class Window(ABC):
         """Moves the camera; angles in degrees."""
 
     @abstractmethod
+    def show_image(
+        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+    ) -> None:
+        """Shows what a camera image of the script shows; see `getCameraImage` for the arrays."""
+
+    @abstractmethod
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         """The 12 fields of `getDebugVisualizerCamera`."""
 
@@ -215,6 +226,11 @@ class NoWindow(Window):
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """There is no camera."""
+
+    def show_image(
+        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+    ) -> None:
+        """Nobody would see it."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         vector, matrix = (0.0,) * 3, (0.0,) * 16
@@ -304,6 +320,11 @@ class RecordingWindow(Window):
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         camera = self.camera
         camera.distance, camera.yaw, camera.pitch, camera.target = distance, yaw, pitch, target
+
+    def show_image(
+        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+    ) -> None:
+        """Nobody would see it."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         return self.camera.info()

@@ -7,10 +7,8 @@ from pathlib import Path
 
 from carom.description import Robot
 from carom.errors import DescriptionError
-from carom.formats.mjcf import read_mjcf
+from carom.formats.any_file import read_robots
 from carom.formats.placed import PlacedRobot
-from carom.formats.sdf import read_sdf
-from carom.formats.urdf import read_urdf
 from carom.formats.urdf_writer import urdf_text
 
 
@@ -29,22 +27,8 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
         DescriptionError: The source cannot be used or holds no such robot, or URDF cannot say what is in it.
         OSError: The target cannot be written.
     """
-    text = urdf_text(_chosen(source, _read(source), model), target.absolute().parent)
+    text = urdf_text(_chosen(source, read_robots(source), model), target.absolute().parent)
     target.write_text(text, encoding="utf-8")
-
-
-def _read(source: Path) -> list[PlacedRobot]:
-    match source.suffix.lower():
-        case ".sdf" | ".world":
-            return read_sdf(source)
-        case ".xml" | ".mjcf":
-            return read_mjcf(source, colours=True)
-        case ".urdf":
-            return [PlacedRobot(read_urdf(source))]
-        case suffix:
-            raise DescriptionError(
-                f"files of type {suffix!r} are not known; .sdf, .xml, .urdf are", file=source
-            )
 
 
 def _chosen(source: Path, placed: list[PlacedRobot], model: str | None) -> Robot:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from threading import RLock
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -36,10 +35,10 @@ class SceneFeed:
         collisions: Describe collision shapes, too.
     """
 
-    def __init__(self, world: World, lock: RLock, board: Board) -> None:  # type: ignore[valid-type]
+    def __init__(self, world: World, lock: Any, board: Board) -> None:
         self.collisions = False
         self._world = world
-        self._lock: Any = lock
+        self._lock = lock
         self._board = board
         self._assets = Assets(board)
         self._bodies: list[Body] = []

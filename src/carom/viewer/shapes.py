@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description import Box, Cylinder, Geometry, Pose, Sphere
+from carom.constraints import moving_links
+from carom.description import Box, Cylinder, Geometry, Plane, Pose, Sphere
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
 from carom.model.body_spec import BASE
@@ -23,7 +24,15 @@ if TYPE_CHECKING:
     from carom.body import Body
 
 _MAX_TEXTURE_SIDE = 4096
-_COLLISION_COLOUR = (0.25, 0.7, 0.45, 0.55)
+# Of collision shapes: neighbouring links differ.
+_COLLISION_COLOURS = (
+    (0.36, 0.62, 0.80, 1.0),
+    (0.93, 0.66, 0.36, 1.0),
+    (0.52, 0.74, 0.48, 1.0),
+    (0.80, 0.52, 0.64, 1.0),
+    (0.62, 0.56, 0.80, 1.0),
+)
+_COLLISION_FLOOR = (0.82, 0.84, 0.86, 1.0)
 _NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
 # Shapes of all sizes share one mesh, so that a page draws any number of them at once.
 _UNIT_BOX = primitive_mesh(Box((1.0, 1.0, 1.0)))
@@ -112,7 +121,10 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         "type": "body",
         "body": body.id,
         "name": body.name,
-        "links": [_link(body, link) for link in range(BASE, body.joint_count)],
+        "links": [
+            {**_link(body, link), "moves": moves}
+            for link, moves in enumerate(moving_links(body), start=BASE)
+        ],
         "shapes": shapes,
     }
 
@@ -152,6 +164,7 @@ def _shape(
 
 
 def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
+    colour = _COLLISION_COLOURS[(link - BASE) % len(_COLLISION_COLOURS)]
     for shape in body.link_spec(link).collisions:
         mesh, scale = _shared(shape.geometry, None)
         frame = compose(to_inertial, shape.frame)
@@ -159,7 +172,7 @@ def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Ite
             "link": link - BASE,
             "mesh": assets.mesh(mesh),
             "texture": NO_TEXTURE,
-            "rgba": _COLLISION_COLOUR,
+            "rgba": _COLLISION_FLOOR if isinstance(shape.geometry, Plane) else colour,
             "specular": (0.2, 0.2, 0.2),
             "twoSided": True,
             "position": frame.position,

@@ -7,22 +7,29 @@ import sys
 import webbrowser
 from collections.abc import Callable
 from math import isfinite
-from threading import Timer
+from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
+from carom.description.pose import Vector3
 from carom.viewer.board import Board
 from carom.viewer.camera import SharedCamera
 from carom.viewer.controls import Controls
 from carom.viewer.drawings import Drawings
 from carom.viewer.gate import Gate
+from carom.viewer.hands import Hands
 from carom.viewer.keys import Keyboard
 from carom.viewer.mouse import Mouse
+from carom.viewer.previews import Previews
+from carom.viewer.probes import sample
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
 
 if TYPE_CHECKING:
     from carom.world import World
 
+_MOST_PLOTS = 16
+# How long a page that goes may keep the server from letting go of what it held [s].
+_PATIENCE = 1.0
 # A page of the last run that is still open connects again within this time [s].
 _RECONNECTION = 1.5
 
@@ -32,7 +39,8 @@ class Viewer:
 
     Args:
         world: The world.
-        lock: Held by whoever steps or changes the world.
+        lock: Held by whoever steps the world, or adds and removes bodies. Without one the mouse cannot pull
+            bodies, and `Viewer.lock` has to be held while bodies come and go.
         host: Address to listen on; this machine alone unless told otherwise.
         port: Port to listen on; None for the usual one or, where that is taken, any.
         title: Of the page.
@@ -43,11 +51,13 @@ class Viewer:
         OSError: The address cannot be listened on.
 
     Attributes:
+        lock: Held while bodies are looked at.
         controls: Sliders and buttons.
         drawings: What scripts draw.
         keyboard: Keys.
         mouse: Mouse events.
         camera: The camera.
+        previews: What the last camera image of a script shows.
         gate: Whether the simulation is paused.
         is_open: False once a user has closed the viewer.
         on_hold: Called, from the thread of the server, with whether steps have to ask `gate` first: while
@@ -57,7 +67,7 @@ class Viewer:
     def __init__(
         self,
         world: World,
-        lock: Any,
+        lock: Any = None,
         *,
         host: str = "127.0.0.1",
         port: int | None = None,
@@ -75,9 +85,16 @@ class Viewer:
         self.keyboard = Keyboard()
         self.mouse = Mouse()
         self.gate = Gate()
-        self._feed = SceneFeed(world, lock, self._board)
-        # Pages that show collision shapes.
-        self._wishes: dict[int, bool] = {}
+        # Pulling makes constraints, which only whoever steps can allow.
+        self._pulls = lock is not None
+        self.lock = RLock() if lock is None else lock
+        self._feed = SceneFeed(world, self.lock, self._board)
+        self.previews = Previews(self._board)
+        self._world = world
+        self._hands = Hands(world, self.lock)
+        # What each page wants to know besides: whether collision shapes, and which joints.
+        self._collisions: dict[int, bool] = {}
+        self._plotted: dict[int, set[tuple[int, int]]] = {}
         self.pause(False)
         self._answers: dict[str, Callable[[int, dict[str, Any]], None]] = {
             "slider": lambda page, told: self.controls.move(int(told["slider"]), float(told["value"])),
@@ -88,6 +105,10 @@ class Viewer:
             "camera": self._take_camera,
             "size": self._take_size,
             "want": self._take_wish,
+            "plot": self._take_plots,
+            "grasp": self._take_grasp,
+            "pull": lambda page, told: self._hands.move(page, _vector(told["target"])),
+            "let go": lambda page, told: self._hands.release(page),
             "pause": lambda page, told: self.pause(bool(told["paused"])),
             "step": lambda page, told: self.gate.let_through(),
             "close": lambda page, told: self._close_by_user(),
@@ -130,6 +151,10 @@ class Viewer:
         timer.daemon = True
         timer.start()
 
+    def _repr_html_(self) -> str:
+        """The page, for notebooks."""
+        return f'<iframe src="{self.address}" style="width:100%;height:520px;border:0"></iframe>'
+
     def close(self) -> None:
         """Ends it: pages say that the simulation is over."""
         self.is_open = False
@@ -138,15 +163,20 @@ class Viewer:
 
     def _frame(self) -> bytes | None:
         self.drawings.expire()
-        return self._feed.frame({})
+        self._hands.apply()
+        joints = set().union(*self._plotted.values())
+        return self._feed.frame({"joints": sample(self._world, joints)} if joints else {})
 
     def _receive(self, page: int, told: dict[str, Any]) -> None:
         self._answers[told["type"]](page, told)
 
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)
-        self._wishes.pop(page, None)
-        self._feed.collisions = any(self._wishes.values())
+        self._collisions.pop(page, None)
+        self._plotted.pop(page, None)
+        self._feed.collisions = any(self._collisions.values())
+        self._hands.release(page)
+        self._hands.apply(_PATIENCE)
 
     def _take_key(self, page: int, told: dict[str, Any]) -> None:
         change = self.keyboard.press if told["down"] else self.keyboard.release
@@ -160,7 +190,7 @@ class Viewer:
             self.mouse.move(x, y)
 
     def _take_camera(self, page: int, told: dict[str, Any]) -> None:
-        x, y, z = map(float, told["target"])
+        x, y, z = _vector(told["target"])
         distance, yaw, pitch = (float(told[name]) for name in ("distance", "yaw", "pitch"))
         if all(map(isfinite, (x, y, z, distance, yaw, pitch))) and distance > 0.0:
             self.camera.moved(distance, yaw, pitch, (x, y, z))
@@ -171,13 +201,26 @@ class Viewer:
             self.camera.resized(width, height)
 
     def _take_wish(self, page: int, told: dict[str, Any]) -> None:
-        self._wishes[page] = bool(told["collisions"])
-        self._feed.collisions = any(self._wishes.values())
+        self._collisions[page] = bool(told["collisions"])
+        self._feed.collisions = any(self._collisions.values())
+
+    def _take_plots(self, page: int, told: dict[str, Any]) -> None:
+        self._plotted[page] = {(int(body), int(joint)) for body, joint in told["joints"][:_MOST_PLOTS]}
+
+    def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
+        point, target = _vector(told["point"]), _vector(told["target"])
+        if self._pulls:
+            self._hands.take(page, int(told["body"]), int(told["link"]), point, target)
 
     def _close_by_user(self) -> None:
         self.is_open = False
         self.gate.open()
         self.on_hold(True)
+
+
+def _vector(values: Any) -> Vector3:
+    x, y, z = map(float, values)
+    return (x, y, z)
 
 
 def has_display() -> bool:

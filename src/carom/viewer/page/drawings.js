@@ -12,6 +12,8 @@ const AXIS_COLOURS = [
   [0.13, 0.62, 0.22],
   [0.16, 0.36, 0.86],
 ];
+const AXIS_LENGTH = 0.1;
+const PULL_COLOUR = [0.95, 0.62, 0.1];
 const TEXT_PIXELS = 15;
 
 export class Drawings {
@@ -20,6 +22,8 @@ export class Drawings {
     this.overlay = overlay;
     this.items = new Map();
     this.clouds = [];
+    this.name = Object.assign(document.createElement("span"), { className: "hover", hidden: true });
+    overlay.append(this.name);
   }
 
   add(header, payload) {
@@ -75,9 +79,16 @@ export class Drawings {
     return label;
   }
 
-  /** Lines as the renderer takes them: start, end, colour and width of each. */
-  lines(scene, options) {
+  /**
+   * Lines as the renderer takes them: start, end, colour and width of each.
+   *
+   * @param {number[][][]} pulls start and end of what the mouse pulls
+   * @param {?{body: number, link: number}} named the link whose frame is shown
+   */
+  lines(scene, options, pulls, named) {
     const lines = [];
+    for (const [start, end] of pulls) lines.push(start, end, PULL_COLOUR, [2.5]);
+    if (named) addFrame(lines, scene, named.body, named.link);
     for (const item of this.items.values()) {
       if (item.type !== "line") continue;
       const pose = scene.linkPose(item.body, item.link);
@@ -85,7 +96,17 @@ export class Drawings {
     }
     if (options.frames) addFrames(lines, scene);
     if (options.bounds) addBounds(lines, scene, options);
-    return new Float32Array(lines.flat().length ? lines.flat() : 0);
+    return new Float32Array(lines.flat());
+  }
+
+  /** Tells the names of the link under the mouse. */
+  showName(scene, named, pixel) {
+    this.name.hidden = !named;
+    if (!named) return;
+    const body = scene.bodies.get(named.body);
+    const link = body.links[named.link];
+    this.name.textContent = [body.name, link.name, link.joint && `joint ${named.link - 1} ${link.joint}`].filter(Boolean).join(" · ");
+    this.name.style.transform = `translate(${pixel[0] + 14}px, ${pixel[1] + 14}px)`;
   }
 
   /** Puts texts where they belong on the page. */
@@ -106,15 +127,17 @@ function inFrame(pose, point) {
 
 function addFrames(lines, scene) {
   for (const body of scene.bodies.values()) {
-    body.links.forEach((_, link) => {
-      const pose = scene.linkPose(body.body, link);
-      if (!pose) return;
-      WORLD_AXES.forEach((axis, i) => {
-        const tip = axis.map((value) => value * 0.1);
-        lines.push(pose.position, inFrame(pose, tip), AXIS_COLOURS[i], [2]);
-      });
-    });
+    body.links.forEach((_, link) => addFrame(lines, scene, body.body, link));
   }
+}
+
+function addFrame(lines, scene, body, link) {
+  const pose = scene.linkPose(body, link);
+  if (!pose) return;
+  WORLD_AXES.forEach((axis, i) => {
+    const tip = axis.map((value) => value * AXIS_LENGTH);
+    lines.push(pose.position, inFrame(pose, tip), AXIS_COLOURS[i], [2]);
+  });
 }
 
 function addBounds(lines, scene, options) {

@@ -6,7 +6,10 @@ import { Drawings } from "./drawings.js";
 import { Keys } from "./keys.js";
 import { Options } from "./options.js";
 import { Panel } from "./panel.js";
+import { Grasp, pick } from "./picking.js";
+import { Plots } from "./plots.js";
 import { Pointer } from "./pointer.js";
+import { Previews } from "./previews.js";
 import { Renderer } from "./renderer.js";
 import { Scene } from "./scene.js";
 
@@ -31,6 +34,7 @@ function start() {
     camera.yUp = options.yUp;
     camera.update();
     panel.showOptions();
+    previews.show(options);
     send({ type: "want", collisions: options.collisions });
     changed();
   };
@@ -41,8 +45,12 @@ function start() {
   const tellSize = () => send({ type: "size", width: camera.width, height: camera.height });
   const send = (message) => connection.send(message);
   const panel = new Panel(send, options, optionsChanged);
+  const plots = new Plots(send);
+  const previews = new Previews();
   new Keys(send, options, optionsChanged);
-  new Pointer(canvas, camera, send, cameraMoved);
+  const pointer = new Pointer(canvas, camera, send, cameraMoved);
+  pointer.hoverChanged = () => options.names && changed();
+  pointer.grasp = new Grasp(scene, camera, options, send);
 
   const answers = {
     title: (header) => panel.showTitle(header),
@@ -52,10 +60,18 @@ function start() {
     "no texture": (header) => scene.removeTexture(header),
     body: (header) => scene.addBody(header),
     "no body": (header) => scene.removeBody(header),
-    layout: (header) => (scene.layout = header),
+    layout: (header) => {
+      scene.layout = header;
+      plots.offer(scene);
+    },
     frame: (header, payload) => {
       scene.place(header, payload);
       panel.showTime(header);
+      plots.take(header);
+    },
+    previews: (header, payload) => {
+      previews.take(header, payload);
+      previews.show(options);
     },
     line: (header) => drawings.add(header),
     text: (header) => drawings.add(header),
@@ -82,14 +98,22 @@ function start() {
       scene.clear();
       drawings.clear();
       panel.clear();
+      previews.clear();
       tellSize();
+      plots.tell();
+      send({ type: "want", collisions: options.collisions });
     },
   );
 
+  let drawn = false;
+  let last = performance.now();
   let frames = 0;
   let since = performance.now();
   function draw(now) {
     requestAnimationFrame(draw);
+    if (drawn) renderer.pace(now - last);
+    last = now;
+    drawn = false;
     if (renderer.resize()) {
       camera.resize(canvas.clientWidth, canvas.clientHeight);
       tellSize();
@@ -107,8 +131,17 @@ function start() {
     if (!stale) return;
     stale = false;
     if (!options.rendering) return;
-    renderer.draw(scene, camera, options, { lines: drawings.lines(scene, options), clouds: drawings.clouds });
+    drawn = true;
+    const named = options.names && pointer.hovered && !pointer.grasp.busy ? underMouse() : null;
+    const more = [pointer.grasp.line()].filter((line) => line !== null);
+    const lines = drawings.lines(scene, options, more, named);
+    renderer.draw(scene, camera, options, { lines, clouds: drawings.clouds });
     drawings.placeLabels(scene, camera);
+    drawings.showName(scene, named, pointer.hovered);
+    plots.draw();
+  }
+  function underMouse() {
+    return pick(scene, options, camera.eye, camera.ray(...pointer.hovered));
   }
   requestAnimationFrame(draw);
 }

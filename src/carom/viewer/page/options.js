@@ -8,6 +8,9 @@ const FLAG = {
   rendering: 7,
   shortcuts: 9,
   picking: 10,
+  rgbPreview: 13,
+  depthPreview: 14,
+  segmentationPreview: 15,
 };
 
 export class Options {
@@ -18,6 +21,11 @@ export class Options {
     this.rendering = true;
     this.shortcuts = true;
     this.picking = true;
+    this.rgbPreview = true;
+    this.depthPreview = true;
+    this.segmentationPreview = true;
+    this.names = false;
+    this.colours = new Map();
     this.grid = true;
     this.frames = false;
     this.bounds = false;
@@ -31,14 +39,21 @@ export class Options {
     this.told = {};
   }
 
+  /** The colour a script has given to a link in wireframe, if any. */
+  wireColour(body, link) {
+    return this.colours.get(`${body},${link}`);
+  }
+
   /** Takes over what the script has changed, and leaves what the user has. */
   take(message) {
     for (const [name, flag] of Object.entries(FLAG)) {
       const value = message.flags?.[flag];
       if (value !== undefined && value !== this.told[name]) this[name] = this.told[name] = value;
     }
+    this.colours = new Map((message.colours ?? []).map(([body, link, colour]) => [`${body},${link}`, colour]));
+    if (message.names !== undefined) this.names = message.names;
     this.yUp = message.up_axis === 1;
-    this.background = message.background;
+    this.background = message.background ?? null;
     if (message.light_position && message.light_position.some((x) => x !== 0)) {
       this.lightPosition = message.light_position;
     }

@@ -6,7 +6,8 @@ const TOGGLES = [
   ["frames", "Link frames", "J"],
   ["bounds", "Bounds", "A"],
   ["grid", "Grid", ""],
-  ["collisions", "Collision shapes", ""],
+  ["names", "Names", ""],
+  ["collisions", "Collisions", ""],
 ];
 
 export class Panel {

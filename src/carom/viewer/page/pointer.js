@@ -1,5 +1,6 @@
-// The mouse: it moves the camera, and tells the script. Left turns, the middle button or Shift and left move,
-// right or the wheel zooms; with Ctrl or Alt the left button always turns, as in PyBullet's window.
+// The mouse: it moves the camera, pulls bodies, and tells the script. Left pulls what it is on, or turns; the
+// middle button or Shift and left move, right or the wheel zooms; with Ctrl or Alt the left button always turns,
+// as in PyBullet's window.
 
 export class Pointer {
   constructor(canvas, camera, send, cameraMoved) {
@@ -10,12 +11,17 @@ export class Pointer {
     this.at = null;
     this.hovered = null;
     this.button = null;
+    /** Called when the mouse is somewhere else. */
+    this.hoverChanged = () => {};
     /** Takes hold of what is under the mouse; see picking.js. */
     this.grasp = null;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => this.up(event));
-    canvas.addEventListener("pointerleave", () => (this.hovered = null));
+    canvas.addEventListener("pointerleave", () => {
+      this.hovered = null;
+      this.hoverChanged();
+    });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
   }
@@ -34,11 +40,16 @@ export class Pointer {
   move(event) {
     const [x, y] = [event.offsetX, event.offsetY];
     this.hovered = [x, y];
+    this.hoverChanged();
     this.tell(event, {});
     if (this.at === null) return;
     const [dx, dy] = [x - this.at[0], y - this.at[1]];
     this.at = [x, y];
-    if (this.grasp?.busy) return this.grasp.move(x, y);
+    if (this.grasp?.busy) {
+      this.grasp.move(x, y);
+      this.hoverChanged();
+      return;
+    }
     if (this.button === 0 && !event.shiftKey) this.camera.orbit(dx, dy);
     else if (this.button === 2) this.camera.zoom(Math.exp(dy * 0.01));
     else this.camera.pan(dx, dy);

@@ -9,10 +9,14 @@ const GRID_EXTENT = 60;
 const HAZE = 90;
 const HAZE_BY_DISTANCE = 16;
 const LINE_FLOATS = 10;
+/** Pictures that take longer than this make the next ones coarser, if so many in a row do [ms]. */
+const SLOW_MS = 70;
+const SLOW_PICTURES = 6;
+const LEAST_SHARPNESS = 0.5;
 
 export class Renderer {
   constructor(canvas) {
-    const gl = canvas.getContext("webgl2", { antialias: true, powerPreference: "high-performance" });
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, powerPreference: "high-performance" });
     if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
     this.canvas = canvas;
     this.gl = gl;
@@ -29,11 +33,22 @@ export class Renderer {
     this.lineBuffer = gl.createBuffer();
     this.lineArray = this.makeLineArray();
     this.map = new ShadowMap(gl, 2048);
+    this.sharpness = 1;
+    this.slow = 0;
+  }
+
+  /** Takes note of how long a picture took [ms]; slow machines get coarser ones. */
+  pace(duration) {
+    this.slow = duration > SLOW_MS ? this.slow + 1 : 0;
+    if (this.slow >= SLOW_PICTURES && this.sharpness > LEAST_SHARPNESS) {
+      this.sharpness = Math.max(LEAST_SHARPNESS, this.sharpness * 0.75);
+      this.slow = 0;
+    }
   }
 
   /** Fits the picture to the window; true if its size has changed. */
   resize() {
-    const ratio = Math.min(window.devicePixelRatio, 2);
+    const ratio = Math.min(window.devicePixelRatio, 2) * this.sharpness;
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width === width && this.canvas.height === height) return false;
@@ -51,7 +66,7 @@ export class Renderer {
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
     scene.regroup();
-    scene.fill();
+    scene.fill(options);
     const shown = scene.groups.filter((group) => group.instances > 0 && group.collision === options.collisions);
     const light = this.light(camera, options);
     const shadows = options.shadows && !options.wireframe;
@@ -70,7 +85,7 @@ export class Renderer {
     };
     this.drawSky(camera, common);
     gl.enable(gl.DEPTH_TEST);
-    if (options.wireframe) this.drawWires(shown, camera, options);
+    if (options.wireframe) this.drawWires(shown, camera);
     else {
       const strength = shadows ? options.shadowIntensity : 0;
       this.surface.use({
@@ -172,11 +187,11 @@ export class Renderer {
     gl.disable(gl.BLEND);
   }
 
-  drawWires(groups, camera, options) {
+  drawWires(groups, camera) {
     const gl = this.gl;
     this.wire.use({ camera: camera.matrix });
     for (const group of groups) {
-      gl.bindVertexArray(group.wires());
+      gl.bindVertexArray(group.outline());
       gl.drawElementsInstanced(gl.LINES, group.mesh.edgeCount, gl.UNSIGNED_INT, 0, group.instances);
     }
   }

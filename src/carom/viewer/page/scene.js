@@ -110,8 +110,8 @@ export class Scene {
   }
 
   /** Brings the instances of all groups up to date. */
-  fill() {
-    for (const group of this.groups) group.fill(this.version);
+  fill(options) {
+    for (const group of this.groups) group.fill(this.version, options);
   }
 }
 
@@ -158,14 +158,15 @@ class Group {
     return array;
   }
 
-  wires() {
+  /** The edges, to be drawn as lines. */
+  outline() {
     this.wire ??= this.vertexArray(this.mesh.edges());
     return this.wire;
   }
 
-  fill(version) {
-    if (this.version === version) return;
-    this.version = version;
+  fill(version, options) {
+    if (this.version === version && this.wires === options.wireframe && this.colours === options.colours) return;
+    [this.version, this.wires, this.colours] = [version, options.wireframe, options.colours];
     const data = new Float32Array(this.members.length * INSTANCE_FLOATS);
     let count = 0;
     this.middle = [0, 0, 0];
@@ -180,6 +181,8 @@ class Group {
       data.set(turned(orientation, [0, 0, sz]), count + 6);
       data.set(position, count + 9);
       data.set(shape.rgba, count + 12);
+      const wireColour = options.wireframe && options.wireColour(body.body, shape.link);
+      if (wireColour) data.set(wireColour, count + 12);
       data.set(shape.specular, count + 16);
       count += INSTANCE_FLOATS;
     }

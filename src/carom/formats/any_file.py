@@ -1,0 +1,35 @@
+"""Robots of a file of any kind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from carom.errors import DescriptionError
+from carom.formats.mjcf import read_mjcf
+from carom.formats.placed import PlacedRobot
+from carom.formats.sdf import read_sdf
+from carom.formats.search import AssetSearch
+from carom.formats.urdf import read_urdf
+
+
+def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[PlacedRobot]:
+    """All robots of a file, and where it puts them.
+
+    Args:
+        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
+        search: Where a URDF file that is not there as named, and meshes, are looked for.
+
+    Raises:
+        DescriptionError: The file cannot be used, or its kind is not known.
+    """
+    match source.suffix.lower():
+        case ".sdf" | ".world":
+            return read_sdf(source)
+        case ".xml" | ".mjcf":
+            return read_mjcf(source, colours=True)
+        case ".urdf":
+            return [PlacedRobot(read_urdf(source, search=search))]
+        case suffix:
+            raise DescriptionError(
+                f"files of type {suffix!r} are not known; .sdf, .xml, .urdf are", file=source
+            )

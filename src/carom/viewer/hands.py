@@ -1,0 +1,135 @@
+"""Pulling bodies with the mouse: a point of a link is tied to where the mouse is, softly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from carom.constraints import moving_links
+from carom.description import Pose
+from carom.description.pose import Vector3
+from carom.model.body_spec import BASE
+from carom.model.codes import UserConstraintKind
+
+if TYPE_CHECKING:
+    from carom.user_constraints import UserConstraint
+    from carom.world import World
+
+_NO_TURN = (0.0, 0.0, 0.0, 1.0)
+# The greatest force a hand pulls with, by the mass of what it pulls [N/kg] and at least [N]: enough to lift and
+# swing a body, and too little to tear it through others.
+_FORCE_BY_MASS = 100.0
+_LEAST_FORCE = 5.0
+_PATIENCE = 0.02
+
+
+@dataclass(slots=True)
+class _Hand:
+    """What one page pulls at.
+
+    Attributes:
+        body: Number of the body.
+        link: Index of the link; -1 is the base.
+        point: Where the link is held, in its inertial frame [m].
+        target: Where the mouse is, in the world [m].
+        tie: The constraint, once it is made.
+        moved: The target has changed since the constraint was told.
+    """
+
+    body: int
+    link: int
+    point: Vector3
+    target: Vector3
+    tie: UserConstraint | None = None
+    moved: bool = False
+
+
+class Hands:
+    """The hands of all pages. Belongs to one thread; the world is only touched in `apply`.
+
+    Args:
+        world: The world.
+        lock: Held by whoever steps or changes the world.
+    """
+
+    def __init__(self, world: World, lock: Any) -> None:
+        self._world = world
+        self._world_lock = lock
+        self._hands: dict[int, _Hand] = {}
+        self._released: list[UserConstraint] = []
+
+    def take(self, page: int, body: int, link: int, point: Vector3, target: Vector3) -> None:
+        """A page takes hold of a point of a link, given in its inertial frame."""
+        self.release(page)
+        if all(map(isfinite, (*point, *target))):
+            self._hands[page] = _Hand(body, link, point, target)
+
+    def move(self, page: int, target: Vector3) -> None:
+        """The mouse of a page goes somewhere else in the world."""
+        hand = self._hands.get(page)
+        if hand is not None and all(map(isfinite, target)):
+            hand.target = target
+            hand.moved = True
+
+    def release(self, page: int) -> None:
+        """A page lets go."""
+        hand = self._hands.pop(page, None)
+        if hand is not None and hand.tie is not None:
+            self._released.append(hand.tie)
+
+    def apply(self, patience: float = _PATIENCE) -> None:
+        """Makes, moves and removes constraints as the hands say; if the world is busy, the next time.
+
+        Args:
+            patience: How long to wait for a world that is stepping [s].
+        """
+        if not self._released and not any(hand.moved or hand.tie is None for hand in self._hands.values()):
+            return
+        if not self._world_lock.acquire(timeout=patience):
+            return
+        try:
+            self._remove_released()
+            for page, hand in list(self._hands.items()):
+                if not self._hold(hand):
+                    del self._hands[page]
+        finally:
+            self._world_lock.release()
+
+    def _remove_released(self) -> None:
+        constraints = self._world.user_constraints
+        for tie in self._released:
+            # Its body may have gone in the meantime.
+            if constraints.get(tie.id) is tie:
+                self._world.untie(tie)
+        self._released.clear()
+
+    def _hold(self, hand: _Hand) -> bool:
+        """Brings the constraint of a hand up to date; false if there is nothing to hold any more."""
+        world = self._world
+        if hand.tie is not None:
+            if world.user_constraints.get(hand.tie.id) is not hand.tie:
+                return False
+            hand.tie.child_frame = Pose(hand.target, _NO_TURN)
+            world.user_constraints.write(world.touch)
+            hand.moved = False
+            return True
+        body = world.bodies.get(hand.body)
+        if body is None or not BASE <= hand.link < body.joint_count:
+            return False
+        if not moving_links(body)[hand.link - BASE]:
+            return False
+        hand.tie = world.tie(
+            UserConstraintKind.POINT_TO_POINT,
+            body,
+            hand.link,
+            None,
+            BASE,
+            parent_frame=Pose(hand.point, _NO_TURN),
+            child_frame=Pose(hand.target, _NO_TURN),
+            hidden=True,
+        )
+        mass = sum(body.dynamics(link).mass for link in range(BASE, body.joint_count))
+        hand.tie.max_force = max(_LEAST_FORCE, _FORCE_BY_MASS * mass)
+        hand.tie.max_impulse = hand.tie.max_force * world.parameters.substep_time
+        return True
