@@ -1,4 +1,4 @@
-"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert robot.sdf robot.urdf`, `warmup`."""
+"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert`, `warmup`."""
 
 from __future__ import annotations
 
@@ -60,9 +60,13 @@ def _parser() -> argparse.ArgumentParser:
     info.set_defaults(command=_info)
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
-    view.add_argument("file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data")
+    view.add_argument(
+        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data"
+    )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
-    view.add_argument("--port", type=int, help="port to serve the page at (default 8400, or any other that is free)")
+    view.add_argument(
+        "--port", type=int, help="port to serve the page at (default 8400, or any other that is free)"
+    )
     view.set_defaults(command=_view)
 
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")

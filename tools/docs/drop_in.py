@@ -51,8 +51,9 @@ NOTES = {
 
 LIMITED = {
     "connect": "there are no physics servers",
-    "configureDebugVisualizer": "camera previews, reflections, single-step rendering and the flags of "
-    "virtual reality are recorded and have no effect",
+    "addUserDebugText": "text faces the viewer, with an orientation as well",
+    "configureDebugVisualizer": "reflections, single-step rendering and the flags of virtual reality are "
+    "recorded and have no effect",
     "changeDynamics": "`anisotropicFriction`, `frictionAnchor` and what concerns sleeping are recorded and "
     "have no effect; nor has continuous collision detection, as on PyBullet's multibodies",
     "getClosestPoints": "between bodies; `collisionShapeA` and `collisionShapeB` raise `pybullet.error`",

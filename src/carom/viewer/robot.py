@@ -23,9 +23,7 @@ _FULL_TURN = pi
 _SLIDE = 1.0
 # How far from a robot the camera is, in sizes of the robot.
 _DISTANCE = 1.3
-_LOOKS = (
-    LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
-)
+_LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
 
 
 class RobotView:
@@ -73,13 +71,9 @@ class RobotView:
 
     def follow(self) -> None:
         """Puts the joints where the sliders are."""
-        moved = set()
         for body, joint, slider in self._sliders:
             if body.joints[joint].position != slider.value:
                 body.set_joint_state(joint, [slider.value], [0.0])
-                moved.add(body)
-        for body in moved:
-            body.update_link_poses()
 
     def _add_sliders(self, body: Body) -> None:
         for joint, code in enumerate(body.joint_types):

@@ -122,8 +122,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         "body": body.id,
         "name": body.name,
         "links": [
-            {**_link(body, link), "moves": moves}
-            for link, moves in enumerate(moving_links(body), start=BASE)
+            {**_link(body, link), "moves": moves} for link, moves in enumerate(moving_links(body), start=BASE)
         ],
         "shapes": shapes,
     }

@@ -13,6 +13,9 @@ import { Previews } from "./previews.js";
 import { Renderer } from "./renderer.js";
 import { Scene } from "./scene.js";
 
+/** After so long without a change nothing is going on [ms]. */
+const STILL_MS = 500;
+
 const canvas = document.getElementById("view");
 const notice = document.getElementById("notice");
 
@@ -105,6 +108,7 @@ function start() {
     },
   );
 
+  let moved = 0;
   let drawn = false;
   let last = performance.now();
   let frames = 0;
@@ -114,7 +118,10 @@ function start() {
     if (drawn) renderer.pace(now - last);
     last = now;
     drawn = false;
-    if (renderer.resize()) {
+    if (stale) moved = now;
+    renderer.still = now - moved > STILL_MS;
+    if (renderer.resize()) changed();
+    if (camera.width !== canvas.clientWidth || camera.height !== canvas.clientHeight) {
       camera.resize(canvas.clientWidth, canvas.clientHeight);
       tellSize();
       changed();

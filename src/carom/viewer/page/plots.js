@@ -76,6 +76,7 @@ export class Plots {
       if (samples.length && time < samples.at(-1).time) samples.length = 0;
       if (!samples.length || time > samples.at(-1).time) samples.push({ time, sample });
       while (samples[0].time < time - SECONDS) samples.shift();
+      QUANTITIES.forEach(({ name, at }) => (plot.root.dataset[name] = sample[at]));
     }
   }
 

@@ -35,10 +35,13 @@ export class Renderer {
     this.map = new ShadowMap(gl, 2048);
     this.sharpness = 1;
     this.slow = 0;
+    /** Nothing moves: there is time for a sharp picture. */
+    this.still = false;
   }
 
   /** Takes note of how long a picture took [ms]; slow machines get coarser ones. */
   pace(duration) {
+    if (this.still) return;
     this.slow = duration > SLOW_MS ? this.slow + 1 : 0;
     if (this.slow >= SLOW_PICTURES && this.sharpness > LEAST_SHARPNESS) {
       this.sharpness = Math.max(LEAST_SHARPNESS, this.sharpness * 0.75);
@@ -48,7 +51,7 @@ export class Renderer {
 
   /** Fits the picture to the window; true if its size has changed. */
   resize() {
-    const ratio = Math.min(window.devicePixelRatio, 2) * this.sharpness;
+    const ratio = Math.min(window.devicePixelRatio, 2) * (this.still ? 1 : this.sharpness);
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width === width && this.canvas.height === height) return false;
@@ -234,8 +237,7 @@ export class Renderer {
   drawLines(lines, camera) {
     if (lines.length === 0) return;
     const gl = this.gl;
-    const ratio = this.canvas.width / camera.width;
-    this.lines.use({ camera: camera.matrix, pixels: [camera.width * ratio, camera.height * ratio] });
+    this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height] });
     gl.bindVertexArray(this.lineArray);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
     gl.bufferData(gl.ARRAY_BUFFER, lines, gl.DYNAMIC_DRAW);

@@ -107,8 +107,8 @@ void main() {
   float towards = dot(n, toLight);
   float sun = towards > 0.0 ? lit(1.0 - towards) : 0.0;
   float height = dot(n, upward) * 0.5 + 0.5;
-  vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.50, 0.54, 0.60), height);
-  vec3 light = ambient + vec3(0.62, 0.60, 0.56) * max(towards, 0.0) * sun;
+  vec3 ambient = mix(vec3(0.28, 0.27, 0.26), vec3(0.44, 0.47, 0.52), height);
+  vec3 light = ambient + vec3(0.60, 0.58, 0.54) * max(towards, 0.0) * sun;
   vec3 halfway = normalize(toLight + toEye);
   float gleam = pow(max(dot(n, halfway), 0.0), 48.0) * 0.22 * sun;
   float rim = pow(1.0 - max(dot(n, toEye), 0.0), 4.0) * 0.06;

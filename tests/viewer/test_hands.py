@@ -1,0 +1,101 @@
+"""Pulling bodies with the mouse."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.viewer.watcher import Watcher
+
+import pybullet as p
+from carom.viewer.viewer import Viewer
+from pybullet._clients import clients
+
+
+@pytest.fixture
+def ball() -> int:
+    return p.createMultiBody(2, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[0, 0, 1])
+
+
+def pull(page: Watcher, body: int, target: list[float], link: int = -1) -> None:
+    page.tell("grasp", body=body, link=link, point=[0, 0, 0], target=target)
+
+
+def ties(viewer: Viewer) -> int:
+    return len(clients[0].world.user_constraints.rows)
+
+
+def step_until(page: Watcher, condition) -> None:
+    """Steps; the watcher takes what it is sent, so that the server goes on."""
+    for _ in range(5000):
+        p.stepSimulation()
+        page.wait_for(lambda: True)
+        if condition():
+            return
+    raise AssertionError("it does not come to that")
+
+
+def test_a_body_follows_the_hand_and_falls_when_let_go(viewer: Viewer, ball: int):
+    p.setGravity(0, 0, -10)
+    target = [0.3, 0.2, 1.5]
+    with Watcher(viewer.address) as page:
+        pull(page, ball, [0, 0, 1])
+        step_until(page, lambda: ties(viewer))
+        assert p.getNumConstraints() == 0
+        page.tell("pull", target=target)
+        step_until(page, lambda: math.dist(p.getBasePositionAndOrientation(ball)[0], target) < 0.01)
+        for _ in range(240):
+            p.stepSimulation()
+        np.testing.assert_allclose(p.getBasePositionAndOrientation(ball)[0], target, atol=0.02)
+        page.tell("let go")
+        step_until(page, lambda: not ties(viewer))
+        for _ in range(60):
+            p.stepSimulation()
+    assert p.getBasePositionAndOrientation(ball)[0][2] < 1.4
+
+
+def test_numbers_of_the_scripts_constraints_are_not_taken(viewer: Viewer, ball: int):
+    arguments = (ball, -1, -1, -1, p.JOINT_POINT2POINT, [0, 0, 0], [0, 0, 0], [0, 0, 1])
+    first = p.createConstraint(*arguments)
+    with Watcher(viewer.address) as page:
+        pull(page, ball, [0, 0, 1])
+        step_until(page, lambda: ties(viewer) == 2)
+        assert p.getNumConstraints() == 1
+        assert p.createConstraint(*arguments) == first + 1
+        assert [p.getConstraintUniqueId(i) for i in range(p.getNumConstraints())] == [first, first + 1]
+
+
+def test_a_page_that_goes_lets_go(viewer: Viewer, ball: int):
+    with Watcher(viewer.address) as page:
+        pull(page, ball, [0, 0, 1])
+        step_until(page, lambda: ties(viewer))
+    with Watcher(viewer.address) as page:
+        step_until(page, lambda: not ties(viewer))
+
+
+def test_a_body_may_go_while_it_is_held(viewer: Viewer, ball: int):
+    with Watcher(viewer.address) as page:
+        pull(page, ball, [0, 0, 1])
+        step_until(page, lambda: ties(viewer))
+        p.removeBody(ball)
+        page.tell("pull", target=[1, 1, 1])
+        page.tell("let go")
+        other = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1))
+        pull(page, other, [0, 0, 0.5])
+        step_until(page, lambda: ties(viewer))
+
+
+def test_what_is_fixed_or_not_there_cannot_be_held(viewer: Viewer, ball: int):
+    wall = p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[1, 1, 1]))
+    with Watcher(viewer.address) as page:
+        for body, link in ((wall, -1), (99, -1), (ball, 7), (ball, -2)):
+            pull(page, body, [0, 0, 1], link)
+            page.tell("pull", target=[1, 1, 1])
+        page.tell("grasp", body=ball, link=-1, point=[0, 0, math.nan], target=[0, 0, 0])
+        for _ in range(50):
+            p.stepSimulation()
+        slider = p.addUserDebugParameter("news")
+        page.tell("slider", slider=slider, value=1)
+        page.wait_for(lambda: page.shown.get(("slider", slider), {}).get("value") == 1)
+        p.stepSimulation()
+        page.wait_for(lambda: page.frame.get("time") == pytest.approx(51 / 240))
+    assert ties(viewer) == 0
