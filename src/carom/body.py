@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Pose
 from carom.link_dynamics import LinkDynamics, SleepSettings
-from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES, DOF_COUNT, JOINT_CODE, POSITION_COUNT
 
@@ -97,7 +97,7 @@ class Body:
 
     def link_spec(self, link: int) -> LinkSpec:
         """What link `link` was loaded from; -1 is the base."""
-        return self.spec.base if link == BASE else self.spec.links[link]
+        return self.spec.link(link)
 
     def link_inertial_frame(self, link: int) -> Pose:
         """Inertial frame of a link in its link frame; -1 is the base."""

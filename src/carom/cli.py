@@ -16,7 +16,7 @@ from carom.errors import CaromError
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
 from carom.model.assemble import assemble
-from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.body_spec import BASE, BodySpec
 from carom.model.flags import LoadFlags
 from carom.version import __version__
 
@@ -152,7 +152,7 @@ def _joint_table(spec: BodySpec) -> str:
                 _numbers(link.joint_axis) if movable else "",
                 f"{link.lower:g} .. {link.upper:g}" if link.limited else "",
                 *(f"{value:g}" if movable else "" for value in drive),
-                _link(spec, link.parent).name,
+                spec.link(link.parent).name,
             ]
         )
     return (
@@ -189,10 +189,6 @@ def link_poses(spec: BodySpec) -> dict[int, Pose]:
     for index, link in enumerate(spec.links):
         poses[index] = compose(poses[link.parent], link.joint_frame)
     return poses
-
-
-def _link(spec: BodySpec, index: int) -> LinkSpec:
-    return spec.base if index == BASE else spec.links[index]
 
 
 def _numbers(values: Iterable[float]) -> str:

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 from carom.collision.stages import broad_phase_kernel, narrow_phase_kernel
-from carom.model.launch import Launch
+from carom.model.launch import Launch, argument_indices, launch
 from carom.physics.stages import constraints_kernel, free_motion_kernel, islands_kernel, motion_kernel
-from carom.stepper import BEGINS, ENDS, SUBSTEPS, Detection, Stepper, argument_indices, launch
+from carom.stepper import BEGINS, ENDS, SUBSTEPS, Detection, Stepper
 from carom.touch_arrays import TouchArrays
 
 STAGES = (

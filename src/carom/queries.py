@@ -13,9 +13,8 @@ import warp as wp
 from carom.collision.closest import closest_points_kernel, place_shapes_kernel
 from carom.collision.rays import prepare_rays_kernel, rays_kernel
 from carom.model.codes import PLANE
-from carom.model.launch import Launch
+from carom.model.launch import Launch, argument_indices, launch
 from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
-from carom.stepper import argument_indices, launch
 from carom.touch_arrays import TouchArrays
 
 # A distance that counts as none; column of a row of `closest_points_kernel` that tells if it is filled.

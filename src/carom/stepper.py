@@ -8,7 +8,7 @@ from typing import Any
 from carom.collision.collide import collide_kernel
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import WANTED
-from carom.model.launch import Launch
+from carom.model.launch import argument_indices, launch
 from carom.physics.coupled_step import coupled_step_kernel
 from carom.physics.kinematics import link_poses_kernel
 from carom.physics.quarantine import OVERFLOW
@@ -125,14 +125,3 @@ class Stepper:
             self._touch.grow_couplings()
             return False
         return True
-
-
-def argument_indices(kernel: Any) -> dict[str, int]:
-    """Place of each argument of a kernel, by name."""
-    return {argument.label: index for index, argument in enumerate(kernel.adj.args)}
-
-
-def launch(kernel: Any, structs: dict[str, Any], device: str, **scalars: int) -> Launch:
-    """A launch of a kernel whose arguments are found by their names."""
-    values = {**structs, **scalars}
-    return Launch(kernel, 1, [values[name] for name in argument_indices(kernel)], device)

@@ -21,13 +21,13 @@ from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.flags import LoadFlags
-from carom.model.launch import Launch
+from carom.model.launch import Launch, launch
 from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.queries import Queries
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
-from carom.stepper import Stepper, launch
+from carom.stepper import Stepper
 from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
 from carom.user_data import UserData

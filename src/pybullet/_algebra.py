@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.description.transform import multiplied, quaternion_from_rpy
-from pybullet._arguments import Vector, integer, numbers
+from pybullet._arguments import Vector, integer, numbers, one_body, required
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail
-from pybullet._lookup import no_body
+from pybullet._lookup import body_of
 from pybullet._maths import Quaternion, getEulerFromQuaternion, getQuaternionFromEuler
 
 if TYPE_CHECKING:
@@ -99,16 +99,14 @@ def calculateInverseDynamics(
     Raises:
         pybullet.error: Not connected, there is no such body, or the lists do not fit it.
     """
-    if (bodyUniqueId is None) == (bodyIndex is None):
-        raise TypeError("calculateInverseDynamics() needs one of 'bodyUniqueId' and 'bodyIndex'")
-    for name, value in (
-        ("objPositions", objPositions),
-        ("objVelocities", objVelocities),
-        ("objAccelerations", objAccelerations),
-    ):
-        if value is None:
-            raise TypeError(f"calculateInverseDynamics() missing required argument {name!r}")
-    body = _body(bodyIndex if bodyUniqueId is None else bodyUniqueId, physicsClientId, _INVERSE_DYNAMICS)
+    body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
+    required(
+        "calculateInverseDynamics",
+        objPositions=objPositions,
+        objVelocities=objVelocities,
+        objAccelerations=objAccelerations,
+    )
+    body = body_of(client_of(physicsClientId), body_id, _INVERSE_DYNAMICS)
     q = numbers(objPositions, _INVERSE_DYNAMICS, "objPositions")
     qd = numbers(objVelocities, _INVERSE_DYNAMICS, "objVelocities")
     qdd = numbers(objAccelerations, _INVERSE_DYNAMICS, "objAccelerations")
@@ -178,7 +176,7 @@ def calculateJacobian(
         pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, or
             the lists do not fit the body.
     """
-    body = _body(bodyUniqueId, physicsClientId, _JACOBIAN_SIZES)
+    body = body_of(client_of(physicsClientId), bodyUniqueId, _JACOBIAN_SIZES)
     link = integer(linkIndex, "linkIndex")
     if JOINT_SPHERICAL in body.joint_types:
         fail("Spherirical joints are not supported in the pybullet binding")
@@ -230,7 +228,7 @@ def calculateMassMatrix(
         pybullet.error: Not connected, there is no such body, or there are too few positions.
     """
     problem = "Internal error in calculateMassMatrix"
-    body = _body(bodyUniqueId, physicsClientId, problem)
+    body = body_of(client_of(physicsClientId), bodyUniqueId, problem)
     q = numbers(objPositions, _MASS_MATRIX_SIZES, "objPositions")
     full = integer(flags, "flags") & _FULL_MODEL != 0
     needed = sum(body.position_count if full else body.velocity_count)
@@ -248,13 +246,6 @@ def calculateMassMatrix(
     from carom.algorithms import mass_matrix
 
     return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
-
-
-def _body(body_id: int, physics_client_id: int, problem: str) -> Body:
-    body = client_of(physics_client_id).body(body_id)
-    if body is None:
-        fail(problem, no_body(body_id))
-    return body
 
 
 def _turned_in_opposite_order(quaternion: tuple[float, ...]) -> Quaternion:

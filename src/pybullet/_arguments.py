@@ -113,6 +113,26 @@ def by_name(
     return given
 
 
+def one_body(body_unique_id: Any, body_index: Any, function: str) -> Any:
+    """The body of a call, by whichever of its two names it was given.
+
+    Raises:
+        TypeError: By neither, or by both.
+    """
+    if body_unique_id is None and body_index is None:
+        raise TypeError(f"{function}() missing required argument 'bodyUniqueId' (pos 1)")
+    if body_unique_id is not None and body_index is not None:
+        raise TypeError(f"{function}() got both 'bodyUniqueId' and 'bodyIndex'")
+    return body_index if body_unique_id is None else body_unique_id
+
+
+def required(function: str, **arguments: Any) -> None:
+    """Raises `TypeError` for the first of the arguments that is None."""
+    for name, value in arguments.items():
+        if value is None:
+            raise TypeError(f"{function}() missing required argument {name!r}")
+
+
 def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
     """Finite numbers from any sequence: a list, a tuple, a range or an array of one dimension.
 

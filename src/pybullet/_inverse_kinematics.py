@@ -8,7 +8,18 @@ from math import isnan
 from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._algebra import joint_coordinates
-from pybullet._arguments import Indices, Vector, indices, integer, numbers, real, rotation, sequence, vector3
+from pybullet._arguments import (
+    Indices,
+    Vector,
+    indices,
+    integer,
+    numbers,
+    one_body,
+    real,
+    rotation,
+    sequence,
+    vector3,
+)
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._constants import IK_DLS, IK_SDLS, JOINT_SPHERICAL
@@ -127,8 +138,7 @@ def calculateInverseKinematics(
     Raises:
         pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
     """
-    if (bodyUniqueId is None) == (bodyIndex is None):
-        raise TypeError("calculateInverseKinematics() needs one of 'bodyUniqueId' and 'bodyIndex'")
+    body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseKinematics")
     for name, value in (
         ("endEffectorLinkIndex", endEffectorLinkIndex),
         ("targetPosition", targetPosition),
@@ -139,7 +149,7 @@ def calculateInverseKinematics(
     client = client_of(physicsClientId)
     position = vector3(targetPosition, _NO_POSITION, "targetPosition")
     orientation = _orientation(targetOrientation)
-    body = body_of(client, bodyIndex if bodyUniqueId is None else bodyUniqueId, _PROBLEM)
+    body = body_of(client, body_id, _PROBLEM)
     options = _options(
         body,
         (lowerLimits, upperLimits, jointRanges, restPoses),

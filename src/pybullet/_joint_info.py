@@ -50,7 +50,7 @@ def joint_info(body: Body, index: int) -> JointInfo:
     kind = body.joint_types[index]
     has_motor = kind in (JOINT_REVOLUTE, JOINT_PRISMATIC)
     q, u = body.position_index[index], body.velocity_index[index]
-    parent = body.spec.base if link.parent < 0 else body.spec.links[link.parent]
+    parent = body.spec.link(link.parent)
     in_parent = compose(inverse(parent.inertial_frame), link.joint_frame)
     return (
         index,

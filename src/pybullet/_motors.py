@@ -7,7 +7,7 @@ from math import inf
 from struct import error as StructError
 from typing import Any, overload
 
-from pybullet._arguments import Indices, Vector, bound, indices, integer, real, sequence
+from pybullet._arguments import Indices, Vector, bound, indices, integer, one_body, real, required, sequence
 from pybullet._builtin import exported_as
 from pybullet._clients import client_of, clients
 from pybullet._constants import PD_CONTROL, POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
@@ -121,8 +121,8 @@ def setJointMotorControl2(
             return
     except (KeyError, TypeError, StructError):
         pass
-    body = _one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
-    _require("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
+    body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
+    required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
     joint = joint_access(body, jointIndex, physicsClientId)
     joint.command(
         integer(controlMode, "controlMode"),
@@ -212,7 +212,7 @@ def setJointMotorControlArray(
     except (KeyError, TypeError, ValueError, AttributeError, StructError):
         pass
     _set_array_carefully(
-        _one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
+        one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
         jointIndices,
         controlMode,
         (targetPositions, targetVelocities, forces, positionGains, velocityGains),
@@ -233,7 +233,7 @@ def _set_array_carefully(
     body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
 ) -> None:
     """Sets the motors after checking, and where needed converting, every argument."""
-    _require("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
+    required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
     client_of(physics_client_id)
     mode = integer(control_mode, "controlMode")
     if mode not in _MODES:
@@ -327,21 +327,6 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
     if mode not in (POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position, velocity nor torque control.")
     joint.command(mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP)
-
-
-def _one_body(body_unique_id: Any, body_index: Any, function: str) -> Any:
-    """The body, by whichever of its two names it was given."""
-    if body_unique_id is None and body_index is None:
-        raise TypeError(f"{function}() missing required argument 'bodyUniqueId' (pos 1)")
-    if body_unique_id is not None and body_index is not None:
-        raise TypeError(f"{function}() got both 'bodyUniqueId' and 'bodyIndex'")
-    return body_index if body_unique_id is None else body_unique_id
-
-
-def _require(function: str, **arguments: Any) -> None:
-    for name, value in arguments.items():
-        if value is None:
-            raise TypeError(f"{function}() missing required argument {name!r}")
 
 
 def _force(value: Any, mode: int, name: str) -> float:

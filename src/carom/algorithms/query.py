@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from carom.model.arrays import ArrayTable
 from carom.model.builder import WorldArrays
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.model.launch import Launch
+from carom.model.launch import launch
 from carom.model.real import NUMPY_REAL
 from carom.model.structs import Query, State
 
@@ -52,7 +52,7 @@ class QuerySpace:
             "query": query.struct(device),
         }
         self._device = device
-        self._runs: dict[tuple[Any, ...], Callable[[], None]] = {}
+        self._runs: dict[tuple[Any, int, int], Callable[[], None]] = {}
         self._coordinates: dict[int, BodyCoordinates] = {}
 
     def coordinates(self, body: Body) -> BodyCoordinates:
@@ -67,17 +67,13 @@ class QuerySpace:
         self._coordinates.clear()
         self._runs.clear()
 
-    def run(self, kernel: Any, *integers: int) -> None:
-        """Run a kernel on the spare coordinates with the given integer arguments, in order."""
-        run = self._runs.get((kernel, *integers))
+    def run(self, kernel: Any, tree: int, link: int = 0) -> None:
+        """Run a kernel on the spare coordinates of one tree; `link` is for those that ask for one."""
+        run = self._runs.get((kernel, tree, link))
         if run is None:
-            run = self._runs[(kernel, *integers)] = self._prepare(kernel, iter(integers))
+            prepared = launch(kernel, self._structs, self._device, tree=tree, link=link)
+            run = self._runs[kernel, tree, link] = prepared.function
         run()
-
-    def _prepare(self, kernel: Any, integers: Iterator[int]) -> Callable[[], None]:
-        names = [argument.label for argument in kernel.adj.args]
-        arguments = [self._structs[name] if name in self._structs else next(integers) for name in names]
-        return Launch(kernel, 1, arguments, self._device).function
 
 
 class BodyCoordinates:

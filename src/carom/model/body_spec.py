@@ -97,3 +97,7 @@ class BodySpec:
     flags: int = 0
     source: Path | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+
+    def link(self, index: int) -> LinkSpec:
+        """A link by its index; -1 is the base."""
+        return self.base if index == BASE else self.links[index]

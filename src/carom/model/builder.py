@@ -149,7 +149,7 @@ class WorldArrays:
         dof = first_dof + BASE_VELOCITIES
         for j, (link, code) in enumerate(zip(spec.links, codes, strict=True)):
             row = first_link + 1 + j
-            parent = spec.base if link.parent == BASE else spec.links[link.parent]
+            parent = spec.link(link.parent)
             model["link_parent"][row] = first_link + 1 + link.parent
             model["link_joint_type"][row] = code
             model["link_first_position"][row] = position

@@ -73,6 +73,17 @@ class Launch:
         return functools.partial(self._entry_point, self._bounds, self._pointer)
 
 
+def argument_indices(kernel: Any) -> dict[str, int]:
+    """Place of each argument of a kernel, by name."""
+    return {argument.label: index for index, argument in enumerate(kernel.adj.args)}
+
+
+def launch(kernel: Any, structs: dict[str, Any], device: str, **scalars: int) -> Launch:
+    """A launch of a kernel whose arguments are found by their names."""
+    values = {**structs, **scalars}
+    return Launch(kernel, 1, [values[name] for name in argument_indices(kernel)], device)
+
+
 class CompilationNotice:
     """Tells the user what is going on when a first use compiles kernels, and that it happens once."""
 
