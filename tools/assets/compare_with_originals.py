@@ -26,6 +26,13 @@ ROBOTS = (
     "cartpole.urdf",
     "pendulum5.urdf",
     "TwoJointRobot_w_fixedJoints.urdf",
+    "husky/husky.urdf",
+    "racecar/racecar.urdf",
+    "a1/a1.urdf",
+    "laikago/laikago_toes.urdf",
+    "mini_cheetah/mini_cheetah.urdf",
+    "quadruped/minitaur.urdf",
+    "xarm/xarm6_robot.urdf",
 )
 Drive = Callable[[int, list[int], int], None]
 
