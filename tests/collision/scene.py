@@ -141,6 +141,8 @@ class Scene:
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1
         arrays["link_mask"][row] = -1
+        arrays["link_anisotropy"][row] = 1.0
+        arrays["link_processing_threshold"][row] = np.inf
         model["link_parent"][row] = -1
         model["link_dof_count"][row] = 0 if shape.static else 6
         self.place(row, shape.position, shape.orientation)

@@ -7,7 +7,7 @@ once in about logarithmic time.
 
 import warp as wp
 
-from carom.collision.bounds import boxes_meet, place_shapes
+from carom.collision.bounds import boxes_meet, look_ahead, place_shapes
 from carom.collision.filters import may_touch
 from carom.collision.hierarchy import BOUNDED, LEAVES, PAIRS, PLANES, build_hierarchy, leaf_start, next_node
 from carom.collision.reach import bounds_reach
@@ -56,12 +56,13 @@ def compare_in_leaf(
     count = pairs.count_pairs[world, BOUNDED]
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
-    breaking = shapes.shape_breaking[a]
+    breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
     first = wp.max(start, leaf_start(leaf, leaf_count, count))
     for place in range(first, leaf_start(leaf + 1, leaf_count, count)):
         b = pairs.shape_order[world, place]
-        if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], breaking):
-            if bounds_meet(pairs, world, a, b, bounds_reach(shapes, a, b)):
+        reach = breaking + pairs.shape_motion[world, b]
+        if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], reach):
+            if bounds_meet(pairs, world, a, b, bounds_reach(shapes, pairs, world, a, b)):
                 add_pair(shapes, model, settings, pairs, world, a, b)
 
 
@@ -78,7 +79,7 @@ def walk_from(
     """Pairs of the shape at a place in the order with all shapes at later places."""
     a = pairs.shape_order[world, place]
     leaf_count = pairs.count_pairs[world, LEAVES]
-    breaking = shapes.shape_breaking[a]
+    breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
     node = leaf_count + own_leaf
@@ -102,7 +103,7 @@ def plane_pairs(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, 
         lower = pairs.shape_lower[world, b]
         upper = pairs.shape_upper[world, b]
         nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
-        if nearest <= bounds_reach(shapes, plane, b):
+        if nearest <= bounds_reach(shapes, pairs, world, plane, b):
             add_pair(shapes, model, settings, pairs, world, plane, b)
 
 
@@ -139,6 +140,8 @@ def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
 @func
 def find_pairs(shapes: Shapes, model: Model, state: State, settings: Settings, pairs: Pairs, world: Int32):
     """Sorted pairs of shapes whose bounds meet and that may touch, from the link poses."""
+    for shape in range(settings.shape_count):
+        pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, pairs, world, shape)
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, PAIRS] = 0

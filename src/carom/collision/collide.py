@@ -25,7 +25,7 @@ def make_contacts(
         pair = pairs.pair_shapes[world, i]
         first = skip_contacts(pairs, world, first, previous_count, pair, 0)
         last = skip_contacts(pairs, world, first, previous_count, pair, 1)
-        reach = contact_reach(shapes, pair[0], pair[1], last > first)
+        reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
         sides = in_order_of_sides(shapes, pair)
         count = touch(shapes, pairs, world, sides[0], sides[1], reach)
         far = breaking_distance(shapes, pair[0], pair[1])

@@ -163,8 +163,10 @@ def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32, count: Int32):
         upper = -lower
         for i in range(leaf_start(leaf, leaf_count, count), leaf_start(leaf + 1, leaf_count, count)):
             shape = pairs.shape_order[world, i]
-            lower = wp.min(lower, pairs.shape_lower[world, shape])
-            upper = wp.max(upper, pairs.shape_upper[world, shape])
+            ahead = pairs.shape_motion[world, shape]
+            margin = Vector3(ahead, ahead, ahead)
+            lower = wp.min(lower, pairs.shape_lower[world, shape] - margin)
+            upper = wp.max(upper, pairs.shape_upper[world, shape] + margin)
         pairs.node_lower[world, leaf_count + leaf] = lower
         pairs.node_upper[world, leaf_count + leaf] = upper
 

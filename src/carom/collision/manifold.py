@@ -36,6 +36,8 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
             pairs.previous_shapes[world, row] = contacts.contact_shapes[world, row]
             pairs.previous_local_a[world, row] = contacts.contact_local_a[world, row]
             pairs.previous_local_b[world, row] = contacts.contact_local_b[world, row]
+            pairs.previous_anchor_a[world, row] = contacts.contact_anchor_a[world, row]
+            pairs.previous_anchor_b[world, row] = contacts.contact_anchor_b[world, row]
             pairs.previous_impulse[world, row] = contacts.contact_impulse[world, row]
             pairs.previous_age[world, row] = contacts.contact_age[world, row]
     count = contacts.count_contacts[world, KEPT]
@@ -126,7 +128,11 @@ def write_contact(
     contacts.contact_direction2[world, row] = wp.cross(normal, direction)
     contacts.contact_distance[world, row] = distance
     before = predecessor(pairs, world, first, last, local_a, local_b, far)
+    contacts.contact_anchor_a[world, row] = local_a
+    contacts.contact_anchor_b[world, row] = local_b
     if before >= 0:
+        contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
+        contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
         contacts.contact_impulse[world, row] = pairs.previous_impulse[world, before]
         contacts.contact_age[world, row] = pairs.previous_age[world, before] + 1
         pairs.previous_taken[world, before] = 1

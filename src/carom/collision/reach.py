@@ -7,7 +7,7 @@ two shapes, and most pairs make one as early as that, so that it can slow them i
 import warp as wp
 
 from carom.model.codes import BOX, SPHERE
-from carom.model.contact_structs import Shapes
+from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, func, real
 
 IDENTITY_TOLERANCE = real(1.0e-12)
@@ -33,26 +33,29 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 
 
 @func
-def bounds_reach(shapes: Shapes, a: Int32, b: Int32) -> real:
+def bounds_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
     """Gap between the bounds of two shapes up to which they can be in contact [m].
 
     Bullet widens the bounds of bodies, but not those of the parts of compounds.
     """
+    ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     if is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b):
-        return 0.0
-    return breaking_distance(shapes, a, b)
+        return ahead
+    return wp.max(ahead, breaking_distance(shapes, a, b))
 
 
 @func
-def contact_reach(shapes: Shapes, a: Int32, b: Int32, in_contact: bool) -> real:
+def contact_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
     """Distance up to which two shapes are in contact [m].
 
-    Boxes begin to be, and balls are, only where they touch.
+    Boxes begin to be, and balls are, only where they touch. Fast bodies with continuous detection are
+    as far ahead as they could get in a step.
     """
+    ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
     if kind_a == SPHERE and kind_b == SPHERE:
-        return 0.0
+        return ahead
     if kind_a == BOX and kind_b == BOX and not in_contact:
-        return 0.0
-    return breaking_distance(shapes, a, b)
+        return ahead
+    return wp.max(ahead, breaking_distance(shapes, a, b))

@@ -76,6 +76,8 @@ class Shapes:
     link_stiffness: Reals  # negative: rigid
     link_contact_damping: Reals
     link_friction_anchor: Ints
+    link_anisotropy: Vectors3  # factors on friction along the axes of the inertial frame
+    link_processing_threshold: Reals  # contacts of shapes farther apart are not solved [m]
 
     # Pairs of links whose collisions users switched on or off, sorted by the two link rows.
     filter_link_a: Ints
@@ -94,6 +96,7 @@ class Pairs:
     shape_code: IntRows  # place along a space-filling curve
     shape_order: IntRows  # shapes sorted by it, then the planes
     shape_sorted: IntRows  # the same halfway through a sort
+    shape_motion: RealRows  # how far continuous detection looks ahead for it [m]
     shape_pair_end: IntRows  # end of the pairs whose first shape it is
 
     # Bounds of the hierarchy over `shape_order`; node 1 is the root, nodes 2n and 2n + 1 are below n.
@@ -118,6 +121,8 @@ class Pairs:
     previous_shapes: Index4Rows
     previous_local_a: Vector3Rows
     previous_local_b: Vector3Rows
+    previous_anchor_a: Vector3Rows
+    previous_anchor_b: Vector3Rows
     previous_impulse: Vector4Rows
     previous_age: IntRows
     previous_taken: IntRows  # 1 once a contact has inherited from it
@@ -133,6 +138,8 @@ class Contacts:
     contact_shapes: Index4Rows  # shape a, shape b, link a, link b
     contact_local_a: Vector3Rows  # in the links' inertial frames
     contact_local_b: Vector3Rows
+    contact_anchor_a: Vector3Rows  # where it began to stick, in the links' inertial frames
+    contact_anchor_b: Vector3Rows
     contact_point_a: Vector3Rows  # in world axes
     contact_point_b: Vector3Rows
     contact_normal: Vector3Rows  # on b, towards a

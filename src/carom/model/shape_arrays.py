@@ -51,6 +51,8 @@ class Surface(Protocol):
     friction_anchor: bool
     collision_margin: float
     ccd_swept_sphere_radius: float
+    contact_processing_threshold: float
+    anisotropic_friction: tuple[float, float, float]
 
 
 @dataclass(slots=True, eq=False)
@@ -249,6 +251,8 @@ class ShapeArrays:
         numpy["link_stiffness"][link_row] = surface.contact_stiffness
         numpy["link_contact_damping"][link_row] = surface.contact_damping
         numpy["link_friction_anchor"][link_row] = surface.friction_anchor
+        numpy["link_anisotropy"][link_row] = surface.anisotropic_friction
+        numpy["link_processing_threshold"][link_row] = surface.contact_processing_threshold
         shapes = self._shapes_of(link_row)
         numpy["shape_ccd_radius"][shapes] = surface.ccd_swept_sphere_radius
         if body.own_margin[link]:

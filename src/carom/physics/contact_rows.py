@@ -6,6 +6,7 @@ from carom.model.codes import (
     LATERAL_ROW,
     NORMAL_ROW,
     ROLLING_ROW,
+    ROW_FRICTION,
     ROW_IMPULSE,
     SPINNING_ROW,
 )
@@ -14,6 +15,8 @@ from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.couplings import begin_with, write_pair_jacobian, write_row
 
+# A contact slides whose friction is at least this share of the greatest, squared.
+_SLIDING = real(1.0 - 1e-9)
 _UNBOUNDED = real(1e10)
 _GREATEST_FRICTION = real(10.0)
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
@@ -83,6 +86,35 @@ def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
 
 
 @func
+def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
+    """A friction direction, its components along a link's axes times the factors of that link."""
+    factors = shapes.link_anisotropy[link]
+    if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
+        return direction
+    turn = wp.transform_get_rotation(state.link_pose[world, link])
+    return wp.quat_rotate(turn, wp.cw_mul(wp.quat_rotate_inv(turn, direction), factors))
+
+
+@func
+def scaled_direction(
+    state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, direction: Vector3
+) -> Vector3:
+    """A friction direction with the factors of both links."""
+    return scaled_by_link(state, shapes, world, b, scaled_by_link(state, shapes, world, a, direction))
+
+
+@func
+def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
+    """From where a contact with a friction anchor began to stick on b to where it did on a; else 0."""
+    pair = contacts.contact_shapes[world, contact]
+    if shapes.link_friction_anchor[pair[2]] == 0 and shapes.link_friction_anchor[pair[3]] == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    on_a = wp.transform_point(state.link_pose[world, pair[2]], contacts.contact_anchor_a[world, contact])
+    on_b = wp.transform_point(state.link_pose[world, pair[3]], contacts.contact_anchor_b[world, contact])
+    return on_a - on_b
+
+
+@func
 def starting_impulse(settings: Settings, last: Vector4) -> Vector3:
     """Impulses along the normal and both friction directions that the solver starts from.
 
@@ -122,6 +154,13 @@ def add_contact_rows(
     normal = contacts.contact_normal[world, contact]
     direction1 = contacts.contact_direction1[world, contact]
     direction2 = contacts.contact_direction2[world, contact]
+    lateral1 = scaled_direction(state, shapes, world, a, b, direction1)
+    lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
+    contacts.contact_direction1[world, contact] = lateral1
+    contacts.contact_direction2[world, contact] = lateral2
+    drift = anchor_drift(state, shapes, contacts, world, contact)
+    distance = contacts.contact_distance[world, contact]
+    ignored = distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b])
     friction = contact_friction(shapes, a, b)
     soft = contact_stiffness(settings, shapes, a, b)
 
@@ -144,9 +183,9 @@ def add_contact_rows(
         if place == row:
             linear = normal
         elif place == rows[LATERAL_ROW]:
-            linear = direction1
+            linear = lateral1
         elif place == rows[LATERAL_ROW] + 1:
-            linear = direction2
+            linear = lateral2
         elif place == rows[SPINNING_ROW]:
             angular = normal
             coefficient = friction[2]
@@ -162,18 +201,19 @@ def add_contact_rows(
             linear, angular,
         )  # fmt: skip
         block = Int32(found[2])
-        change = -found[1]
+        inverse_mass = found[0]
+        if ignored:
+            inverse_mass = real(0.0)
+        change = -found[1] - wp.dot(drift, linear) * settings.friction_erp / settings.time_step
         lower = -coefficient
         upper = coefficient
         softness = real(0.0)
         if place == row:
-            change = normal_change(
-                settings, shapes, found[1], contacts.contact_distance[world, contact], soft[1], a, b
-            )
+            change = normal_change(settings, shapes, found[1], distance, soft[1], a, b)
             lower = real(0.0)
             upper = real(0.0) + _UNBOUNDED
             softness = soft[0]
-        write_row(couplings, world, place, found[0], change, softness, lower, upper, coefficient)
+        write_row(couplings, world, place, inverse_mass, change, softness, lower, upper, coefficient)
         couplings.coupling_bound[world, place] = row
         if place < row + 3 and start[0] > 0.0:
             begin_with(scratch, couplings, world, place, start[place - row])
@@ -182,12 +222,14 @@ def add_contact_rows(
 
 @func
 def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32, contact: Int32):
-    """Report the impulses of a contact's rows."""
+    """Report the impulses of a contact's rows; one that slides begins to stick where it is now."""
     before = contacts.contact_impulse[world, contact][0]
     rows = couplings.contact_rows[world, contact]
-    contacts.contact_impulse[world, contact] = Vector4(
-        couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
-        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
-        couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
-        before,
-    )
+    normal = couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE]
+    first = couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE]
+    second = couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE]
+    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, before)
+    bound = normal * couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION]
+    if first * first + second * second >= bound * bound * _SLIDING:
+        contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
+        contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]

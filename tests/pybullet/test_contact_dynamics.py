@@ -1,0 +1,121 @@
+"""What changeDynamics says about contacts; the figures expected are what PyBullet 3.2.7 answers."""
+
+from typing import Any
+
+import pytest
+
+import pybullet as p
+
+
+def box_on_floor(sideways: float, **dynamics: Any) -> int:
+    """A box of 1 kg that gravity also pulls along x, and its number."""
+    p.setGravity(sideways, 0, -10)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 1]), basePosition=[0, 0, -1])
+    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3)
+    box = p.createMultiBody(1, shape, basePosition=[0, 0, 0.1])
+    p.changeDynamics(box, -1, **dynamics)
+    return box
+
+
+def step(count: int) -> None:
+    for _ in range(count):
+        p.stepSimulation()
+
+
+@pytest.mark.parametrize(
+    ("factors", "distance", "speed"),
+    [([0.5, 1, 1], 0.082746, 0.39174), ([0, 1, 1], 0.191347, 0.90465)],
+)
+def test_friction_is_less_along_an_axis_with_a_small_factor(
+    client: int, factors: list[float], distance: float, speed: float
+) -> None:
+    box = box_on_floor(2.2, anisotropicFriction=factors)
+    step(100)
+    assert p.getBasePositionAndOrientation(box)[0][0] == pytest.approx(distance, abs=2e-6)
+    assert p.getBaseVelocity(box)[0][0] == pytest.approx(speed, abs=2e-5)
+    assert p.getContactPoints(box)[0][13] == pytest.approx((factors[0], 0, 0), abs=5e-3)
+
+
+@pytest.mark.parametrize("factors", [[1, 1, 1], [1, 0.2, 1], [2, 1, 1]])
+def test_factors_along_other_axes_do_not_matter(client: int, factors: list[float]) -> None:
+    box = box_on_floor(2.2, anisotropicFriction=factors)
+    step(100)
+    assert abs(p.getBasePositionAndOrientation(box)[0][0]) < 5e-4
+
+
+def test_the_axes_are_those_of_the_link(client: int) -> None:
+    box = box_on_floor(2.2, anisotropicFriction=[0.5, 1, 1])
+    p.resetBasePositionAndOrientation(box, [0, 0, 0.1], p.getQuaternionFromEuler([0, 0, 1.5707963267948966]))
+    step(100)
+    assert abs(p.getBasePositionAndOrientation(box)[0][0]) < 5e-4
+
+
+def creep(**dynamics: Any) -> float:
+    """Speed at which a box that friction holds creeps down its slope, nearly slipping."""
+    box = box_on_floor(2.4, **dynamics)
+    step(1200)
+    before = p.getBasePositionAndOrientation(box)[0][0]
+    step(1200)
+    after = p.getBasePositionAndOrientation(box)[0][0]
+    p.resetSimulation()
+    return abs(after - before) / 5.0
+
+
+def test_a_friction_anchor_holds_what_creeps(client: int) -> None:
+    p.setPhysicsEngineParameter(numSolverIterations=5)
+    free = creep()
+    p.setPhysicsEngineParameter(numSolverIterations=5)
+    assert creep(frictionAnchor=1) < 0.5 * free
+
+
+def test_a_friction_anchor_lets_go_when_friction_is_overcome(client: int) -> None:
+    box = box_on_floor(5.0, frictionAnchor=1)
+    step(120)
+    assert p.getBaseVelocity(box)[0][0] == pytest.approx(0.5 * 2.5, rel=0.02)
+    p.setGravity(0, 0, -10)
+    step(120)
+    rest = p.getBasePositionAndOrientation(box)[0][0]
+    step(120)
+    assert p.getBasePositionAndOrientation(box)[0][0] == pytest.approx(rest, abs=1e-4)
+
+
+def test_contacts_beyond_the_processing_threshold_do_not_push(client: int) -> None:
+    p.setGravity(0, 0, -10)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    ball = p.createMultiBody(1, shape, basePosition=[0, 0, 0.105])
+    p.changeDynamics(ball, -1, contactProcessingThreshold=0)
+    heights = []
+    for _ in range(5):
+        heights.append(p.getBasePositionAndOrientation(ball)[0][2])
+        step(6 if len(heights) == 1 else 5)
+    expected = [0.105, 0.101355, 0.099027, 0.099355, 0.099572]
+    assert heights == pytest.approx(expected, abs=1e-6), "it sinks in before it is pushed"
+
+
+@pytest.mark.parametrize("shape", [p.GEOM_SPHERE, p.GEOM_BOX, p.GEOM_CAPSULE, p.GEOM_CYLINDER])
+@pytest.mark.parametrize("speed", [30.0, 90.0, 400.0])
+def test_what_has_a_swept_sphere_does_not_pass_through_thin_walls(
+    client: int, shape: int, speed: float
+) -> None:
+    wall = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.005, 1, 1])
+    p.createMultiBody(0, wall, basePosition=[1, 0, 0])
+    size = {"radius": 0.02, "halfExtents": [0.02] * 3, "height": 0.04}
+    bullet = p.createMultiBody(0.1, p.createCollisionShape(shape, **size))
+    p.changeDynamics(bullet, -1, ccdSweptSphereRadius=0.02, maxJointVelocity=1000)
+    p.resetBaseVelocity(bullet, [speed, 0.5, 0])
+    step(60)
+    assert p.getBasePositionAndOrientation(bullet)[0][0] < 1.0
+
+
+def test_fast_bodies_with_swept_spheres_meet(client: int) -> None:
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.02)
+    left, right = (p.createMultiBody(1, ball, basePosition=[x, 0, 0]) for x in (-1, 1))
+    for body, speed in ((left, 70), (right, -70)):
+        p.changeDynamics(body, -1, ccdSweptSphereRadius=0.02, linearDamping=0)
+        p.resetBaseVelocity(body, [speed, 0, 0])
+    step(20)
+    positions = [p.getBasePositionAndOrientation(body)[0][0] for body in (left, right)]
+    assert positions[0] < positions[1]
+    momentum = sum(p.getBaseVelocity(body)[0][0] for body in (left, right))
+    assert momentum == pytest.approx(0.0, abs=1e-9)
