@@ -1,37 +1,68 @@
-"""The tutorial with sliders and ESC, as it is, driven from its page."""
+"""Whole scripts: the tutorial with sliders and ESC, as it is, driven from its page; and Ctrl-C."""
 
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from tests.viewer.browser import Page, chromium, needs_browser
-from tests.viewer.watcher import PATIENCE
+from tests.viewer.watcher import PATIENCE, Watcher
 
 ROOT = Path(__file__).parents[2]
 
 
-@needs_browser
-def test_the_pid_tutorial_is_tuned_by_its_sliders_and_ends_with_escape():
+def started(*command: str | Path) -> tuple[subprocess.Popen[str], str]:
+    """A script that shows its world, and the address it prints."""
     environment = {**os.environ, "CI": "1", "PYTHONUNBUFFERED": "1", "PYTHONPATH": str(ROOT / "src")}
     script = subprocess.Popen(
-        [sys.executable, ROOT / "examples" / "pid_sliders.py"],
+        [sys.executable, *command],
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
     )
     assert script.stdout is not None
+    for line in script.stdout:
+        if address := re.search(r"http://\S+/", line):
+            return script, address[0]
+    raise AssertionError("no address")
+
+
+STEPPING = """
+import pybullet as p
+p.connect(p.GUI, options="--port=0")
+while p.isConnected():
+    p.stepSimulation()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
+@pytest.mark.parametrize("paused", [False, True])
+def test_ctrl_c_ends_a_script_that_is_watched(paused: bool):
+    script, address = started("-c", STEPPING)
     try:
-        address = None
-        for line in script.stdout:
-            address = re.search(r"http://\S+", line)
-            if address:
-                break
-        assert address
+        with Watcher(address) as page:
+            page.wait_for(lambda: page.frame.get("time", 0) > 0)
+            page.tell("pause", paused=paused)
+            page.wait_for(lambda: page.shown["pause", None]["paused"] == paused)
+            script.send_signal(signal.SIGINT)
+            output, _ = script.communicate(timeout=PATIENCE)
+        assert output.strip().endswith("KeyboardInterrupt")
+        assert output.count("Traceback") == 1
+    finally:
+        script.kill()
+        script.wait()
+
+
+@needs_browser
+def test_the_pid_tutorial_is_tuned_by_its_sliders_and_ends_with_escape():
+    script, address = started(ROOT / "examples" / "pid_sliders.py")
+    try:
         with chromium() as browser:
-            page = Page(browser, address[0])
+            page = Page(browser, address)
             plots = page.page.locator("#joint")
             plots.locator("option").nth(1).wait_for(state="attached")
             plots.select_option(index=1)

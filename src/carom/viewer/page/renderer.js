@@ -14,9 +14,20 @@ const SLOW_MS = 70;
 const SLOW_PICTURES = 6;
 const LEAST_SHARPNESS = 0.5;
 
+/** Whether there is no graphics card: every pixel then costs time that the simulation needs. */
+function drawnByTheProcessor() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return false;
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 export class Renderer {
   constructor(canvas) {
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, powerPreference: "high-performance" });
+    const slow = drawnByTheProcessor();
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: !slow, powerPreference: "high-performance" });
     if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
     this.canvas = canvas;
     this.gl = gl;
@@ -33,7 +44,9 @@ export class Renderer {
     this.lineBuffer = gl.createBuffer();
     this.lineArray = this.makeLineArray();
     this.map = new ShadowMap(gl, 2048);
-    this.sharpness = 1;
+    this.sharpness = slow ? LEAST_SHARPNESS : 1;
+    // Without smooth edges, pictures there is time for are made with more pixels.
+    this.stillSharpness = slow ? 2 : 1;
     this.slow = 0;
     /** Nothing moves: there is time for a sharp picture. */
     this.still = false;
@@ -51,7 +64,7 @@ export class Renderer {
 
   /** Fits the picture to the window; true if its size has changed. */
   resize() {
-    const ratio = Math.min(window.devicePixelRatio, 2) * (this.still ? 1 : this.sharpness);
+    const ratio = Math.min(window.devicePixelRatio, 2) * (this.still ? this.stillSharpness : this.sharpness);
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width === width && this.canvas.height === height) return false;
