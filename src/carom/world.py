@@ -17,6 +17,7 @@ from carom.constraints import JointConstraints, moving_links
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
 from carom.errors import SimulationError
+from carom.log import Log, Observer
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
@@ -60,6 +61,7 @@ class World:
         bodies: The bodies by their numbers, in the order they were added.
         time: Simulated time [s].
         user_data: Texts attached to bodies.
+        observers: What is told of every step, such as logs.
 
     Args:
         time_step: Duration of one step [s].
@@ -90,6 +92,7 @@ class World:
         self.parameters = EngineParameters(time_step=time_step)
         self.bodies: dict[int, Body] = {}
         self.time = 0.0
+        self.observers: list[Observer] = []
         self._stepper_type: Callable[..., Stepper] = Stepper
         self.unspent_time = 0.0
         self._start_empty()
@@ -321,6 +324,22 @@ class World:
             self._layout = layout(self)
         put_back(self, self._layout, state)
 
+    def log(self, *names: str, every: int = 1) -> Log:
+        """Record state arrays after each step, until the log is stopped.
+
+        Args:
+            *names: Which ones: `position`, `velocity`, `link_pose`, `motor_impulse`... All rows of the
+                world are recorded; those of a body start at its `first_position` and so on.
+            every: Record every so many steps.
+
+        Raises:
+            ValueError: There is no such array, or `every` is less than 1.
+        """
+        unknown = [name for name in names if name not in _VIEWS]
+        if unknown or every < 1:
+            raise ValueError(f"there is no array {unknown[0]!r}" if unknown else f"every is {every}")
+        return Log(self, names, every)
+
     # Parameters
 
     @property
@@ -358,10 +377,16 @@ class World:
                 and contacts are gone.
         """
         for _ in range(count):
+            if self.observers:
+                for observer in self.observers:
+                    observer.before_step()
             (self._step or self._prepare_step())()
             if self._fault[0]:
                 self._raise_fault()
             self.time += self.parameters.time_step
+            if self.observers:
+                for observer in self.observers.copy():
+                    observer.after_step()
 
     def profile(self, count: int = 100) -> dict[str, float]:
         """Advance the world by `count` time steps, as `step` does, and say where the time goes.

@@ -30,6 +30,7 @@ from pybullet._joints import *
 from pybullet._links import *
 from pybullet._loading import *
 from pybullet._loading_scenes import *
+from pybullet._logging import *
 from pybullet._maths import *
 from pybullet._motors import *
 from pybullet._motors_multi_dof import *

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import integer
 from pybullet._errors import fail
+from pybullet._log_registry import Logs
 from pybullet._shape_registry import ShapeRegistry
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class Client:
     """One connection and the world behind it.
 
     Attributes:
+        logs: Logs of states that are being written.
         method: How it was connected: `DIRECT`, `GUI`, ...
         world: Its world.
         bodies: Direct access to the state of bodies, by id; made when first asked for and forgotten
@@ -47,6 +49,7 @@ class Client:
         "bodies",
         "clock",
         "lock",
+        "logs",
         "method",
         "real_time",
         "report_analytics",
@@ -68,6 +71,7 @@ class Client:
         self.report_analytics = False
         self.search_path: Path | None = None
         self.shapes = ShapeRegistry()
+        self.logs = Logs()
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.lock = RLock()
@@ -78,10 +82,11 @@ class Client:
         return self.world.bodies.get(integer(body_id, "bodyUniqueId"))
 
     def close(self) -> None:
-        """Stops what runs in the background."""
+        """Stops what runs in the background, and finishes what is being written."""
         if self.clock is not None:
             self.clock.stop()
             self.clock = None
+        self.logs.stop_all(self)
         self.window.close()
 
 

@@ -23,9 +23,6 @@ __all__ = [
     "renderImage",
     "resetMeshData",
     "saveWorld",
-    "startStateLogging",
-    "stopStateLogging",
-    "submitProfileTiming",
     "unloadPlugin",
     "unsupportedChangeScaling",
 ]
@@ -72,7 +69,6 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
     return Parameter(argument.arg, kind, default=value)
 
 
-submitProfileTiming = _later("submitProfileTiming", "eventName=None, physicsClientId=0")
 saveWorld = _later("saveWorld", "worldFileName, physicsClientId=0")
 loadSoftBody = _later(
     "loadSoftBody",
@@ -87,12 +83,6 @@ createSoftBodyAnchor = _later(
     "softBodyBodyUniqueId, nodeIndex, bodyUniqueId=-1, linkIndex=-1, bodyFramePosition=None, "
     "physicsClientId=0",
 )
-startStateLogging = _later(
-    "startStateLogging",
-    "loggingType, fileName, objectUniqueIds=None, maxLogDof=-1, bodyUniqueIdA=-1, bodyUniqueIdB=-1, "
-    "linkIndexA=-2, linkIndexB=-2, deviceTypeFilter=-1, logFlags=-1, physicsClientId=0",
-)
-stopStateLogging = _later("stopStateLogging", "loggingId, physicsClientId=0")
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
 getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
 resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")

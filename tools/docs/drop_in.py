@@ -41,6 +41,7 @@ TITLES = {
     "_textures": "Colours and textures",
     "_states": "States and world files",
     "_user_data": "User data",
+    "_logging": "Logs",
     "_maths": "Maths",
 }
 UNAVAILABLE = "_unavailable"

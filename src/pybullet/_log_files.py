@@ -1,0 +1,238 @@
+"""Log files in PyBullet's layouts.
+
+A binary log is a line of column names, a line of their `struct` types (`I` and `i` 32-bit integers, `f`
+32-bit floats), and then records, each after the bytes AA BB.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from struct import Struct
+from time import perf_counter_ns
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.model.codes import JointCode
+from pybullet._constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+_BASE_COLUMNS = (("pos", "XYZ"), ("ori", "XYZW"), ("vel", "XYZ"), ("omega", "XYZ"))
+_MARKER = b"\xaa\xbb"
+_LINKS_THAT_SHIFT = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+_LINKS_THAT_FIT = (*_LINKS_THAT_SHIFT, JointCode.FIXED)
+ANY_LINK = -2
+ANY_BODY = -1
+
+
+class BinaryLog:
+    """A binary log without records; the kinds build on it.
+
+    Args:
+        path: The file; one that is there is replaced.
+        columns: Names of the columns.
+        types: Type of each column.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path, columns: Sequence[str], types: str) -> None:
+        self._file = open(path, "wb")  # noqa: SIM115 (it is written to until the log is closed)
+        self._file.write(f"{','.join(columns)}\n{types}\n".encode())
+        self._pack = Struct(f"<{types}").pack
+        self._steps = 0
+        self._time = 0.0
+
+    def before_step(self) -> None:
+        """Nothing, unless something would be gone after the step."""
+
+    def after_step(self) -> None:
+        """Writes the records of a step."""
+
+    def close(self) -> None:
+        """Finishes the file."""
+        self._file.close()
+
+    def _record(self, *values: Any) -> None:
+        self._file.write(_MARKER + self._pack(self._steps, self._time, *values))
+
+    def _next(self, time_step: float) -> None:
+        self._steps += 1
+        self._time += time_step
+
+
+class RobotLog(BinaryLog):
+    """Bases and joints of bodies.
+
+    A body that has more joints than there are columns, or a spherical or planar one, leaves nothing but the
+    marker, as in PyBullet.
+
+    Args:
+        path: The file.
+        world: The world.
+        bodies: Ids of the bodies; empty for all.
+        room: Number of joints there are columns for.
+        flags: `STATE_LOG_JOINT_MOTOR_TORQUES` and `STATE_LOG_JOINT_USER_TORQUES`, added up.
+    """
+
+    def __init__(self, path: Path, world: World, bodies: frozenset[int], room: int, flags: int) -> None:
+        self._torques = [0.0] * room if flags > 0 else []
+        self._flags = max(flags, 0)
+        columns = [f"{name}{axis}" for name, axes in _BASE_COLUMNS for axis in axes]
+        joints = [
+            f"{letter}{index}" for letter in ("qut" if self._torques else "qu") for index in range(room)
+        ]
+        super().__init__(
+            path,
+            ["stepCount", "timeStamp", "objectId", *columns, "qNum", *joints],
+            "Ifi" + "f" * len(columns) + "I" + "f" * len(joints),
+        )
+        self._world = world
+        self._bodies = bodies
+        self._room = room
+        self._applied = world.joint_torque[:0].copy()
+
+    def before_step(self) -> None:
+        """Keeps the torques that scripts apply, damping included: the step takes them away."""
+        if self._flags & STATE_LOG_JOINT_USER_TORQUES:
+            torque, velocity = self._world.joint_torque, self._world.velocity
+            damping = self._world.arrays.model.numpy["dof_damping"][: len(torque)]
+            self._applied = torque - damping * velocity
+
+    def after_step(self) -> None:
+        """Writes a record for each body."""
+        for body in self._world.bodies.values():
+            if not self._bodies or body.id in self._bodies:
+                self._write(body)
+        self._next(self._world.parameters.time_step)
+
+    def _write(self, body: Body) -> None:
+        joints = [index for index, kind in enumerate(body.joint_types) if kind in _LINKS_THAT_SHIFT]
+        if len(joints) > self._room or any(kind not in _LINKS_THAT_FIT for kind in body.joint_types):
+            self._file.write(_MARKER)
+            return
+        world = self._world
+        q = [body.position_index[joint] for joint in joints]
+        u = [body.velocity_index[joint] for joint in joints]
+        rest = [0.0] * (self._room - len(joints))
+        values = [*world.position[q], *rest, *world.velocity[u], *rest]
+        if self._torques:
+            torques = np.zeros(len(u))
+            if self._flags & STATE_LOG_JOINT_MOTOR_TORQUES:
+                torques += world.motor_impulse[u] / world.parameters.substep_time
+            if self._flags & STATE_LOG_JOINT_USER_TORQUES:
+                torques += self._applied[u]
+            values += [*torques, *rest]
+        x, y, z, qx, qy, qz, qw = world.position[body.first_position :][:7]
+        wx, wy, wz, vx, vy, vz = world.velocity[body.first_velocity :][:6]
+        # PyBullet keeps the inverse rotation and turns it round: its zeros are negative.
+        turn = (-(0.0 - qx), -(0.0 - qy), -(0.0 - qz), qw)
+        self._record(body.id, x, y, z, *turn, vx, vy, vz, wx, wy, wz, len(joints), *values)
+
+
+class ContactLog(BinaryLog):
+    """Contacts after each step.
+
+    Args:
+        path: The file.
+        client_id: The connection.
+        world: Its world.
+        sides: Body, -1 for any, and link, -2 for any, of the one and of the other side.
+    """
+
+    def __init__(
+        self, path: Path, client_id: int, world: World, sides: tuple[tuple[int, int], tuple[int, int]]
+    ) -> None:
+        columns = (
+            "stepCount,timeStamp,contactFlag,bodyUniqueIdA,bodyUniqueIdB,linkIndexA,linkIndexB,"
+            "positionOnAX,positionOnAY,positionOnAZ,positionOnBX,positionOnBY,positionOnBZ,"
+            "contactNormalOnBX,contactNormalOnBY,contactNormalOnBZ,contactDistance,normalForce"
+        )
+        super().__init__(path, columns.split(","), "IfIiiii" + "f" * 11)
+        self._client_id = client_id
+        self._world = world
+        self._sides = sides
+
+    def after_step(self) -> None:
+        """Writes a record for each contact."""
+        from pybullet._contacts import getContactPoints
+
+        for contact in getContactPoints(physicsClientId=self._client_id):
+            flag, a, b, link_a, link_b, on_a, on_b, normal, distance, force = contact[:10]
+            if self._asked_for((a, link_a), (b, link_b)):
+                self._record(flag, a, b, link_a, link_b, *on_a, *on_b, *normal, distance, force)
+        self._next(self._world.parameters.time_step)
+
+    def _asked_for(self, a: tuple[int, int], b: tuple[int, int]) -> bool:
+        first, second = self._sides
+        return (_matches(first, a) and _matches(second, b)) or (_matches(first, b) and _matches(second, a))
+
+
+def _matches(side: tuple[int, int], place: tuple[int, int]) -> bool:
+    return side[0] in (ANY_BODY, place[0]) and side[1] in (ANY_LINK, place[1])
+
+
+class ControllerLog(BinaryLog):
+    """Controllers of virtual reality: there are none, so there are no records."""
+
+    def __init__(self, path: Path) -> None:
+        columns = "controllerId,numMoveEvents,m_numButtonEvents,posX,posY,posZ,oriX,oriY,oriZ,oriW,analogAxis"
+        buttons = [f"buttons{index}" for index in range(7)]
+        super().__init__(
+            path,
+            ["stepCount", "timeStamp", *columns.split(","), *buttons, "deviceType"],
+            "IfIIIffffffffIIIIIIII",
+        )
+
+
+class TimingLog:
+    """Where the time goes, as a trace that Chrome and Perfetto show: steps, and zones that scripts name.
+
+    Args:
+        path: The file; `_0.json` is added, as PyBullet adds the number of the thread.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = open(f"{path}_0.json", "w", encoding="utf-8")  # noqa: SIM115 (as above)
+        self._events: list[str] = []
+        self._start = perf_counter_ns()
+
+    def before_step(self) -> None:
+        """A step begins."""
+        self.begin("stepSimulation")
+
+    def after_step(self) -> None:
+        """It ends."""
+        self.end("stepSimulation")
+
+    def begin(self, name: str) -> None:
+        """A zone begins."""
+        self._add("B", name)
+
+    def end(self, name: str) -> None:
+        """It ends."""
+        self._add("E", name)
+
+    def _add(self, phase: str, name: str) -> None:
+        now = (perf_counter_ns() - self._start) / 1000.0
+        event = {"cat": "timing", "pid": 1, "tid": 0, "ts": now, "ph": phase, "name": name, "args": {}}
+        self._events.append(json.dumps(event))
+
+    def close(self) -> None:
+        """Writes the file."""
+        with self._file:
+            events = ",\n".join(self._events)
+            self._file.write(f'{{"traceEvents":[\n{events}\n],\n"displayTimeUnit": "ns"}}')
+
+
+StateLog = BinaryLog | TimingLog
+"""Any log."""

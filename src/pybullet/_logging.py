@@ -1,0 +1,154 @@
+"""Logging of states, contacts and timings to files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pybullet._arguments import integer, sequence, text
+from pybullet._builtin import exported
+from pybullet._clients import client_of
+from pybullet._constants import (
+    STATE_LOGGING_ALL_COMMANDS,
+    STATE_LOGGING_CONTACT_POINTS,
+    STATE_LOGGING_GENERIC_ROBOT,
+    STATE_LOGGING_PROFILE_TIMINGS,
+    STATE_LOGGING_VIDEO_MP4,
+    STATE_LOGGING_VR_CONTROLLERS,
+    STATE_REPLAY_ALL_COMMANDS,
+)
+from pybullet._errors import fail, logger
+
+if TYPE_CHECKING:
+    from pybullet._log_files import StateLog
+
+__all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
+
+_DEFAULT_ROOM = 12
+_WITHOUT_FILE = {
+    STATE_LOGGING_VIDEO_MP4: "there is no window to film; take images with getCameraImage",
+    STATE_LOGGING_ALL_COMMANDS: "PyBullet writes its own memory there; use saveWorld or saveBullet",
+    STATE_REPLAY_ALL_COMMANDS: "PyBullet's logs of commands cannot be replayed",
+}
+
+
+@exported
+def startStateLogging(
+    loggingType: int,
+    fileName: str,
+    objectUniqueIds: Sequence[int] | None = None,
+    maxLogDof: int = -1,
+    bodyUniqueIdA: int = -1,
+    bodyUniqueIdB: int = -1,
+    linkIndexA: int = -2,
+    linkIndexB: int = -2,
+    deviceTypeFilter: int = -1,
+    logFlags: int = -1,
+    physicsClientId: int = 0,
+) -> Any:
+    """Starts to write a log after each step.
+
+    Args:
+        loggingType: `STATE_LOGGING_GENERIC_ROBOT` for bases and joints, `STATE_LOGGING_CONTACT_POINTS`
+            for contacts, both in PyBullet's binary layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a trace
+            that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
+            `_0.json` added; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty. Videos and logs of
+            commands are not available: a warning says so, and no file is written.
+        fileName: The file; one that is there is replaced.
+        objectUniqueIds: Bodies to log; none for all. Those with more joints than columns, or with
+            spherical or planar joints, are left out.
+        maxLogDof: Number of joints there are columns for; 12 when negative.
+        bodyUniqueIdA: Of contacts: only those of this body; -1 for any.
+        bodyUniqueIdB: Of contacts: and of this one.
+        linkIndexA: Of contacts: only those of this link of `bodyUniqueIdA`; -2 for any.
+        linkIndexB: Of contacts: the same for `bodyUniqueIdB`.
+        deviceTypeFilter: Not used: there are no devices.
+        logFlags: `STATE_LOG_JOINT_MOTOR_TORQUES`, `STATE_LOG_JOINT_USER_TORQUES` or both, added up, for
+            columns of torques.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the log; None for types that log nothing (`STATE_LOGGING_MINITAUR` and others).
+
+    Raises:
+        pybullet.error: Not connected, the file cannot be written, or `objectUniqueIds` is no sequence.
+    """
+    client = client_of(physicsClientId)
+    kind, path = integer(loggingType, "loggingType"), text(fileName, "fileName")
+    problem = "startStateLogging failed."
+    given = () if objectUniqueIds is None else sequence(objectUniqueIds, problem, "objectUniqueIds")
+    bodies = [integer(body, "objectUniqueIds") for body in given]
+    room, flags = integer(maxLogDof, "maxLogDof"), integer(logFlags, "logFlags")
+    sides = (
+        (integer(bodyUniqueIdA, "bodyUniqueIdA"), integer(linkIndexA, "linkIndexA")),
+        (integer(bodyUniqueIdB, "bodyUniqueIdB"), integer(linkIndexB, "linkIndexB")),
+    )
+    integer(deviceTypeFilter, "deviceTypeFilter")
+
+    from pybullet import _log_files as files
+
+    log: StateLog | None = None
+    try:
+        if kind == STATE_LOGGING_GENERIC_ROBOT:
+            room = _DEFAULT_ROOM if room < 0 else room
+            log = files.RobotLog(Path(path), client.world, frozenset(bodies), room, flags)
+        elif kind == STATE_LOGGING_CONTACT_POINTS:
+            log = files.ContactLog(Path(path), physicsClientId, client.world, sides)
+        elif kind == STATE_LOGGING_PROFILE_TIMINGS:
+            log = files.TimingLog(Path(path))
+        elif kind == STATE_LOGGING_VR_CONTROLLERS:
+            log = files.ControllerLog(Path(path))
+    except (OSError, ValueError) as reason:
+        fail(problem, f"{reason}.")
+    if log is None and kind not in _WITHOUT_FILE:
+        logger.warning("startStateLogging: logs of type %d are not available.", kind)
+        return None
+    if log is None:
+        logger.warning("startStateLogging: no log is written; %s.", _WITHOUT_FILE[kind])
+    with client.lock:
+        number = client.logs.next_id
+        client.logs.next_id += 1
+        if log is not None:
+            client.logs.by_id[number] = log
+            client.world.observers.append(log)
+    return number
+
+
+@exported
+def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
+    """Ends a log and finishes its file. One that does not exist is no error.
+
+    Args:
+        loggingId: The log.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    with client.lock:
+        client.logs.stop(client, integer(loggingId, "loggingId"))
+
+
+@exported
+def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0) -> None:
+    """Begins a zone of the logs of `STATE_LOGGING_PROFILE_TIMINGS`, or ends the one begun last.
+
+    Args:
+        eventName: Name of a zone that begins; None ends one.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+    """
+    client = client_of(physicsClientId)
+    if eventName is not None:
+        name = text(eventName, "eventName")
+        client.logs.zones.append(name)
+        for log in client.logs.timings():
+            log.begin(name)
+    elif client.logs.zones:
+        name = client.logs.zones.pop()
+        for log in client.logs.timings():
+            log.end(name)
