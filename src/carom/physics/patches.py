@@ -29,6 +29,7 @@ from carom.model.real import (
     Matrix48,
     Matrix84,
     Vector4,
+    Vector4Rows,
     Vector8,
     func,
     real,
@@ -194,7 +195,8 @@ def direction_row(couplings: Couplings, world: Int32, contact: Int32, direction:
 
 
 @func
-def jacobians(
+def gather_blocks(
+    rows: Vector4Rows,
     couplings: Couplings,
     world: Int32,
     first: Int32,
@@ -203,21 +205,32 @@ def jacobians(
     blocks: Int32,
     offset: Int32,
 ) -> Matrix84:
-    """Jacobians of contacts along a direction on the tree whose blocks start at an offset in their rows."""
+    """Jacobians of contacts along a direction, or the responses to them, as columns.
+
+    Args:
+        rows: `Couplings.jacobian_row` or `Couplings.jacobian_response`.
+        couplings: The rows of the contacts.
+        world: The world.
+        first: First contact.
+        count: Number of contacts.
+        direction: 0 for the normal, 1 or 2 for a friction direction.
+        blocks: Number of blocks of the tree.
+        offset: Where its blocks start in a row.
+    """
     result = Matrix84()
     for i in range(4):
         if i < count:
             start = couplings.coupling_start[world, direction_row(couplings, world, first + i, direction)]
             for block in range(SMALL):
                 if block < blocks:
-                    entries = couplings.jacobian_row[world, start + offset + block]
+                    entries = rows[world, start + offset + block]
                     for j in range(4):
                         result[4 * block + j, i] = entries[j]
     return result
 
 
 @func
-def responses(
+def gather_responses(
     couplings: Couplings,
     world: Int32,
     first: Int32,
@@ -226,17 +239,10 @@ def responses(
     blocks: Int32,
     offset: Int32,
 ) -> Matrix48:
-    """Responses of a tree to impulses of contacts along a direction; arguments as for `jacobians`."""
-    result = Matrix48()
-    for i in range(4):
-        if i < count:
-            start = couplings.coupling_start[world, direction_row(couplings, world, first + i, direction)]
-            for block in range(SMALL):
-                if block < blocks:
-                    entries = couplings.jacobian_response[world, start + offset + block]
-                    for j in range(4):
-                        result[i, 4 * block + j] = entries[j]
-    return result
+    """Responses to impulses of contacts along a direction, as rows; arguments as for `gather_blocks`."""
+    return wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, direction, blocks, offset)
+    )
 
 
 @func
@@ -282,10 +288,14 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
     )
     couplings.patch[world, patch].effective_mass0 = mass0
     couplings.patch[world, patch].impulse0 = gather_numbers(couplings, world, first, count, 0, ROW_IMPULSE)
-    jacobian0_a = jacobians(couplings, world, first, count, 0, a, 0)
-    jacobian0_b = jacobians(couplings, world, first, count, 0, b, a)
-    response0_a = responses(couplings, world, first, count, 0, a, 0)
-    response0_b = responses(couplings, world, first, count, 0, b, a)
+    jacobian0_a = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 0, a, 0)
+    jacobian0_b = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 0, b, a)
+    response0_a = wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 0, a, 0)
+    )
+    response0_b = wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 0, b, a)
+    )
     couplings.patch[world, patch].jacobian0_a = jacobian0_a
     couplings.patch[world, patch].jacobian0_b = jacobian0_b
     couplings.patch[world, patch].response0_a = response0_a
@@ -307,14 +317,22 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
     couplings.patch[world, patch].effective_mass2 = mass2
     couplings.patch[world, patch].impulse1 = gather_numbers(couplings, world, first, count, 1, ROW_IMPULSE)
     couplings.patch[world, patch].impulse2 = gather_numbers(couplings, world, first, count, 2, ROW_IMPULSE)
-    jacobian1_a = jacobians(couplings, world, first, count, 1, a, 0)
-    jacobian1_b = jacobians(couplings, world, first, count, 1, b, a)
-    jacobian2_a = jacobians(couplings, world, first, count, 2, a, 0)
-    jacobian2_b = jacobians(couplings, world, first, count, 2, b, a)
-    response1_a = responses(couplings, world, first, count, 1, a, 0)
-    response1_b = responses(couplings, world, first, count, 1, b, a)
-    response2_a = responses(couplings, world, first, count, 2, a, 0)
-    response2_b = responses(couplings, world, first, count, 2, b, a)
+    jacobian1_a = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 1, a, 0)
+    jacobian1_b = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 1, b, a)
+    jacobian2_a = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 2, a, 0)
+    jacobian2_b = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 2, b, a)
+    response1_a = wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 1, a, 0)
+    )
+    response1_b = wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 1, b, a)
+    )
+    response2_a = wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 2, a, 0)
+    )
+    response2_b = wp.transpose(
+        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 2, b, a)
+    )
     couplings.patch[world, patch].jacobian1_a = jacobian1_a
     couplings.patch[world, patch].jacobian1_b = jacobian1_b
     couplings.patch[world, patch].jacobian2_a = jacobian2_a
