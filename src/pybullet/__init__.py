@@ -38,6 +38,7 @@ from pybullet._multi_body import *
 from pybullet._nearby import *
 from pybullet._rays import *
 from pybullet._shape_data import *
+from pybullet._soft_bodies import *
 from pybullet._states import *
 from pybullet._textures import *
 from pybullet._unavailable import *

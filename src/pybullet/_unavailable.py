@@ -15,13 +15,10 @@ from pybullet._builtin import exported_as
 from pybullet._errors import fail
 
 __all__ = [
-    "createSoftBodyAnchor",
     "executePluginCommand",
-    "getTetraMeshData",
     "loadPlugin",
     "loadSoftBody",
     "renderImage",
-    "resetMeshData",
     "saveWorld",
     "unloadPlugin",
     "unsupportedChangeScaling",
@@ -78,14 +75,7 @@ loadSoftBody = _later(
     "NeoHookeanMu=1, NeoHookeanLambda=1, NeoHookeanDamping=0.1, frictionCoeff=0, useFaceContact=0, "
     'useSelfCollision=0, repulsionStiffness=0.5, simFileName="", physicsClientId=0',
 )
-createSoftBodyAnchor = _later(
-    "createSoftBodyAnchor",
-    "softBodyBodyUniqueId, nodeIndex, bodyUniqueId=-1, linkIndex=-1, bodyFramePosition=None, "
-    "physicsClientId=0",
-)
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
-getTetraMeshData = _later("getTetraMeshData", "bodyUniqueId, flags=-1, physicsClientId=0")
-resetMeshData = _later("resetMeshData", "bodyUniqueId, vertices, physicsClientId=0")
 renderImage = _later("renderImage", "*arguments")
 loadPlugin = _later("loadPlugin", "pluginPath, postFix=None, physicsClientId=0")
 unloadPlugin = _later("unloadPlugin", "pluginUniqueId, physicsClientId=0")

@@ -39,6 +39,7 @@ TITLES = {
     "_camera": "Camera images",
     "_camera_maths": "Camera matrices",
     "_textures": "Colours and textures",
+    "_soft_bodies": "Soft bodies",
     "_states": "States and world files",
     "_user_data": "User data",
     "_logging": "Logs",
