@@ -176,6 +176,20 @@ def test_lines_points_and_texts_come_and_go(page: Page):
     page.page.get_by_text("gone soon").wait_for(state="detached")
 
 
+def test_texts_with_an_orientation_stand_in_the_world(page: Page):
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    # The panel covers the right half of so small a page.
+    p.resetDebugVisualizerCamera(2, 0, 0, [0.6, 0, 0])
+    upright = p.getQuaternionFromEuler([np.pi / 2, 0, 0])
+    text = p.addUserDebugText("████", [-0.8, 0, 0], [1, 0, 0], 4, textOrientation=upright)
+    page.wait_for_picture(red_at((-0.7, 0, 0.15)))
+    ball = red_ball((0, 0, 0))
+    p.addUserDebugText("████", [0, 0, 0.2], [1, 0, 0], 4, 0, upright, ball, -1, text)
+    picture = page.wait_for_picture(red_at((0.1, 0, 0.35)))
+    assert not red_at((-0.7, 0, 0.15))(picture)
+    assert not red_at((0.1, 0, 0.9))(picture)
+
+
 def test_a_page_loaded_again_shows_it_all_again(page: Page):
     wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])

@@ -53,7 +53,6 @@ NOTES = {
 
 LIMITED = {
     "connect": "there are no physics servers",
-    "addUserDebugText": "text faces the viewer, with an orientation as well",
     "configureDebugVisualizer": "reflections, single-step rendering and the flags of virtual reality are "
     "recorded and have no effect",
     "changeDynamics": "`anisotropicFriction`, `frictionAnchor` and what concerns sleeping are recorded and "

@@ -1,6 +1,7 @@
 // What scripts draw: lines, points and texts, on links or in the world; and what the view adds itself.
 
 import { add, turned } from "./maths.js";
+import { Sign } from "./sign.js";
 
 const WORLD_AXES = [
   [1, 0, 0],
@@ -22,6 +23,7 @@ export class Drawings {
     this.overlay = overlay;
     this.items = new Map();
     this.clouds = [];
+    this.signs = [];
     this.name = Object.assign(document.createElement("span"), { className: "hover", hidden: true });
     overlay.append(this.name);
   }
@@ -30,21 +32,30 @@ export class Drawings {
     this.remove(header);
     const item = { ...header };
     if (header.type === "points") Object.assign(item, this.cloud(header, payload));
-    if (header.type === "text") item.label = this.label(header);
+    if (header.type === "text" && header.orientation) item.sign = new Sign(this.gl, header);
+    else if (header.type === "text") item.label = this.label(header);
     this.items.set(header.item, item);
-    this.clouds = [...this.items.values()].filter((other) => other.type === "points");
+    this.list();
   }
 
   remove({ item }) {
     const known = this.items.get(item);
     if (!known) return;
     known.label?.remove();
+    known.sign?.dispose();
     if (known.buffer) {
       this.gl.deleteBuffer(known.buffer);
       this.gl.deleteVertexArray(known.array);
     }
     this.items.delete(item);
-    this.clouds = this.clouds.filter((other) => other.item !== item);
+    this.list();
+  }
+
+  /** Keeps apart what the renderer asks for at every picture. */
+  list() {
+    const items = [...this.items.values()];
+    this.clouds = items.filter((item) => item.type === "points");
+    this.signs = items.flatMap((item) => item.sign ?? []);
   }
 
   clear() {
@@ -112,7 +123,7 @@ export class Drawings {
   /** Puts texts where they belong on the page. */
   placeLabels(scene, camera) {
     for (const item of this.items.values()) {
-      if (item.type !== "text") continue;
+      if (!item.label) continue;
       const pose = scene.linkPose(item.body, item.link);
       const pixel = pose && camera.pixel(inFrame(pose, item.position));
       item.label.hidden = !pixel;

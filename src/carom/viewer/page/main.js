@@ -142,7 +142,7 @@ function start() {
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? underMouse() : null;
     const more = [pointer.grasp.line()].filter((line) => line !== null);
     const lines = drawings.lines(scene, options, more, named);
-    renderer.draw(scene, camera, options, { lines, clouds: drawings.clouds });
+    renderer.draw(scene, camera, options, { lines, clouds: drawings.clouds, signs: drawings.signs });
     drawings.placeLabels(scene, camera);
     drawings.showName(scene, named, pointer.hovered);
     plots.draw();

@@ -2,7 +2,7 @@
 
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Program, ShadowMap } from "./gpu.js";
-import { GRID, LINES, POINTS, SHADOW, SKY, SURFACE, WIRE } from "./shaders.js";
+import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, SURFACE, WIRE } from "./shaders.js";
 
 const GRID_EXTENT = 60;
 /** Far things fade from about this distance on, or this many times the camera's distance [m]. */
@@ -38,6 +38,7 @@ export class Renderer {
     this.grid = new Program(gl, GRID);
     this.lines = new Program(gl, LINES);
     this.points = new Program(gl, POINTS);
+    this.sign = new Program(gl, SIGN);
     this.surface.sampler("image", 0);
     this.surface.sampler("shadows", 1);
     this.nothing = gl.createVertexArray();
@@ -77,7 +78,7 @@ export class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Float32Array, clouds: object[]}} drawings
+   * @param {{lines: Float32Array, clouds: object[], signs: Sign[]}} drawings
    */
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
@@ -116,6 +117,7 @@ export class Renderer {
       for (const group of shown) if (!group.clear) this.drawSolid(group, scene);
     }
     if (options.grid) this.drawGrid(camera, common);
+    this.drawSigns(drawings.signs, scene, camera);
     if (!options.wireframe) this.drawClear(shown, scene, camera);
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
@@ -255,6 +257,22 @@ export class Renderer {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
     gl.bufferData(gl.ARRAY_BUFFER, lines, gl.DYNAMIC_DRAW);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.length / LINE_FLOATS);
+  }
+
+  drawSigns(signs, scene, camera) {
+    const gl = this.gl;
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindVertexArray(this.nothing);
+    gl.activeTexture(gl.TEXTURE0);
+    for (const sign of signs) {
+      const edges = sign.edges(scene);
+      if (edges === null) continue;
+      this.sign.use({ camera: camera.matrix, ...edges });
+      gl.bindTexture(gl.TEXTURE_2D, sign.texture);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    }
+    gl.disable(gl.BLEND);
   }
 
   drawPoints(clouds, scene, camera) {

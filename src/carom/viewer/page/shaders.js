@@ -258,3 +258,26 @@ void main() {
   result = vec4(colour, 1.0);
 }`,
 };
+
+/** Text on a rectangle in the world. */
+export const SIGN = {
+  vertex: `#version 300 es
+uniform mat4 camera;
+uniform vec3 corner;
+uniform vec3 across;
+uniform vec3 upright;
+out vec2 texel;
+void main() {
+  texel = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  gl_Position = camera * vec4(corner + across * texel.x + upright * texel.y, 1.0);
+}`,
+  fragment: `#version 300 es
+precision mediump float;
+uniform sampler2D image;
+in vec2 texel;
+out vec4 result;
+void main() {
+  result = texture(image, texel);
+  if (result.a < 0.02) discard;
+}`,
+};
