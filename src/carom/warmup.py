@@ -28,13 +28,15 @@ KERNEL_MODULES = (
     "carom.algorithms.kernels",
     "carom.render.kernels.draw",
 )
+# The stages of `World.profile` are compiled again, each on its own, when someone asks for a profile.
+ON_DEMAND = ("carom.collision.stages", "carom.physics.stages")
 
 # A launch on CPU uses blocks of one thread, and a module is compiled for its block size.
 _CPU_BLOCK_SIZE = 1
 
 
 def warmup(device: str = "cpu") -> None:
-    """Compile, or load from the cache, the kernels of every module that has some.
+    """Compile, or load from the cache, the kernels of all modules that steps and questions need.
 
     Modules for the CPU are compiled in as many processes as there are cores.
 
