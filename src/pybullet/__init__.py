@@ -37,6 +37,7 @@ from pybullet._motors_multi_dof import *
 from pybullet._multi_body import *
 from pybullet._nearby import *
 from pybullet._rays import *
+from pybullet._scene_script import *
 from pybullet._shape_data import *
 from pybullet._soft_bodies import *
 from pybullet._states import *

@@ -101,6 +101,7 @@ def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
     with client.lock:
         client.bodies.clear()
         client.world.remove(body.id)
+        client.origins.pop(body.id, None)
 
 
 @exported

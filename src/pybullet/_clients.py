@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from carom.snapshot import Snapshot
     from carom.world import World
     from pybullet._body_access import BodyTable
+    from pybullet._origins import Origin
     from pybullet._real_time import RealTimeClock
     from pybullet._window import Window
 
@@ -34,6 +35,7 @@ class Client:
         bodies: Direct access to the state of bodies, by id; made when first asked for and forgotten
             whenever bodies come or go, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
+        origins: The calls that loaded bodies from files, by body id.
         real_time: `useRealTimeSimulation` as the script set it.
         report_analytics: `stepSimulation` returns the statistics of the solver.
         search_path: Directory that is searched for files besides the usual ones.
@@ -51,6 +53,7 @@ class Client:
         "lock",
         "logs",
         "method",
+        "origins",
         "real_time",
         "report_analytics",
         "search_path",
@@ -72,6 +75,7 @@ class Client:
         self.search_path: Path | None = None
         self.shapes = ShapeRegistry()
         self.logs = Logs()
+        self.origins: dict[int, Origin] = {}
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.lock = RLock()

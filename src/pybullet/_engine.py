@@ -80,6 +80,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
         client.world.reset()
         client.shapes = ShapeRegistry()
         client.states.clear()
+        client.origins.clear()
         client.report_analytics = False
         client.window.remove_drawings()
 

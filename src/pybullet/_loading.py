@@ -11,6 +11,7 @@ from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._errors import fail
 from pybullet._new_bodies import add_bodies, warn_of_coordinates
+from pybullet._origins import FileLoad
 
 __all__ = [
     "loadURDF",
@@ -112,7 +113,12 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         spec = assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
     except CaromError as problem:
         fail(_CANNOT_LOAD, str(problem))
-    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD)[0]
+    load = FileLoad(
+        "loadURDF",
+        {"useFixedBase": int(fixed_base), "flags": flags, "globalScaling": scaling},
+        takes_pose=True,
+    )
+    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD, load)[0]
 
 
 _DEFAULTS = {

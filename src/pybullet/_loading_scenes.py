@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from pybullet._constants import (
 )
 from pybullet._errors import fail, logger
 from pybullet._new_bodies import add_bodies, warn_of_coordinates
+from pybullet._origins import FileLoad
 
 if TYPE_CHECKING:
     from carom.formats.placed import PlacedRobot
@@ -74,7 +76,8 @@ def loadSDF(
 
         return assemble(placed.robot, fixed_base=placed.fixed_base)
 
-    return _load(client, read, build, _CANNOT_LOAD_SDF)
+    load = FileLoad("loadSDF", {"globalScaling": scaling})
+    return _load(client, read, build, _CANNOT_LOAD_SDF, load)
 
 
 @exported
@@ -127,7 +130,7 @@ def loadMJCF(
         set_mjcf_inertias(spec)
         return spec
 
-    return _load(client, read, build, _CANNOT_LOAD_MJCF)
+    return _load(client, read, build, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
 
 
 def _load(
@@ -135,6 +138,7 @@ def _load(
     read: Callable[[AssetSearch], list[PlacedRobot]],
     build: Callable[[PlacedRobot], BodySpec],
     problem: str,
+    load: FileLoad,
 ) -> tuple[int, ...]:
     """Brings all robots of a file into the world of a client, or none."""
     from carom.errors import CaromError
@@ -147,6 +151,5 @@ def _load(
         specs = [build(robot) for robot in placed]
     except CaromError as error:
         fail(problem, str(error))
-    return add_bodies(
-        client, [(spec, robot.pose) for spec, robot in zip(specs, placed, strict=True)], problem
-    )
+    bodies = [(spec, robot.pose) for spec, robot in zip(specs, placed, strict=True)]
+    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)))

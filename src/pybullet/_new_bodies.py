@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from pybullet._clients import Client
 from pybullet._errors import fail, logger
+from pybullet._origins import FileLoad, Origin
 
 if TYPE_CHECKING:
     from carom.description.pose import Pose
@@ -21,13 +22,19 @@ def warn_of_coordinates(function: str, use_maximal: int) -> None:
         )
 
 
-def add_bodies(client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str) -> tuple[int, ...]:
+def add_bodies(
+    client: Client,
+    bodies: Sequence[tuple[BodySpec, Pose]],
+    problem: str,
+    load: FileLoad | None = None,
+) -> tuple[int, ...]:
     """Brings bodies into a world.
 
     Args:
         client: Whose world.
         bodies: What they are, and the pose of the link frame of their base.
         problem: PyBullet's text when one cannot be made.
+        load: The call that loads them from a file, if one does.
 
     Returns:
         Their ids.
@@ -42,7 +49,10 @@ def add_bodies(client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem:
             _make_shapes([spec for spec, _ in bodies])
         with client.lock:
             client.bodies.clear()
-            return tuple(client.world.load(spec, pose.position, pose.orientation).id for spec, pose in bodies)
+            ids = tuple(client.world.load(spec, pose.position, pose.orientation).id for spec, pose in bodies)
+            if load is not None:
+                client.origins.update({number: Origin(load, index) for index, number in enumerate(ids)})
+            return ids
     except CaromError as reason:
         fail(problem, str(reason))
 

@@ -19,7 +19,6 @@ __all__ = [
     "loadPlugin",
     "loadSoftBody",
     "renderImage",
-    "saveWorld",
     "unloadPlugin",
     "unsupportedChangeScaling",
 ]
@@ -66,7 +65,6 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
     return Parameter(argument.arg, kind, default=value)
 
 
-saveWorld = _later("saveWorld", "worldFileName, physicsClientId=0")
 loadSoftBody = _later(
     "loadSoftBody",
     "fileName, basePosition=None, baseOrientation=None, scale=-1, mass=-1, collisionMargin=-1, "

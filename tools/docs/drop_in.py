@@ -40,6 +40,7 @@ TITLES = {
     "_camera_maths": "Camera matrices",
     "_textures": "Colours and textures",
     "_soft_bodies": "Soft bodies",
+    "_scene_script": "Scenes as scripts",
     "_states": "States and world files",
     "_user_data": "User data",
     "_logging": "Logs",

@@ -1,0 +1,30 @@
+"""Which call loaded a body, so that `saveWorld` can write it down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FileLoad:
+    """A call that loaded a file.
+
+    Attributes:
+        function: Its name.
+        arguments: Its arguments but for the file, by name.
+        takes_pose: It is told where to put the one body it loads.
+        count: How many bodies it loaded.
+    """
+
+    function: str
+    arguments: dict[str, float]
+    takes_pose: bool = False
+    count: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a body came from: the `index`-th body of a load."""
+
+    load: FileLoad
+    index: int = 0
