@@ -36,6 +36,7 @@ from pybullet._motors import *
 from pybullet._motors_multi_dof import *
 from pybullet._multi_body import *
 from pybullet._nearby import *
+from pybullet._plugins import *
 from pybullet._rays import *
 from pybullet._scene_script import *
 from pybullet._shape_data import *

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 from pybullet._arguments import integer
 from pybullet._errors import fail
 from pybullet._log_registry import Logs
+from pybullet._plugin_registry import Plugins
 from pybullet._shape_registry import ShapeRegistry
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from carom.body import Body
+    from carom.formats.search import AssetSearch
     from carom.snapshot import Snapshot
     from carom.world import World
     from pybullet._body_access import BodyTable
@@ -36,6 +38,7 @@ class Client:
             whenever bodies come or go, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
+        plugins: Plugins the script has loaded.
         real_time: `useRealTimeSimulation` as the script set it.
         report_analytics: `stepSimulation` returns the statistics of the solver.
         search_path: Directory that is searched for files besides the usual ones.
@@ -54,6 +57,7 @@ class Client:
         "logs",
         "method",
         "origins",
+        "plugins",
         "real_time",
         "report_analytics",
         "search_path",
@@ -75,6 +79,7 @@ class Client:
         self.search_path: Path | None = None
         self.shapes = ShapeRegistry()
         self.logs = Logs()
+        self.plugins = Plugins()
         self.origins: dict[int, Origin] = {}
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
@@ -85,12 +90,17 @@ class Client:
         """The body of an id, or None; raises `TypeError` for anything but an integer."""
         return self.world.bodies.get(integer(body_id, "bodyUniqueId"))
 
+    def search(self) -> AssetSearch:
+        """Where files that the script names are looked for."""
+        return self.plugins.search(self.search_path)
+
     def close(self) -> None:
         """Stops what runs in the background, and finishes what is being written."""
         if self.clock is not None:
             self.clock.stop()
             self.clock = None
         self.logs.stop_all(self)
+        self.plugins.remove_all_places()
         self.window.close()
 
 

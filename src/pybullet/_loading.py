@@ -102,12 +102,11 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     warn_of_coordinates("loadURDF", maximal)
 
     from carom.errors import CaromError
-    from carom.formats.search import AssetSearch
     from carom.formats.urdf import read_urdf
     from carom.model.assemble import assemble
     from carom.model.flags import LoadFlags
 
-    search = AssetSearch(client.search_path)
+    search = client.search()
     try:
         robot = read_urdf(Path(name), scale=scaling if scaling > 0.0 else 1.0, search=search)
         spec = assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)

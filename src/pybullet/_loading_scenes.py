@@ -142,10 +142,9 @@ def _load(
 ) -> tuple[int, ...]:
     """Brings all robots of a file into the world of a client, or none."""
     from carom.errors import CaromError
-    from carom.formats.search import AssetSearch
 
     try:
-        placed = read(AssetSearch(client.search_path))
+        placed = read(client.search())
         if len(placed) > _MOST_BODIES:
             fail(f"SDF exceeds body capacity: {len(placed)} > {_MOST_BODIES}")
         specs = [build(robot) for robot in placed]

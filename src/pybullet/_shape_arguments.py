@@ -93,9 +93,7 @@ def scale_of(values: Any, problem: str) -> Vector3:
 
 def find_file(client: Client, name: str, problem: str) -> Path:
     """A file named by a script; raises `pybullet.error` if there is none."""
-    from carom.formats.search import AssetSearch
-
-    path = AssetSearch(client.search_path).find(name)
+    path = client.search().find(name)
     if path is None:
         fail(problem, f"There is no file {name!r}.")
     return path

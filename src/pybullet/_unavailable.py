@@ -15,11 +15,8 @@ from pybullet._builtin import exported_as
 from pybullet._errors import fail
 
 __all__ = [
-    "executePluginCommand",
-    "loadPlugin",
     "loadSoftBody",
     "renderImage",
-    "unloadPlugin",
     "unsupportedChangeScaling",
 ]
 
@@ -75,9 +72,3 @@ loadSoftBody = _later(
 )
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
 renderImage = _later("renderImage", "*arguments")
-loadPlugin = _later("loadPlugin", "pluginPath, postFix=None, physicsClientId=0")
-unloadPlugin = _later("unloadPlugin", "pluginUniqueId, physicsClientId=0")
-executePluginCommand = _later(
-    "executePluginCommand",
-    "pluginUniqueId, textArgument=None, intArgs=None, floatArgs=None, physicsClientId=0",
-)

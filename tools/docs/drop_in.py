@@ -44,6 +44,7 @@ TITLES = {
     "_states": "States and world files",
     "_user_data": "User data",
     "_logging": "Logs",
+    "_plugins": "Plugins",
     "_maths": "Maths",
 }
 UNAVAILABLE = "_unavailable"

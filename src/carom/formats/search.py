@@ -17,12 +17,14 @@ class AssetSearch:
 
     Attributes:
         additional: A directory searched after the working directory, as set by the user.
+        folders: Directories searched after that.
     """
 
     additional: Path | None = None
+    folders: tuple[Path, ...] = ()
 
     def find(self, name: str | os.PathLike[str]) -> Path | None:
-        """The file a script asks for: as named, in nearby data folders, in the additional directory.
+        """The file a script asks for: as named, in nearby data folders, in the additional directories.
 
         Args:
             name: Path, absolute or relative to one of the searched places.
@@ -31,8 +33,9 @@ class AssetSearch:
             The path of an existing file as it was found, or None.
         """
         names = [os.fspath(name)]
-        if self.additional is not None:
-            names.append(os.path.join(self.additional, os.fspath(name).lstrip("/\\")))
+        for folder in (self.additional, *self.folders):
+            if folder is not None:
+                names.append(os.path.join(folder, os.fspath(name).lstrip("/\\")))
         for candidate in names:
             prefixes = _DATA_PREFIXES if not os.path.isabs(candidate) else _DATA_PREFIXES[:1]
             for prefix in prefixes:

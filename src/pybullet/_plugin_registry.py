@@ -1,0 +1,63 @@
+"""The plugins of one client, and the places its file plugin adds to those that are searched."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from carom.formats.archives import Archive
+    from carom.formats.search import AssetSearch
+
+BUILT_IN = {"pdControlPlugin": 0, "collisionFilterPlugin": 1, "tinyRendererPlugin": 2, "fileIOPlugin": 3}
+"""Ids of the plugins that are part of PyBullet."""
+FILE_IO = BUILT_IN["fileIOPlugin"]
+
+
+class Plugins:
+    """Plugins of a client.
+
+    Attributes:
+        loaded: Ids of those that have been loaded.
+        places: Folders and archives by slot. Slot 0 is the file system itself.
+    """
+
+    def __init__(self) -> None:
+        self.loaded: set[int] = set()
+        self.places: dict[int, Path | Archive] = {}
+
+    def slot_of(self, path: Path) -> int | None:
+        """The slot of a folder or an archive that is searched already."""
+        for slot, place in self.places.items():
+            if path == (place if isinstance(place, Path) else place.path):
+                return slot
+        return None
+
+    def add_place(self, place: Path | Archive) -> int:
+        """Searches a folder or an archive from now on; returns its slot: the least that is free."""
+        slot = next(n for n in range(1, len(self.places) + 2) if n not in self.places)
+        self.places[slot] = place
+        return slot
+
+    def remove_place(self, slot: int) -> None:
+        """Searches a place no more; nothing if there is none."""
+        place = self.places.pop(slot, None)
+        if place is not None and not isinstance(place, Path):
+            place.close()
+
+    def remove_all_places(self) -> None:
+        """Searches the file system only."""
+        for slot in list(self.places):
+            self.remove_place(slot)
+
+    def search(self, additional: Path | None) -> AssetSearch:
+        """Where files are looked for.
+
+        Args:
+            additional: The directory of `setAdditionalSearchPath`.
+        """
+        from carom.formats.search import AssetSearch
+
+        places = [self.places[slot] for slot in sorted(self.places)]
+        folders = (place if isinstance(place, Path) else place.folder for place in places)
+        return AssetSearch(additional, tuple(folders))

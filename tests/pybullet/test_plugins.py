@@ -1,0 +1,102 @@
+"""Plugins: ids and answers are PyBullet's; files are found in zip archives."""
+
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import pybullet as p
+import pybullet_data
+
+DATA = Path(pybullet_data.getDataPath())
+
+
+@pytest.fixture
+def archive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A zip file with a robot and its mesh, and another zip file with one more robot."""
+    with zipfile.ZipFile(tmp_path / "inner.zip", "w") as inner:
+        inner.write(DATA / "cartpole.urdf", "deep/cart.urdf")
+    with zipfile.ZipFile(tmp_path / "outer.zip", "w") as outer:
+        outer.writestr(
+            "robots/cube.urdf", (DATA / "cube_small.urdf").read_text().replace("cube.obj", "mesh.obj")
+        )
+        outer.write(DATA / "cube.obj", "robots/mesh.obj")
+        outer.write(tmp_path / "inner.zip", "inner.zip")
+        outer.writestr("../outside.txt", "no")
+    (tmp_path / "inner.zip").unlink()
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    p.connect(p.DIRECT)
+    yield tmp_path / "outer.zip"
+    if p.isConnected():
+        p.disconnect()
+
+
+def found(name: str) -> bool:
+    try:
+        p.loadURDF(name)
+    except p.error:
+        return False
+    return True
+
+
+def test_files_in_archives_are_found(archive: Path) -> None:
+    plugin = p.loadPlugin("fileIOPlugin")
+    assert plugin == p.loadPlugin("fileIOPlugin") == 3
+    assert not found("robots/cube.urdf")
+    add = [p.AddFileIOAction, p.ZipFileIO]
+    assert p.executePluginCommand(plugin, str(archive), add) == 1
+    assert p.executePluginCommand(plugin, str(archive), add) == 1
+    assert found("robots/cube.urdf")
+    assert p.getVisualShapeData(0)[0][4].endswith(b"mesh.obj")
+    assert p.executePluginCommand(plugin, "inner.zip", add) == 2
+    assert found("deep/cart.urdf")
+    assert p.executePluginCommand(plugin, "", [p.RemoveFileIOAction, 1]) == 1
+    assert not found("robots/cube.urdf")
+    assert found("deep/cart.urdf")
+    p.resetSimulation()
+    assert found("deep/cart.urdf")
+    p.unloadPlugin(plugin)
+    p.unloadPlugin(99)
+    assert not found("deep/cart.urdf")
+    assert p.executePluginCommand(plugin, str(archive), add) == -1
+    assert not (archive.parent / "outside.txt").exists()
+
+
+def test_folders_are_searched(archive: Path, tmp_path: Path) -> None:
+    plugin = p.loadPlugin("fileIOPlugin")
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "cart.urdf").write_bytes((DATA / "cartpole.urdf").read_bytes())
+    assert p.executePluginCommand(plugin, str(tmp_path / "own"), [p.AddFileIOAction, p.PosixFileIO]) == 1
+    assert found("cart.urdf")
+
+
+def test_what_cannot_be_done_is_minus_one(
+    archive: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    plugin = p.loadPlugin("fileIOPlugin")
+    (tmp_path / "bad.zip").write_bytes(b"PK rubbish")
+    for name, numbers in (
+        ("missing.zip", [p.AddFileIOAction, p.ZipFileIO]),
+        (str(tmp_path / "bad.zip"), [p.AddFileIOAction, p.ZipFileIO]),
+        ("x", [p.AddFileIOAction, p.CNSFileIO]),
+        ("x", [5]),
+        ("x", None),
+    ):
+        assert p.executePluginCommand(plugin, name, numbers) == -1
+    assert p.executePluginCommand(99, "x", [1], [0.5]) == -1
+    assert len(caplog.records) == 6
+    with pytest.raises(p.error):
+        p.executePluginCommand(plugin, "x", 5)  # type: ignore[arg-type]
+
+
+def test_other_plugins_say_what_they_are(archive: Path, caplog: pytest.LogCaptureFixture) -> None:
+    names = ("pdControlPlugin", "collisionFilterPlugin", "tinyRendererPlugin")
+    assert [p.loadPlugin(name) for name in names] == [0, 1, 2]
+    assert p.executePluginCommand(0, "", [1]) == -1
+    assert "PD_CONTROL" in caplog.records[-1].message
+    assert p.loadPlugin("eglRendererPlugin", "_eglRendererPlugin") == -1
+    assert "getCameraImage" in caplog.records[-1].message
+    assert p.loadPlugin("/somewhere/libmine.so") == -1
+    assert "PyBullet's engine" in caplog.records[-1].message
