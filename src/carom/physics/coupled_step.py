@@ -5,7 +5,7 @@ import warp as wp
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Int32, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.islands import build_islands
+from carom.physics.islands import build_islands, may_be_pushed
 from carom.physics.solver import solve_island
 from carom.physics.step import begin_step, constrained_motion, end_step, free_motion
 
@@ -53,7 +53,9 @@ def coupled_step_kernel(
     for _substep in range(substeps):
         build_islands(settings, model, state, shapes, contacts, users, couplings, world)
         for tree in range(settings.tree_count):
-            free_motion(model, settings, state, scratch, world, tree, couplings.tree_touches[world, tree])
+            free_motion(
+                model, settings, state, scratch, world, tree, may_be_pushed(model, couplings, world, tree)
+            )
         solve_islands(model, settings, state, scratch, shapes, contacts, users, couplings, world)
         constrained_motion(settings, model, state, scratch, world)
     end_step(settings, model, state, scratch, world, ends)

@@ -108,13 +108,15 @@ def link_bias_forces(
             joint_omega = Vector3(0.0, 0.0, 0.0)
             joint_velocity = Vector3(0.0, 0.0, 0.0)
             first = model.link[link].first_dof
-            for dof in range(first, first + model.link[link].dof_count):
+            dof = first + 0
+            while dof < first + model.link[link].dof_count:
                 rate = state.dof_velocity[world, dof]
                 joint_omega += scratch.dof[world, dof].angular * rate
                 joint_velocity += scratch.dof[world, dof].linear * rate
                 if purpose == INVERSE_DYNAMICS:
                     alpha += scratch.dof[world, dof].angular * scratch.dof[world, dof].acceleration
                     acceleration += scratch.dof[world, dof].linear * scratch.dof[world, dof].acceleration
+                dof += 1
             omega += joint_omega
             velocity += joint_velocity
             # The motion subspace turns with the link: spatial cross product of both velocities.
@@ -175,7 +177,8 @@ def generalized_forces(
         force = scratch.link[world, link].force
         moment = scratch.link[world, link].moment
         first = model.link[link].first_dof
-        for dof in range(first, first + model.link[link].dof_count):
+        dof = first + 0
+        while dof < first + model.link[link].dof_count:
             needed = wp.dot(scratch.dof[world, dof].angular, moment) + wp.dot(
                 scratch.dof[world, dof].linear, force
             )
@@ -183,6 +186,7 @@ def generalized_forces(
             if purpose == FREE_MOTION:
                 applied = state.dof_torque[world, dof]
             scratch.dof[world, dof].force = applied - needed
+            dof += 1
         if link > base:
             parent = model.link[link].parent
             scratch.link[world, parent].force += force

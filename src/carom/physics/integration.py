@@ -27,10 +27,12 @@ def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, d
     base = model.tree[tree].first_link
     q = model.tree[tree].first_position
     velocity = base_velocity(model, state, world, tree)
-    for axis in range(3):
-        state.position[world, q + axis] += dt * velocity[axis]
-    turn = rotation_step(base_omega(model, state, world, tree), dt)
-    store_quaternion(state, world, q + 3, turn * load_quaternion(state, world, q + 3))
+    omega = base_omega(model, state, world, tree)
+    if wp.dot(velocity, velocity) + wp.dot(omega, omega) != 0.0:
+        for axis in range(3):
+            state.position[world, q + axis] += dt * velocity[axis]
+        turn = rotation_step(omega, dt)
+        store_quaternion(state, world, q + 3, turn * load_quaternion(state, world, q + 3))
 
     for link in range(base + 1, base + model.tree[tree].link_count):
         joint_type = model.link[link].joint_type

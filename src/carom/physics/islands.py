@@ -93,3 +93,9 @@ def build_islands(
         couplings.contact_next[world, contact] = couplings.tree_first_contact[world, root]
         couplings.tree_first_contact[world, root] = contact
         contact -= 1
+
+
+@func
+def may_be_pushed(model: Model, couplings: Couplings, world: Int32, tree: Int32) -> bool:
+    """Whether contacts, user constraints, motors or limits can act on a tree."""
+    return couplings.tree_touches[world, tree] != 0 or model.tree[tree].constraint_count > 0

@@ -6,7 +6,7 @@ no row changed its velocity by more than the residual threshold, or after the gi
 
 import warp as wp
 
-from carom.model.codes import LIMIT, MOTOR, SPHERICAL_LIMIT, SPHERICAL_MOTOR
+from carom.model.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
 from carom.model.real import Int32, Vector4, func, real, shared_func
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.feedback import gather_constraint_forces
@@ -14,6 +14,30 @@ from carom.physics.limits import limit_rows, spherical_limit_rows
 from carom.physics.motors import motor_row, spherical_motor_rows
 from carom.physics.quarantine import report_fault
 from carom.physics.rows import row_dof
+
+
+@func
+def is_constrained(model: Model, state: State, world: Int32, root: Int32) -> bool:
+    """Whether a motor or a limit of a batch of trees may push in this substep."""
+    constraint = model.tree[root].first_constraint
+    end = constraint + model.tree[root].batch_constraints
+    while constraint < end:
+        link = model.constraint[constraint].link
+        kind = model.constraint[constraint].kind
+        if kind == MOTOR:
+            if state.dof_motor[world, model.link[link].first_dof][MOTOR_MAX_IMPULSE] != 0.0:
+                return True
+        elif kind == LIMIT:
+            position = state.position[world, model.link[link].first_position]
+            if (
+                position <= model.constraint[constraint].lower
+                or position >= model.constraint[constraint].upper
+            ):
+                return True
+        else:
+            return True
+        constraint += 1
+    return False
 
 
 @func

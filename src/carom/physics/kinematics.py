@@ -33,31 +33,28 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
         pivot = wp.transform_get_translation(parent_pose) + wp.quat_rotate(
             parent_orientation, model.link[link].pivot_in_parent
         )
-        child_orientation = parent_orientation * model.link[link].joint_rotation
+        # Kept in the parent's frame for as long as possible: the next link waits for the world pose only.
+        turn = model.link[link].joint_rotation
         slide = Vector3(0.0, 0.0, 0.0)
 
         joint_type = model.link[link].joint_type
         q = model.link[link].first_position
         if joint_type == REVOLUTE:
-            child_orientation = child_orientation * axis_rotation(
-                model.link[link].unit_axis, state.position[world, q]
-            )
+            turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
         elif joint_type == PRISMATIC:
             slide = model.link[link].axis * state.position[world, q]
         elif joint_type == SPHERICAL:
-            child_orientation = child_orientation * load_quaternion(state, world, q)
+            turn = turn * load_quaternion(state, world, q)
         elif joint_type == PLANAR:
             # The translations are measured along axes that do not turn with the joint.
             pivot += wp.quat_rotate(
-                child_orientation,
+                parent_orientation * turn,
                 model.link[link].planar_axis1 * state.position[world, q + 1]
                 + model.link[link].planar_axis2 * state.position[world, q + 2],
             )
-            child_orientation = child_orientation * axis_rotation(
-                model.link[link].unit_axis, state.position[world, q]
-            )
+            turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
 
-        child_orientation = canonical(child_orientation)
+        child_orientation = canonical(parent_orientation * turn)
         offset = wp.quat_rotate(child_orientation, model.link[link].com_from_pivot + slide)
         poses[world, link] = Transform(pivot + offset, child_orientation)
 

@@ -5,6 +5,8 @@ row operations run four columns at a time. Dofs are numbered from the root, so t
 H = Lᵀ D L fills nothing in: an entry is zero unless one dof carries the other
 (R. Featherstone, Efficient factorization of the joint-space inertia matrix for branched kinematic
 trees, IJRR 2005). Its pivots D are the articulated inertias of the dofs.
+
+Inner loops are written with `while`: Warp's `range` costs as much as what they do.
 """
 
 import warp as wp
@@ -35,7 +37,8 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
         inertia = scratch.link[world, link].composite_inertia
 
         first_dof = model.link[link].first_dof
-        for dof in range(first_dof, first_dof + model.link[link].dof_count):
+        dof = first_dof + 0
+        while dof < first_dof + model.link[link].dof_count:
             angular = scratch.dof[world, dof].angular
             linear = scratch.dof[world, dof].linear
             # Momentum of the subtree for a unit rate of this dof.
@@ -43,14 +46,17 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
             push = mass * linear - wp.cross(moment, angular)
 
             row = matrix + (dof - first) * blocks
-            for block in range(row, row + blocks):
+            block = row + 0
+            while block < row + blocks:
                 scratch.block_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
-            other = dof
+                block += 1
+            other = dof + 0
             while other >= 0:
                 scratch.entry_factor[world, 4 * row + other - first] = wp.dot(
                     scratch.dof[world, other].angular, spin
                 ) + wp.dot(scratch.dof[world, other].linear, push)
                 other = model.dof[other].parent
+            dof += 1
 
         if link > base:
             parent = model.link[link].parent
@@ -107,18 +113,25 @@ def solve(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     count = model.tree[tree].dof_count
     blocks = (count + 3) // 4
     matrix = model.tree[tree].first_block
-    for step in range(count):
-        k = count - 1 - step
+    k = count - 1
+    while k >= 0:
         force = scratch.dof[world, first + k].force
         row = matrix + k * blocks
-        for i in range(k):
+        i = Int32(0)
+        while i < k:
             scratch.dof[world, first + i].force -= scratch.entry_factor[world, 4 * row + i] * force
-    for k in range(count):
+            i += 1
+        k -= 1
+    k = Int32(0)
+    while k < count:
         acceleration = scratch.dof[world, first + k].force * scratch.dof[world, first + k].inverse_pivot
         row = matrix + k * blocks
-        for i in range(k):
+        i = Int32(0)
+        while i < k:
             acceleration -= scratch.entry_factor[world, 4 * row + i] * scratch.dof[world, first + i].force
+            i += 1
         scratch.dof[world, first + k].force = acceleration
+        k += 1
 
 
 @func

@@ -9,7 +9,7 @@ from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstra
 from carom.model.real import Int32, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.coupled_step import solve_islands
-from carom.physics.islands import build_islands
+from carom.physics.islands import build_islands, may_be_pushed
 from carom.physics.step import begin_step, constrained_motion, end_step, free_motion
 
 
@@ -39,7 +39,9 @@ def free_motion_kernel(
     """Velocities after a substep if there were no constraints."""
     world = wp.tid()
     for tree in range(settings.tree_count):
-        free_motion(model, settings, state, scratch, world, tree, couplings.tree_touches[world, tree])
+        free_motion(
+            model, settings, state, scratch, world, tree, may_be_pushed(model, couplings, world, tree)
+        )
 
 
 @kernel

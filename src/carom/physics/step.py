@@ -12,7 +12,12 @@ from carom.physics.feedback import (
     measure_joint_wrenches,
 )
 from carom.physics.integration import integrate_positions
-from carom.physics.joint_solver import apply_delta_velocities, clear_delta_velocities, solve_joints
+from carom.physics.joint_solver import (
+    apply_delta_velocities,
+    clear_delta_velocities,
+    is_constrained,
+    solve_joints,
+)
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd, joint_damping
@@ -36,9 +41,9 @@ def free_motion(
     scratch: Scratch,
     world: Int32,
     tree: Int32,
-    touched: Int32,
+    pushed: bool,
 ):
-    """Velocities after the substep if there were no constraints."""
+    """Velocities after the substep if there were no constraints; what they need if something is `pushed`."""
     explicit_pd(model, state, world, tree)
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
@@ -52,7 +57,7 @@ def free_motion(
         measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
         clear_constraint_forces(model, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
-    if model.tree[tree].constraint_count > 0 or touched != 0:
+    if pushed:
         invert(model, scratch, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
 
@@ -96,7 +101,8 @@ def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch
     begin_step(settings, model, state, scratch, world)
     for _substep in range(substeps):
         for tree in range(settings.tree_count):
-            free_motion(model, settings, state, scratch, world, tree, 0)
+            pushed = is_constrained(model, state, world, model.tree[tree].batch)
+            free_motion(model, settings, state, scratch, world, tree, pushed)
         for tree in range(settings.tree_count):
             solve_joints(model, settings, state, scratch, world, tree)
         constrained_motion(settings, model, state, scratch, world)
