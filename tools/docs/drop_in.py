@@ -57,7 +57,7 @@ LIMITED = {
     "connect": "there are no physics servers",
     "configureDebugVisualizer": "reflections, single-step rendering and the flags of virtual reality are "
     "recorded and have no effect",
-    "changeDynamics": "what concerns sleeping is recorded and has no effect.",
+    "changeDynamics": "what concerns sleeping is recorded and has no effect",
     "getClosestPoints": "between bodies; `collisionShapeA` and `collisionShapeB` raise `pybullet.error`",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
