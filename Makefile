@@ -71,8 +71,8 @@ oracle: .oracle/pybullet
 
 # --- what users run ------------------------------------------------------------------------------
 
+# Builds only the kernels it needs; `make test` builds them all.
 demo: $(VENV)/carom
-	$(RUN) -m carom warmup
 	$(RUN) examples/demo.py
 
 test: $(VENV)/dev
