@@ -12,6 +12,7 @@ quaternions are (x, y, z, w). A link has the index of the joint that carries it;
 from pybullet._algebra import *
 from pybullet._bodies import *
 from pybullet._camera import *
+from pybullet._camera_legacy import *
 from pybullet._camera_maths import *
 from pybullet._collision_filters import *
 from pybullet._collision_shapes import *

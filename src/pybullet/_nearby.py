@@ -11,7 +11,6 @@ from pybullet._arguments import bound, integer, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._contacts import ContactPoint
-from pybullet._errors import fail
 from pybullet._link_rows import Place, places
 
 if TYPE_CHECKING:
@@ -25,7 +24,6 @@ __all__ = ["getClosestPoints", "getOverlappingObjects"]
 _ANY_LINK = -2
 _NONE = (0.0, 0.0, 0.0)
 _BAD_CORNER = "aabbMin and aabbMax must be corners [x,y,z] of a box."
-_BODILESS = "getClosestPoints: collisionShapeA and collisionShapeB are not available in this version of Carom"
 
 
 @exported
@@ -43,36 +41,50 @@ def getClosestPoints(
     collisionShapeOrientationB: Sequence[float] | None = None,
     physicsClientId: int = 0,
 ) -> tuple[ContactPoint, ...]:
-    """The nearest points of the links of two bodies; shapes without bodies are not available yet.
+    """The nearest points of the links of two bodies, or of collision shapes that no body is made of.
 
     Args:
-        bodyA: A body.
+        bodyA: A body; -1 if there is only a shape on this side.
         bodyB: Another, or the same.
         distance: Only points at most this far apart [m].
         linkIndexA: Link of `bodyA`, -1 for the base; -2 for all links.
         linkIndexB: Link of `bodyB`.
-        collisionShapeA: -1.
-        collisionShapeB: -1.
-        collisionShapePositionA: Not used.
-        collisionShapePositionB: Not used.
-        collisionShapeOrientationA: Not used.
-        collisionShapeOrientationB: Not used.
+        collisionShapeA: A collision shape beside, or instead of, `bodyA`; -1 for none.
+        collisionShapeB: The same for the other side.
+        collisionShapePositionA: Where that shape is [m]; the origin if not given.
+        collisionShapePositionB: The same for the other side.
+        collisionShapeOrientationA: Its orientation (x, y, z, w).
+        collisionShapeOrientationB: The same for the other side.
         physicsClientId: The connection.
 
     Returns:
         A tuple like that of `getContactPoints` for each pair of shapes within reach, without forces;
-        empty for bodies or links that do not exist.
+        empty for bodies, links or shapes that do not exist. Shapes without bodies have link -2.
 
     Raises:
-        pybullet.error: Not connected, or a shape without a body is given.
+        pybullet.error: Not connected, or a position or orientation is not three, or four, finite numbers.
     """
-    world = client_of(physicsClientId).world
+    client = client_of(physicsClientId)
+    world = client.world
     body_a, body_b = integer(bodyA, "bodyA"), integer(bodyB, "bodyB")
     reach = bound(distance, "distance")
-    links_a = _rows(world, body_a, integer(linkIndexA, "linkIndexA"))
-    links_b = _rows(world, body_b, integer(linkIndexB, "linkIndexB"))
-    if integer(collisionShapeA, "collisionShapeA") >= 0 or integer(collisionShapeB, "collisionShapeB") >= 0:
-        fail(_BODILESS)
+    link_a, link_b = integer(linkIndexA, "linkIndexA"), integer(linkIndexB, "linkIndexB")
+    shape_a, shape_b = (
+        integer(collisionShapeA, "collisionShapeA"),
+        integer(collisionShapeB, "collisionShapeB"),
+    )
+    if shape_a >= 0 or shape_b >= 0:
+        from pybullet._bare_shapes import bare_shape, links_of, nearest_points
+
+        sides = []
+        for side, body, link, shape, position, orientation in (
+            ("A", body_a, link_a, shape_a, collisionShapePositionA, collisionShapeOrientationA),
+            ("B", body_b, link_b, shape_b, collisionShapePositionB, collisionShapeOrientationB),
+        ):
+            bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
+            sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
+        return tuple(_contact_point(a, b, points) for a, b, points in nearest_points(*sides, reach))
+    links_a, links_b = _rows(world, body_a, link_a), _rows(world, body_b, link_b)
     found = world.queries().nearest(list(product(links_a, links_b)), reach)
     first = places(world, [a for a, _b, _points in found])
     second = places(world, [b for _a, b, _points in found])

@@ -16,7 +16,6 @@ from pybullet._errors import fail
 
 __all__ = [
     "loadSoftBody",
-    "renderImage",
     "unsupportedChangeScaling",
 ]
 
@@ -71,4 +70,3 @@ loadSoftBody = _later(
     'useSelfCollision=0, repulsionStiffness=0.5, simFileName="", physicsClientId=0',
 )
 unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
-renderImage = _later("renderImage", "*arguments")

@@ -37,6 +37,7 @@ TITLES = {
     "_gui": "Sliders, keys and the window's camera",
     "_debug_drawing": "Drawings",
     "_camera": "Camera images",
+    "_camera_legacy": "Camera images, the old way",
     "_camera_maths": "Camera matrices",
     "_textures": "Colours and textures",
     "_soft_bodies": "Soft bodies",
@@ -58,7 +59,6 @@ LIMITED = {
     "configureDebugVisualizer": "reflections, single-step rendering and the flags of virtual reality are "
     "recorded and have no effect",
     "changeDynamics": "what concerns sleeping is recorded and has no effect",
-    "getClosestPoints": "between bodies; `collisionShapeA` and `collisionShapeB` raise `pybullet.error`",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
 }

@@ -1,0 +1,117 @@
+"""Nearest points of collision shapes that no body is made of.
+
+They are compared in a world made for the purpose, which holds the shape and copies of the links it is
+compared with, all of them fixed where they are now.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Pose
+from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
+from pybullet._arguments import integer, rotation, vector3
+from pybullet._clients import Client
+from pybullet._errors import logger
+
+if TYPE_CHECKING:
+    from carom.model.body_spec import BodySpec
+    from carom.queries import NearestPoints
+    from pybullet._link_rows import Place
+
+BARE_LINK = -2
+"""What is reported as link of a shape without a body."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """Something to compare: a link, or a shape without a body.
+
+    Attributes:
+        place: Body and link that are reported.
+        spec: Its shapes, as a fixed body.
+        pose: Of its link frame, in the world.
+    """
+
+    place: Place
+    spec: BodySpec
+    pose: Pose
+
+
+def bare_shape(
+    client: Client, number: Any, body_id: int, position: Any, orientation: Any, side: str
+) -> Thing | None:
+    """A collision shape at a place; None, with a warning, if there is no such shape.
+
+    Args:
+        client: The connection.
+        number: Id of the shape.
+        body_id: What the script gave as body beside it; it is reported.
+        position: Where the shape is; None for the origin.
+        orientation: How it is turned; None for not at all.
+        side: A or B, for errors.
+
+    Raises:
+        pybullet.error: The position is not three, or the orientation not four, finite numbers.
+    """
+    from carom.model.body_spec import BodySpec, LinkSpec
+    from carom.model.flags import LoadFlags
+
+    problem = "getClosestPoints failed."
+    name = f"collisionShape{side}"
+    shape = client.shapes.collisions.get(integer(number, name))
+    place = (0.0, 0.0, 0.0)
+    if position is not None:
+        place = vector3(position, problem, f"collisionShapePosition{side}")
+    turn = (0.0, 0.0, 0.0, 1.0)
+    if orientation is not None:
+        given = rotation(orientation, problem, f"collisionShapeOrientation{side}")
+        turn = quaternion_from_matrix(rotation_matrix(given))
+    if shape is None:
+        logger.warning("getClosestPoints: there is no %s %d.", name, number)
+        return None
+    link = LinkSpec("", collisions=shape.collisions, compound_margin=0.0)
+    spec = BodySpec("", link, fixed_base=True, flags=LoadFlags.USE_IMPLICIT_CYLINDER)
+    return Thing((body_id, BARE_LINK), spec, Pose(place, turn))
+
+
+def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
+    """A link, or with `BARE_LINK` all links, of a body; nothing if there is no such body or link."""
+    from carom.model.body_spec import BodySpec
+
+    body = client.world.bodies.get(body_id)
+    if body is None:
+        return []
+    things = []
+    for index in range(-1, body.joint_count) if link == BARE_LINK else [link]:
+        if not -1 <= index < body.joint_count:
+            continue
+        spec = body.link_spec(index)
+        x, y, z, qx, qy, qz, qw = client.world.link_pose[body.first_link + 1 + index].tolist()
+        pose = compose(Pose((x, y, z), (qx, qy, qz, qw)), inverse(spec.inertial_frame))
+        copy = replace(spec, parent=-1, visuals=())
+        things.append(
+            Thing((body.id, index), BodySpec("", copy, fixed_base=True, flags=body.spec.flags), pose)
+        )
+    return things
+
+
+def nearest_points(
+    first: list[Thing], second: list[Thing], reach: float
+) -> list[tuple[Place, Place, NearestPoints]]:
+    """The nearest points of all shapes of pairs of things that are no farther apart than `reach` [m]."""
+    from carom.world import World
+
+    with World() as world:
+        rows: list[list[int]] = []
+        places: dict[int, Place] = {}
+        for things in (first, second):
+            rows.append([])
+            for thing in things:
+                row = world.load(thing.spec, thing.pose.position, thing.pose.orientation).first_link
+                places[row] = thing.place
+                rows[-1].append(row)
+        found = world.queries().nearest(list(product(*rows)), reach)
+        return [(places[a], places[b], points) for a, b, points in found]
