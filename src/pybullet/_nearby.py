@@ -83,14 +83,15 @@ def getClosestPoints(
         ):
             bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
             sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
-        return tuple(_contact_point(a, b, points) for a, b, points in nearest_points(*sides, reach))
+        found = nearest_points(sides[0], sides[1], reach)
+        return tuple(_contact_point(a, b, points) for a, b, points in found)
     links_a, links_b = _rows(world, body_a, link_a), _rows(world, body_b, link_b)
-    found = world.queries().nearest(list(product(links_a, links_b)), reach)
-    first = places(world, [a for a, _b, _points in found])
-    second = places(world, [b for _a, b, _points in found])
+    rows = world.queries().nearest(list(product(links_a, links_b)), reach)
+    first = places(world, [a for a, _b, _points in rows])
+    second = places(world, [b for _a, b, _points in rows])
     return tuple(
         _contact_point(place_a, place_b, points)
-        for place_a, place_b, (_a, _b, points) in zip(first, second, found, strict=True)
+        for place_a, place_b, (_a, _b, points) in zip(first, second, rows, strict=True)
         if place_a is not None and place_b is not None
     )
 
