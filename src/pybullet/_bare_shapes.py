@@ -105,13 +105,15 @@ def nearest_points(
     from carom.world import World
 
     with World() as world:
-        rows: list[list[int]] = []
         places: dict[int, Place] = {}
-        for things in (first, second):
-            rows.append([])
+
+        def rows(things: list[Thing]) -> list[int]:
+            added = []
             for thing in things:
                 row = world.load(thing.spec, thing.pose.position, thing.pose.orientation).first_link
                 places[row] = thing.place
-                rows[-1].append(row)
-        found = world.queries().nearest(list(product(*rows)), reach)
+                added.append(row)
+            return added
+
+        found = world.queries().nearest(list(product(rows(first), rows(second))), reach)
         return [(places[a], places[b], points) for a, b, points in found]

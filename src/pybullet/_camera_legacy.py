@@ -50,7 +50,8 @@ def renderImage(*arguments: Any) -> Any:
         return getCameraImage(*arguments)
     if len(arguments) in (7, 8):
         width, height, eye, target, up, near, far = arguments[:7]
-        view = computeViewMatrix(*(vector3(values, _BAD_CAMERA, "camera") for values in (eye, target, up)))
+        eye, target, up = (vector3(values, _BAD_CAMERA, "camera") for values in (eye, target, up))
+        view = computeViewMatrix(eye, target, up)
         angle = arguments[7] if len(arguments) == 8 else _DEFAULT_FIELD_OF_VIEW
     elif len(arguments) == 11:
         width, height, target, distance, yaw, pitch, roll, up_axis, near, far, angle = arguments
