@@ -115,5 +115,6 @@ def nearest_points(
                 added.append(row)
             return added
 
-        found = world.queries().nearest(list(product(rows(first), rows(second))), reach)
+        pairs = list(product(rows(first), rows(second)))
+        found = world.queries().nearest(pairs, reach)
         return [(places[a], places[b], points) for a, b, points in found]
