@@ -24,15 +24,19 @@ from carom.model.codes import (
 from carom.model.contact_structs import Contacts, Couplings
 from carom.model.real import (
     Index4,
+    Index4Rows,
     Int32,
+    IntRows,
     Matrix4,
     Matrix48,
     Matrix84,
     Vector4,
     Vector4Rows,
     Vector8,
+    Vector8Rows,
     func,
     real,
+    shared_func,
 )
 from carom.model.structs import Scratch, Settings
 
@@ -186,18 +190,19 @@ def relax_friction(
 
 
 @func
-def direction_row(couplings: Couplings, world: Int32, contact: Int32, direction: Int32) -> Int32:
+def direction_row(contact_rows: Index4Rows, world: Int32, contact: Int32, direction: Int32) -> Int32:
     """Row of a contact along its normal, 0, or a friction direction, 1 or 2."""
-    rows = couplings.contact_rows[world, contact]
+    rows = contact_rows[world, contact]
     if direction == 0:
         return rows[NORMAL_ROW]
     return rows[LATERAL_ROW] + direction - 1
 
 
-@func
+@shared_func
 def gather_blocks(
     rows: Vector4Rows,
-    couplings: Couplings,
+    starts: IntRows,
+    contact_rows: Index4Rows,
     world: Int32,
     first: Int32,
     count: Int32,
@@ -209,7 +214,8 @@ def gather_blocks(
 
     Args:
         rows: `Couplings.jacobian_row` or `Couplings.jacobian_response`.
-        couplings: The rows of the contacts.
+        starts: `Couplings.coupling_start`.
+        contact_rows: `Couplings.contact_rows`.
         world: The world.
         first: First contact.
         count: Number of contacts.
@@ -220,7 +226,7 @@ def gather_blocks(
     result = Matrix84()
     for i in range(4):
         if i < count:
-            start = couplings.coupling_start[world, direction_row(couplings, world, first + i, direction)]
+            start = starts[world, direction_row(contact_rows, world, first + i, direction)]
             for block in range(SMALL):
                 if block < blocks:
                     entries = rows[world, start + offset + block]
@@ -229,36 +235,26 @@ def gather_blocks(
     return result
 
 
-@func
-def gather_responses(
-    couplings: Couplings,
+@shared_func
+def gather_numbers(
+    terms: Vector8Rows,
+    contact_rows: Index4Rows,
     world: Int32,
     first: Int32,
     count: Int32,
     direction: Int32,
-    blocks: Int32,
-    offset: Int32,
-) -> Matrix48:
-    """Responses to impulses of contacts along a direction, as rows; arguments as for `gather_blocks`."""
-    return wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, direction, blocks, offset)
-    )
-
-
-@func
-def gather_numbers(
-    couplings: Couplings, world: Int32, first: Int32, count: Int32, direction: Int32, column: Int32
+    column: Int32,
 ) -> Vector4:
     """A column of `coupling_terms` over contacts, along a direction."""
     result = Vector4(0.0, 0.0, 0.0, 0.0)
     for i in range(4):
         if i < count:
-            row = direction_row(couplings, world, first + i, direction)
-            result[i] = couplings.coupling_terms[world, row][column]
+            row = direction_row(contact_rows, world, first + i, direction)
+            result[i] = terms[world, row][column]
     return result
 
 
-@func
+@shared_func
 def gains(
     response_a: Matrix48, jacobian_a: Matrix84, response_b: Matrix48, jacobian_b: Matrix84, mass: Vector4
 ) -> Matrix4:
@@ -276,25 +272,30 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
     """Make a patch of `count` contacts, from `first` on, whose rows have been written."""
     a = place[1]
     b = place[3]
+    terms = couplings.coupling_terms
+    starts = couplings.coupling_start
+    rows = couplings.contact_rows
     couplings.patch[world, patch].place = place
     couplings.patch[world, patch].first_contact = first
     couplings.patch[world, patch].count = count
 
-    mass0 = gather_numbers(couplings, world, first, count, 0, ROW_EFFECTIVE_MASS)
-    couplings.patch[world, patch].share0 = gather_numbers(couplings, world, first, count, 0, ROW_SHARE)
-    couplings.patch[world, patch].softness0 = gather_numbers(couplings, world, first, count, 0, ROW_SOFTNESS)
+    mass0 = gather_numbers(terms, rows, world, first, count, 0, ROW_EFFECTIVE_MASS)
+    couplings.patch[world, patch].share0 = gather_numbers(terms, rows, world, first, count, 0, ROW_SHARE)
+    couplings.patch[world, patch].softness0 = gather_numbers(
+        terms, rows, world, first, count, 0, ROW_SOFTNESS
+    )
     couplings.patch[world, patch].inverse_mass0 = gather_numbers(
-        couplings, world, first, count, 0, ROW_INVERSE_MASS
+        terms, rows, world, first, count, 0, ROW_INVERSE_MASS
     )
     couplings.patch[world, patch].effective_mass0 = mass0
-    couplings.patch[world, patch].impulse0 = gather_numbers(couplings, world, first, count, 0, ROW_IMPULSE)
-    jacobian0_a = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 0, a, 0)
-    jacobian0_b = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 0, b, a)
+    couplings.patch[world, patch].impulse0 = gather_numbers(terms, rows, world, first, count, 0, ROW_IMPULSE)
+    jacobian0_a = gather_blocks(couplings.jacobian_row, starts, rows, world, first, count, 0, a, 0)
+    jacobian0_b = gather_blocks(couplings.jacobian_row, starts, rows, world, first, count, 0, b, a)
     response0_a = wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 0, a, 0)
+        gather_blocks(couplings.jacobian_response, starts, rows, world, first, count, 0, a, 0)
     )
     response0_b = wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 0, b, a)
+        gather_blocks(couplings.jacobian_response, starts, rows, world, first, count, 0, b, a)
     )
     couplings.patch[world, patch].jacobian0_a = jacobian0_a
     couplings.patch[world, patch].jacobian0_b = jacobian0_b
@@ -302,36 +303,36 @@ def gather_patch(couplings: Couplings, world: Int32, patch: Int32, first: Int32,
     couplings.patch[world, patch].response0_b = response0_b
     couplings.patch[world, patch].gain00 = gains(response0_a, jacobian0_a, response0_b, jacobian0_b, mass0)
 
-    mass1 = gather_numbers(couplings, world, first, count, 1, ROW_EFFECTIVE_MASS)
-    mass2 = gather_numbers(couplings, world, first, count, 2, ROW_EFFECTIVE_MASS)
-    couplings.patch[world, patch].friction = gather_numbers(couplings, world, first, count, 1, ROW_FRICTION)
-    couplings.patch[world, patch].share1 = gather_numbers(couplings, world, first, count, 1, ROW_SHARE)
-    couplings.patch[world, patch].share2 = gather_numbers(couplings, world, first, count, 2, ROW_SHARE)
+    mass1 = gather_numbers(terms, rows, world, first, count, 1, ROW_EFFECTIVE_MASS)
+    mass2 = gather_numbers(terms, rows, world, first, count, 2, ROW_EFFECTIVE_MASS)
+    couplings.patch[world, patch].friction = gather_numbers(terms, rows, world, first, count, 1, ROW_FRICTION)
+    couplings.patch[world, patch].share1 = gather_numbers(terms, rows, world, first, count, 1, ROW_SHARE)
+    couplings.patch[world, patch].share2 = gather_numbers(terms, rows, world, first, count, 2, ROW_SHARE)
     couplings.patch[world, patch].inverse_mass1 = gather_numbers(
-        couplings, world, first, count, 1, ROW_INVERSE_MASS
+        terms, rows, world, first, count, 1, ROW_INVERSE_MASS
     )
     couplings.patch[world, patch].inverse_mass2 = gather_numbers(
-        couplings, world, first, count, 2, ROW_INVERSE_MASS
+        terms, rows, world, first, count, 2, ROW_INVERSE_MASS
     )
     couplings.patch[world, patch].effective_mass1 = mass1
     couplings.patch[world, patch].effective_mass2 = mass2
-    couplings.patch[world, patch].impulse1 = gather_numbers(couplings, world, first, count, 1, ROW_IMPULSE)
-    couplings.patch[world, patch].impulse2 = gather_numbers(couplings, world, first, count, 2, ROW_IMPULSE)
-    jacobian1_a = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 1, a, 0)
-    jacobian1_b = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 1, b, a)
-    jacobian2_a = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 2, a, 0)
-    jacobian2_b = gather_blocks(couplings.jacobian_row, couplings, world, first, count, 2, b, a)
+    couplings.patch[world, patch].impulse1 = gather_numbers(terms, rows, world, first, count, 1, ROW_IMPULSE)
+    couplings.patch[world, patch].impulse2 = gather_numbers(terms, rows, world, first, count, 2, ROW_IMPULSE)
+    jacobian1_a = gather_blocks(couplings.jacobian_row, starts, rows, world, first, count, 1, a, 0)
+    jacobian1_b = gather_blocks(couplings.jacobian_row, starts, rows, world, first, count, 1, b, a)
+    jacobian2_a = gather_blocks(couplings.jacobian_row, starts, rows, world, first, count, 2, a, 0)
+    jacobian2_b = gather_blocks(couplings.jacobian_row, starts, rows, world, first, count, 2, b, a)
     response1_a = wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 1, a, 0)
+        gather_blocks(couplings.jacobian_response, starts, rows, world, first, count, 1, a, 0)
     )
     response1_b = wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 1, b, a)
+        gather_blocks(couplings.jacobian_response, starts, rows, world, first, count, 1, b, a)
     )
     response2_a = wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 2, a, 0)
+        gather_blocks(couplings.jacobian_response, starts, rows, world, first, count, 2, a, 0)
     )
     response2_b = wp.transpose(
-        gather_blocks(couplings.jacobian_response, couplings, world, first, count, 2, b, a)
+        gather_blocks(couplings.jacobian_response, starts, rows, world, first, count, 2, b, a)
     )
     couplings.patch[world, patch].jacobian1_a = jacobian1_a
     couplings.patch[world, patch].jacobian1_b = jacobian1_b
