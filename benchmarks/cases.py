@@ -59,4 +59,4 @@ IN_PROCESS = (
 
 IMPORT = Case("import", "import pybullet", seconds=0.5)
 FIRST_STEP = Case("first_step", "new process to its first finished Panda step", seconds=1.5)
-COLD_BUILD = Case("cold_build", "the same on a fresh machine: all kernels are built first", seconds=60.0)
+COLD_BUILD = Case("cold_build", "all kernels built on a fresh machine", seconds=60.0)
