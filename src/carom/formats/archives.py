@@ -41,7 +41,8 @@ class Archive:
                     )
                 # Names that point out of the folder are turned into ones within.
                 archive.extractall(self.folder)
-        except (OSError, ValueError, RuntimeError, NotImplementedError, zipfile.BadZipFile) as problem:
+        except (OSError, ValueError, RuntimeError, zipfile.BadZipFile) as problem:
+            # RuntimeError: encrypted, or compressed by a method that zipfile does not know.
             self.close()
             raise DescriptionError(f"it cannot be unpacked: {problem}", file=path) from problem
         except DescriptionError:
