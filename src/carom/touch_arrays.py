@@ -11,7 +11,7 @@ from carom.model.arrays import ArrayTable
 from carom.model.builder import WorldArrays
 from carom.model.contact_structs import COUPLING_ENTRY_VIEWS, Contacts, Couplings, Pairs, UserConstraints
 from carom.model.shape_arrays import ShapeArrays
-from carom.physics.solver import ROWS_PER_PAIR
+from carom.physics.couplings import ROWS_PER_PAIR
 
 
 class TouchArrays:

@@ -16,6 +16,7 @@ from carom.model.real import (
     Ints,
     Matrix3Rows,
     Matrix4,
+    Matrix8,
     Matrix48,
     Matrix84,
     Quaternions,
@@ -26,6 +27,7 @@ from carom.model.real import (
     Vector4,
     Vector4Rows,
     Vector6Rows,
+    Vector8,
     Vector8Rows,
     Vectors3,
     Vectors4,
@@ -178,46 +180,39 @@ class UserConstraints:
 class Patch:
     """Up to four contacts of the same two shapes, whose rows are relaxed together; see `physics.patches`.
 
-    Vectors run over the contacts. Jacobians have a row for each dof of one of the two trees, responses
-    a row for each contact; 0 is the normal, 1 and 2 are the friction directions. Gains say by how much
-    an impulse of the contact of their row, along their first direction, lowers the impulses wanted
-    along their second.
+    Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
+    response is what an impulse does to the velocities of the dofs of a tree, one of a gain by how much it
+    lowers the impulses wanted along the other rows. Weighted Jacobians have a row for each dof: by how much
+    its velocity lowers these impulses.
     """
 
     place: Index4  # as `coupling_place`
     first_contact: Int32
     count: Int32
-    jacobian0_a: Matrix84
-    jacobian0_b: Matrix84
-    response0_a: Matrix48
-    response0_b: Matrix48
-    gain00: Matrix4
-    share0: Vector4
-    softness0: Vector4
-    effective_mass0: Vector4
-    inverse_mass0: Vector4
-    impulse0: Vector4
-    jacobian1_a: Matrix84
-    jacobian1_b: Matrix84
-    jacobian2_a: Matrix84
-    jacobian2_b: Matrix84
-    response1_a: Matrix48
-    response1_b: Matrix48
-    response2_a: Matrix48
-    response2_b: Matrix48
-    gain11: Matrix4
-    gain12: Matrix4
-    gain21: Matrix4
-    gain22: Matrix4
-    friction: Vector4
-    share1: Vector4
-    share2: Vector4
-    effective_mass1: Vector4
-    effective_mass2: Vector4
-    inverse_mass1: Vector4
-    inverse_mass2: Vector4
-    impulse1: Vector4
-    impulse2: Vector4
+    friction: Vector4  # coefficients
+
+    normal_weighted_a: Matrix84
+    normal_weighted_b: Matrix84
+    normal_response_a: Matrix48
+    normal_response_b: Matrix48
+    normal_gain: Matrix4
+    normal_share: Vector4
+    normal_softness: Vector4
+    normal_inverse_mass: Vector4
+    normal_impulse: Vector4
+    # Changes of impulses if nothing bounded them. They are written down at all so that compilers
+    # compute them four at a time.
+    normal_wanted: Vector4
+
+    friction_weighted_a: Matrix8
+    friction_weighted_b: Matrix8
+    friction_response_a: Matrix8
+    friction_response_b: Matrix8
+    friction_gain: Matrix8
+    friction_share: Vector8
+    friction_inverse_mass: Vector8
+    friction_impulse: Vector8
+    friction_wanted: Vector8
 
 
 if TYPE_CHECKING:

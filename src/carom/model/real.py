@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Matrix3 = Any
     Matrix4 = Any
     Matrix43 = Any
+    Matrix8 = Any
     Matrix48 = Any
     Matrix84 = Any
     Transform = Any
@@ -71,6 +72,7 @@ if not TYPE_CHECKING:
     Matrix3 = wp.types.matrix((3, 3), real)
     Matrix4 = wp.types.matrix((4, 4), real)
     Matrix43 = wp.types.matrix((4, 3), real)
+    Matrix8 = wp.types.matrix((8, 8), real)
     Matrix48 = wp.types.matrix((4, 8), real)
     Matrix84 = wp.types.matrix((8, 4), real)
     Transform = wp.types.transformation(real)

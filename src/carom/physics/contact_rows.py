@@ -1,6 +1,4 @@
-"""Rows of contacts: normal, friction in the plane, rolling and spinning friction."""
-
-import warp as wp
+"""Rows of contacts: normal, friction, rolling and spinning friction, one by one."""
 
 from carom.model.codes import (
     LATERAL_ROW,
@@ -11,121 +9,17 @@ from carom.model.codes import (
     SPINNING_ROW,
 )
 from carom.model.contact_structs import Contacts, Couplings, Shapes
-from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
+from carom.model.real import Index4, Int32, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.contact_terms import (
+    ContactTerms,
+    friction_change,
+    keep_contact_impulse,
+    normal_change,
+)
 from carom.physics.couplings import begin_with, write_pair_jacobian, write_row
 
-# A contact slides whose friction is at least this share of the greatest, squared.
-_SLIDING = real(1.0 - 1e-9)
 _UNBOUNDED = real(1e10)
-_GREATEST_FRICTION = real(10.0)
-_LEAST_DENOMINATOR = real(2.220446049250313e-16)
-# Damping of links for which none is set, in contact with soft ones [N s/m].
-_DEFAULT_DAMPING = 0.1
-
-
-@func
-def contact_damping(shapes: Shapes, link: Int32) -> real:
-    """Damping of a link's contacts [N s/m]."""
-    damping = shapes.link_contact_damping[link]
-    return wp.where(shapes.link_stiffness[link] > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
-
-
-@func
-def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) -> Vector3:
-    """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
-    stiffness_a = shapes.link_stiffness[a]
-    stiffness_b = shapes.link_stiffness[b]
-    if stiffness_a < 0.0 and stiffness_b < 0.0:
-        return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
-    # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
-    compliance = real(0.0)
-    if stiffness_a > 0.0:
-        compliance += 1.0 / stiffness_a
-    if stiffness_b > 0.0:
-        compliance += 1.0 / stiffness_b
-    damping = contact_damping(shapes, a) + contact_damping(shapes, b)
-    stiffness = 1.0 / wp.max(compliance, _LEAST_DENOMINATOR)
-    denominator = wp.max(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
-    return Vector3(
-        1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
-    )
-
-
-@func
-def normal_change(
-    settings: Settings, shapes: Shapes, velocity: real, distance: real, erp: real, a: Int32, b: Int32
-) -> real:
-    """Change of the approaching velocity that keeps a contact from closing.
-
-    A gap may close within the step but not more. Penetration is taken back at the rate `erp`, on top
-    of what restitution asks for.
-    """
-    change = -velocity
-    if wp.abs(velocity) >= settings.restitution_threshold:
-        change += wp.max(-shapes.link_restitution[a] * shapes.link_restitution[b] * velocity, 0.0)
-    gap = distance + settings.contact_slop
-    if gap > 0.0:
-        return change - gap / settings.time_step
-    return change - gap * erp / settings.time_step
-
-
-@func
-def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
-    """Combined coefficients of two links: lateral, rolling, spinning."""
-    lateral_a = shapes.link_lateral_friction[a]
-    lateral_b = shapes.link_lateral_friction[b]
-    lateral = lateral_a * lateral_b
-    rolling = shapes.link_rolling_friction[a] * lateral_b + shapes.link_rolling_friction[b] * lateral_a
-    spinning = shapes.link_spinning_friction[a] * lateral_b + shapes.link_spinning_friction[b] * lateral_a
-    return Vector3(
-        wp.clamp(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-        wp.clamp(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-        wp.clamp(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-    )
-
-
-@func
-def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
-    """A friction direction, its components along a link's axes times the factors of that link."""
-    factors = shapes.link_anisotropy[link]
-    if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
-        return direction
-    turn = wp.transform_get_rotation(state.link_pose[world, link])
-    return wp.quat_rotate(turn, wp.cw_mul(wp.quat_rotate_inv(turn, direction), factors))
-
-
-@func
-def scaled_direction(
-    state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, direction: Vector3
-) -> Vector3:
-    """A friction direction with the factors of both links."""
-    return scaled_by_link(state, shapes, world, b, scaled_by_link(state, shapes, world, a, direction))
-
-
-@func
-def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
-    """From where a contact with a friction anchor began to stick on b to where it did on a; else 0."""
-    pair = contacts.contact_shapes[world, contact]
-    if shapes.link_friction_anchor[pair[2]] == 0 and shapes.link_friction_anchor[pair[3]] == 0:
-        return Vector3(0.0, 0.0, 0.0)
-    on_a = wp.transform_point(state.link_pose[world, pair[2]], contacts.contact_anchor_a[world, contact])
-    on_b = wp.transform_point(state.link_pose[world, pair[3]], contacts.contact_anchor_b[world, contact])
-    return on_a - on_b
-
-
-@func
-def starting_impulse(settings: Settings, last: Vector4) -> Vector3:
-    """Impulses along the normal and both friction directions that the solver starts from.
-
-    A contact starts from the lesser of its last two normal impulses: at rest they are alike, and the
-    impulse of an impact, which will not be needed again, is not among them.
-    """
-    normal = settings.contact_warm_starting * wp.min(last[0], last[3])
-    if normal <= 0.0:
-        return Vector3(0.0, 0.0, 0.0)
-    share = normal / last[0]
-    return Vector3(normal, share * last[1], share * last[2])
 
 
 @func
@@ -137,6 +31,7 @@ def add_contact_rows(
     shapes: Shapes,
     contacts: Contacts,
     couplings: Couplings,
+    terms: ContactTerms,
     world: Int32,
     contact: Int32,
     row: Int32,
@@ -147,89 +42,72 @@ def add_contact_rows(
     Returns:
         Next free row and block.
     """
-    pair = contacts.contact_shapes[world, contact]
-    a = pair[2]
-    b = pair[3]
-    ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
-    normal = contacts.contact_normal[world, contact]
-    direction1 = contacts.contact_direction1[world, contact]
-    direction2 = contacts.contact_direction2[world, contact]
-    lateral1 = scaled_direction(state, shapes, world, a, b, direction1)
-    lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
-    contacts.contact_direction1[world, contact] = lateral1
-    contacts.contact_direction2[world, contact] = lateral2
-    drift = anchor_drift(state, shapes, contacts, world, contact)
-    distance = contacts.contact_distance[world, contact]
-    ignored = distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b])
-    friction = contact_friction(shapes, a, b)
-    soft = contact_stiffness(settings, shapes, a, b)
-
     rows = Index4(row, row + 1, -1, -1)
     end = row + 3
-    if friction[1] > 0.0:
+    if terms.friction[1] > 0.0:
         rows[ROLLING_ROW] = end
         end += 2
-    if friction[2] > 0.0:
+    if terms.friction[2] > 0.0:
         rows[SPINNING_ROW] = end
         end += 1
     couplings.contact_rows[world, contact] = rows
-    start = starting_impulse(settings, contacts.contact_impulse[world, contact])
 
     zero = Vector3(0.0, 0.0, 0.0)
     for place in range(row, end):
         linear = zero
         angular = zero
-        coefficient = friction[0]
+        coefficient = terms.friction[0]
         if place == row:
-            linear = normal
+            linear = terms.normal
         elif place == rows[LATERAL_ROW]:
-            linear = lateral1
+            linear = terms.lateral1
         elif place == rows[LATERAL_ROW] + 1:
-            linear = lateral2
+            linear = terms.lateral2
         elif place == rows[SPINNING_ROW]:
-            angular = normal
-            coefficient = friction[2]
+            angular = terms.normal
+            coefficient = terms.friction[2]
         else:
-            angular = direction1
-            coefficient = friction[1]
+            angular = terms.rolling1
+            coefficient = terms.friction[1]
             if place > rows[ROLLING_ROW]:
-                angular = direction2
+                angular = terms.rolling2
 
         found = write_pair_jacobian(
-            model, state, scratch, couplings, world, place, block, ends,
-            contacts.contact_point_a[world, contact], contacts.contact_point_b[world, contact],
+            model, state, scratch, couplings, world, place, block, terms.ends, terms.point_a, terms.point_b,
             linear, angular,
         )  # fmt: skip
         block = Int32(found[2])
         inverse_mass = found[0]
-        if ignored:
+        if terms.ignored != 0:
             inverse_mass = real(0.0)
-        change = -found[1] - wp.dot(drift, linear) * settings.friction_erp / settings.time_step
+        change = friction_change(settings, found[1], terms.drift, linear)
         lower = -coefficient
         upper = coefficient
         softness = real(0.0)
         if place == row:
-            change = normal_change(settings, shapes, found[1], distance, soft[1], a, b)
+            change = normal_change(
+                settings, shapes, found[1], terms.distance, terms.erp, terms.ends[1], terms.ends[3]
+            )
             lower = real(0.0)
             upper = real(0.0) + _UNBOUNDED
-            softness = soft[0]
+            softness = terms.softness
         write_row(couplings, world, place, inverse_mass, change, softness, lower, upper, coefficient)
         couplings.coupling_bound[world, place] = row
-        if place < row + 3 and start[0] > 0.0:
-            begin_with(scratch, couplings, world, place, start[place - row])
+        if place < row + 3 and terms.start[0] > 0.0:
+            begin_with(scratch, couplings, world, place, terms.start[place - row])
     return Index4(end, block, 0, 0)
 
 
 @func
 def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32, contact: Int32):
-    """Report the impulses of a contact's rows; one that slides begins to stick where it is now."""
-    before = contacts.contact_impulse[world, contact][0]
+    """Report the impulses of a contact's rows."""
     rows = couplings.contact_rows[world, contact]
-    normal = couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE]
-    first = couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE]
-    second = couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE]
-    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, before)
-    bound = normal * couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION]
-    if first * first + second * second >= bound * bound * _SLIDING:
-        contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
-        contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]
+    keep_contact_impulse(
+        contacts,
+        world,
+        contact,
+        couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
+    )

@@ -17,6 +17,9 @@ from carom.model.real import Index4, Int32, Vector3, Vector4, Vector8, func, rea
 from carom.model.structs import Model, Scratch, State
 from carom.physics.rows import inverse_or_off
 
+# A contact or a user constraint adds at most this many rows.
+ROWS_PER_PAIR = 6
+
 
 @func
 def tree_blocks(model: Model, tree: Int32) -> Int32:
@@ -24,6 +27,15 @@ def tree_blocks(model: Model, tree: Int32) -> Int32:
     if tree < 0:
         return Int32(0)
     return (model.tree[tree].dof_count + 3) // 4
+
+
+@func
+def has_room(model: Model, couplings: Couplings, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
+    """Whether all rows there may be between two trees still fit."""
+    blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
+    if place[0] + ROWS_PER_PAIR > couplings.coupling_start.shape[1]:
+        return False
+    return place[1] + ROWS_PER_PAIR * blocks <= couplings.jacobian_row.shape[1]
 
 
 @func

@@ -166,9 +166,12 @@ def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int3
 
 @func
 def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Start the solver from no change of velocity."""
+    """Start the solver from no change of velocity.
+
+    Every tree has room for a free base, two blocks, which patches read whether there is one or not.
+    """
     first = model.tree[tree].first_delta
-    for block in range(first, first + (model.tree[tree].dof_count + 3) // 4):
+    for block in range(first, first + wp.max((model.tree[tree].dof_count + 3) // 4, 2)):
         scratch.delta_velocity[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
 
 

@@ -9,16 +9,12 @@ from carom.model.codes import USER
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.contact_rows import add_contact_rows, keep_contact_impulses
-from carom.physics.couplings import tree_blocks
+from carom.physics.couplings import has_room
 from carom.physics.joint_solver import joint_constraint_rows, keep_row_results
-from carom.physics.patches import gather_units, scatter_impulses
 from carom.physics.quarantine import OVERFLOW
 from carom.physics.sweeps import contact_sweep, visit_sweep
+from carom.physics.units import keep_unit_impulses, write_units
 from carom.physics.user_constraints import add_user_rows, keep_user_impulses
-
-# A contact or a user constraint adds at most this many rows.
-ROWS_PER_PAIR = 6
 
 
 @func
@@ -69,41 +65,6 @@ def island_rows(
 
 
 @func
-def has_room(model: Model, couplings: Couplings, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
-    """Whether all rows there may be between two trees still fit."""
-    blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
-    if place[0] + ROWS_PER_PAIR > couplings.coupling_start.shape[1]:
-        return False
-    return place[1] + ROWS_PER_PAIR * blocks <= couplings.jacobian_row.shape[1]
-
-
-@func
-def contact_rows(
-    model: Model,
-    settings: Settings,
-    state: State,
-    scratch: Scratch,
-    shapes: Shapes,
-    contacts: Contacts,
-    couplings: Couplings,
-    world: Int32,
-    first_contact: Int32,
-    place: Index4,
-) -> Int32:
-    """Write the rows of an island's contacts from the free place on; returns 0 if some did not fit."""
-    contact = first_contact + 0
-    while contact >= 0:
-        pair = contacts.contact_shapes[world, contact]
-        if not has_room(model, couplings, place, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]]):
-            return Int32(0)
-        place = add_contact_rows(
-            settings, model, state, scratch, shapes, contacts, couplings, world, contact, place[0], place[1]
-        )
-        contact = couplings.contact_next[world, contact]
-    return Int32(1)
-
-
-@func
 def solve_island(
     model: Model,
     settings: Settings,
@@ -120,19 +81,16 @@ def solve_island(
     made = island_rows(model, settings, state, scratch, users, couplings, world, root)
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
-    fits = Int32(1)
+    units = Index4(0, 0, 0, 0)
     if first_contact >= 0:
-        fits = contact_rows(
+        units = write_units(
             model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
             Index4(made[1], made[2], 0, 0),
         )  # fmt: skip
-    if visits < 0 or fits == 0:
+    if visits < 0 or units[0] < 0:
         state.fault_tree[world, 0] = OVERFLOW
         return
 
-    units = Index4(0, 0, 0, 0)
-    if first_contact >= 0:
-        units = gather_units(contacts, couplings, world, first_contact)
     residual = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
@@ -145,21 +103,16 @@ def solve_island(
         sweep += 1
         if residual <= settings.residual_threshold or sweep >= settings.iterations:
             searching = Int32(0)
-    for patch in range(units[1]):
-        scatter_impulses(couplings, world, patch)
     keep_row_results(model, settings, state, scratch, world, root, made[0], sweep, residual)
-    keep_coupling_impulses(model, contacts, users, couplings, world, root)
+    keep_unit_impulses(contacts, couplings, world, units[0])
+    keep_constraint_impulses(model, users, couplings, world, root)
 
 
 @func
-def keep_coupling_impulses(
-    model: Model, contacts: Contacts, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
+def keep_constraint_impulses(
+    model: Model, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
 ):
-    """Report the impulses of an island's contacts and user constraints."""
-    contact = couplings.tree_first_contact[world, root]
-    while contact >= 0:
-        keep_contact_impulses(contacts, couplings, world, contact)
-        contact = couplings.contact_next[world, contact]
+    """Report the impulses of an island's user constraints."""
     constraint = couplings.tree_first_constraint[world, root]
     while constraint >= 0:
         if model.constraint[constraint].kind == USER:

@@ -117,7 +117,7 @@ def contact_sweep(
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` is what `patches.gather_units` returns.
+    `units` is what `units.write_units` returns.
     """
     residual = normal_sweep(scratch, couplings, world, units[0])
     kind = Int32(LATERAL_ROW)

@@ -1,0 +1,197 @@
+"""What one contact asks of the velocities of its links, whichever way it is then solved."""
+
+import warp as wp
+
+from carom.model.contact_structs import Contacts, Shapes
+from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
+from carom.model.structs import Settings, State
+
+# A contact slides whose friction is at least this share of the greatest, squared.
+_SLIDING = real(1.0 - 1e-9)
+_GREATEST_FRICTION = real(10.0)
+_LEAST_DENOMINATOR = real(2.220446049250313e-16)
+# Damping of links for which none is set, in contact with soft ones [N s/m].
+_DEFAULT_DAMPING = 0.1
+
+
+@func
+def contact_damping(shapes: Shapes, link: Int32) -> real:
+    """Damping of a link's contacts [N s/m]."""
+    damping = shapes.link_contact_damping[link]
+    return wp.where(shapes.link_stiffness[link] > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
+
+
+@func
+def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) -> Vector3:
+    """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
+    stiffness_a = shapes.link_stiffness[a]
+    stiffness_b = shapes.link_stiffness[b]
+    if stiffness_a < 0.0 and stiffness_b < 0.0:
+        return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
+    # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
+    compliance = real(0.0)
+    if stiffness_a > 0.0:
+        compliance += 1.0 / stiffness_a
+    if stiffness_b > 0.0:
+        compliance += 1.0 / stiffness_b
+    damping = contact_damping(shapes, a) + contact_damping(shapes, b)
+    stiffness = 1.0 / wp.max(compliance, _LEAST_DENOMINATOR)
+    denominator = wp.max(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
+    return Vector3(
+        1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
+    )
+
+
+@func
+def normal_change(
+    settings: Settings, shapes: Shapes, velocity: real, distance: real, erp: real, a: Int32, b: Int32
+) -> real:
+    """Change of the approaching velocity that keeps a contact from closing.
+
+    A gap may close within the step but not more. Penetration is taken back at the rate `erp`, on top
+    of what restitution asks for.
+    """
+    change = -velocity
+    if wp.abs(velocity) >= settings.restitution_threshold:
+        change += wp.max(-shapes.link_restitution[a] * shapes.link_restitution[b] * velocity, 0.0)
+    gap = distance + settings.contact_slop
+    if gap > 0.0:
+        return change - gap / settings.time_step
+    return change - gap * erp / settings.time_step
+
+
+@func
+def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
+    """Combined coefficients of two links: lateral, rolling, spinning."""
+    lateral_a = shapes.link_lateral_friction[a]
+    lateral_b = shapes.link_lateral_friction[b]
+    lateral = lateral_a * lateral_b
+    rolling = shapes.link_rolling_friction[a] * lateral_b + shapes.link_rolling_friction[b] * lateral_a
+    spinning = shapes.link_spinning_friction[a] * lateral_b + shapes.link_spinning_friction[b] * lateral_a
+    return Vector3(
+        wp.clamp(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        wp.clamp(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        wp.clamp(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+    )
+
+
+@func
+def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
+    """A friction direction, its components along a link's axes times the factors of that link."""
+    factors = shapes.link_anisotropy[link]
+    if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
+        return direction
+    turn = wp.transform_get_rotation(state.link_pose[world, link])
+    return wp.quat_rotate(turn, wp.cw_mul(wp.quat_rotate_inv(turn, direction), factors))
+
+
+@func
+def scaled_direction(
+    state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, direction: Vector3
+) -> Vector3:
+    """A friction direction with the factors of both links."""
+    return scaled_by_link(state, shapes, world, b, scaled_by_link(state, shapes, world, a, direction))
+
+
+@func
+def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
+    """From where a contact with a friction anchor began to stick on b to where it did on a; else 0."""
+    pair = contacts.contact_shapes[world, contact]
+    if shapes.link_friction_anchor[pair[2]] == 0 and shapes.link_friction_anchor[pair[3]] == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    on_a = wp.transform_point(state.link_pose[world, pair[2]], contacts.contact_anchor_a[world, contact])
+    on_b = wp.transform_point(state.link_pose[world, pair[3]], contacts.contact_anchor_b[world, contact])
+    return on_a - on_b
+
+
+@func
+def starting_impulse(settings: Settings, last: Vector4) -> Vector3:
+    """Impulses along the normal and both friction directions that the solver starts from.
+
+    A contact starts from the lesser of its last two normal impulses: at rest they are alike, and the
+    impulse of an impact, which will not be needed again, is not among them.
+    """
+    normal = settings.contact_warm_starting * wp.min(last[0], last[3])
+    if normal <= 0.0:
+        return Vector3(0.0, 0.0, 0.0)
+    share = normal / last[0]
+    return Vector3(normal, share * last[1], share * last[2])
+
+
+@wp.struct
+class ContactTerms:
+    """A contact as its rows need it, in world axes."""
+
+    ends: Index4  # tree and link of a, then of b
+    point_a: Vector3
+    point_b: Vector3
+    normal: Vector3
+    lateral1: Vector3  # friction directions, scaled where friction is anisotropic
+    lateral2: Vector3
+    rolling1: Vector3  # directions as they were found
+    rolling2: Vector3
+    drift: Vector3  # since it began to stick, where it has a friction anchor
+    distance: real
+    friction: Vector3  # coefficients: lateral, rolling, spinning
+    softness: real
+    erp: real
+    start: Vector3  # impulses to start from
+    ignored: Int32  # 1: too far apart to be solved
+
+
+@func
+def contact_terms(
+    settings: Settings, state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
+) -> ContactTerms:
+    """Everything about a contact that its rows depend on; its friction directions become scaled ones."""
+    pair = contacts.contact_shapes[world, contact]
+    a = pair[2]
+    b = pair[3]
+    direction1 = contacts.contact_direction1[world, contact]
+    direction2 = contacts.contact_direction2[world, contact]
+    lateral1 = scaled_direction(state, shapes, world, a, b, direction1)
+    lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
+    contacts.contact_direction1[world, contact] = lateral1
+    contacts.contact_direction2[world, contact] = lateral2
+    soft = contact_stiffness(settings, shapes, a, b)
+    terms = ContactTerms()
+    terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
+    terms.point_a = contacts.contact_point_a[world, contact]
+    terms.point_b = contacts.contact_point_b[world, contact]
+    terms.normal = contacts.contact_normal[world, contact]
+    terms.lateral1 = lateral1
+    terms.lateral2 = lateral2
+    terms.rolling1 = direction1
+    terms.rolling2 = direction2
+    terms.drift = anchor_drift(state, shapes, contacts, world, contact)
+    terms.distance = contacts.contact_distance[world, contact]
+    terms.friction = contact_friction(shapes, a, b)
+    terms.softness = soft[0]
+    terms.erp = soft[1]
+    terms.start = starting_impulse(settings, contacts.contact_impulse[world, contact])
+    terms.ignored = Int32(0)
+    if terms.distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
+        terms.ignored = Int32(1)
+    return terms
+
+
+@func
+def friction_change(settings: Settings, velocity: real, drift: Vector3, direction: Vector3) -> real:
+    """Change of velocity along a friction direction that stops sliding and takes back a drift."""
+    return -velocity - wp.dot(drift, direction) * settings.friction_erp / settings.time_step
+
+
+@func
+def keep_contact_impulse(
+    contacts: Contacts, world: Int32, contact: Int32, normal: real, first: real, second: real, friction: real
+):
+    """Report the impulses of a contact; one that slides begins to stick where it is now.
+
+    `first` and `second` are those along the friction directions, `friction` is the lateral coefficient.
+    """
+    before = contacts.contact_impulse[world, contact][0]
+    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, before)
+    bound = normal * friction
+    if first * first + second * second >= bound * bound * _SLIDING:
+        contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
+        contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]

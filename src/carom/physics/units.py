@@ -1,0 +1,94 @@
+"""What the sweeps of an island relax, in order: patches, and contacts by themselves."""
+
+from carom.model.contact_structs import Contacts, Couplings, Shapes
+from carom.model.real import Index4, Int32, func
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.contact_rows import add_contact_rows, keep_contact_impulses
+from carom.physics.contact_terms import contact_friction, contact_terms
+from carom.physics.couplings import has_room, tree_blocks
+from carom.physics.patch_rows import keep_patch_impulses, write_patch
+from carom.physics.patches import SMALL
+
+
+@func
+def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) -> bool:
+    """Whether a contact, if it is one, is between the shapes of `pair`."""
+    if contact < 0:
+        return False
+    other = contacts.contact_shapes[world, contact]
+    return other[0] == pair[0] and other[1] == pair[1]
+
+
+@func
+def write_units(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    couplings: Couplings,
+    world: Int32,
+    first_contact: Int32,
+    place: Index4,
+) -> Index4:
+    """Write the rows of an island's contacts, from the free place on.
+
+    Several contacts of two small trees that neither roll nor spin against friction make a patch.
+
+    Returns:
+        Number of units, negative if some did not fit; number of patches; 1 if there is rolling or
+        spinning friction; 0.
+    """
+    units = Int32(0)
+    patches = Int32(0)
+    torsion = Int32(0)
+    contact = first_contact + 0
+    while contact >= 0:
+        pair = contacts.contact_shapes[world, contact]
+        a = shapes.shape_tree[pair[0]]
+        b = shapes.shape_tree[pair[1]]
+        count = Int32(1)
+        following = couplings.contact_next[world, contact]
+        while following == contact + count and same_shapes(contacts, world, following, pair):
+            following = couplings.contact_next[world, following]
+            count += 1
+        friction = contact_friction(shapes, pair[2], pair[3])
+        twists = friction[1] > 0.0 or friction[2] > 0.0
+        if twists:
+            torsion = Int32(1)
+        if count > 1 and not twists and tree_blocks(model, a) <= SMALL and tree_blocks(model, b) <= SMALL:
+            write_patch(
+                settings, model, state, scratch, shapes, contacts, couplings, world, patches, contact, count
+            )
+            couplings.unit_code[world, units] = -1 - patches
+            patches += 1
+            units += 1
+        else:
+            i = Int32(0)
+            while i < count:
+                if not has_room(model, couplings, place, a, b):
+                    return Index4(-1, patches, torsion, 0)
+                terms = contact_terms(settings, state, shapes, contacts, world, contact + i)
+                place = add_contact_rows(
+                    settings, model, state, scratch, shapes, contacts, couplings, terms, world, contact + i,
+                    place[0], place[1],
+                )  # fmt: skip
+                couplings.unit_code[world, units] = contact + i
+                units += 1
+                i += 1
+        contact = following
+    return Index4(units, patches, torsion, 0)
+
+
+@func
+def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32):
+    """Report the impulses of an island's contacts."""
+    unit = Int32(0)
+    while unit < units:
+        code = couplings.unit_code[world, unit]
+        if code < 0:
+            keep_patch_impulses(contacts, couplings, world, -1 - code)
+        else:
+            keep_contact_impulses(contacts, couplings, world, code)
+        unit += 1
