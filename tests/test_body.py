@@ -186,12 +186,11 @@ def test_changes_of_mass_are_felt_by_the_next_step():
         assert coordinates(body)[1][3] - before == pytest.approx(1.0 / mass)
 
 
-def test_surface_and_sleep_settings_are_kept():
+def test_surface_settings_are_kept():
     body = World().load(boxes())
-    body.change_dynamics(0, lateral_friction=0.8, restitution=0.3, activation_state=2, sleep_threshold=0.1)
+    body.change_dynamics(0, lateral_friction=0.8, restitution=0.3)
     assert (body.dynamics(0).lateral_friction, body.dynamics(0).restitution) == (0.8, 0.3)
     assert body.dynamics(BASE) == LinkDynamics.of(body.spec.base)
-    assert (body.sleeping.activation_state, body.sleeping.sleep_threshold) == (2, 0.1)
 
 
 def test_the_weight_of_a_fixed_base_is_reported_as_none():

@@ -7,10 +7,17 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Pose
-from carom.link_dynamics import LinkDynamics, SleepSettings
+from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES, DOF_COUNT, JOINT_CODE, POSITION_COUNT
+from carom.model.codes import (
+    BASE_POSITIONS,
+    BASE_VELOCITIES,
+    DOF_COUNT,
+    JOINT_CODE,
+    POSITION_COUNT,
+    Activity,
+)
 
 if TYPE_CHECKING:
     from carom.joint import Joints
@@ -38,7 +45,6 @@ class Body:
         position_count: Number of position coordinates of each joint.
         velocity_count: Number of velocity coordinates of each joint.
         fixed_base: The base does not move now.
-        sleeping: When the body may fall asleep.
         first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
         first_position: Row of the first coordinate in `World.position`.
         first_velocity: Row of the first coordinate in `World.velocity`.
@@ -62,7 +68,6 @@ class Body:
         self.position_index: tuple[int, ...] = ()
         self.velocity_index: tuple[int, ...] = ()
         self.fixed_base = spec.fixed_base
-        self.sleeping = SleepSettings()
         self._dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
         if spec.fixed_base:
             self._dynamics[0].mass = 0.0
@@ -164,6 +169,11 @@ class Body:
         """Present inertia, surface and joint bounds of a link; -1 is the base."""
         return self._dynamics[link + 1]
 
+    @property
+    def is_asleep(self) -> bool:
+        """Whether the body did not take part in the last step, for it and all near it had been at rest."""
+        return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
+
     def change_dynamics(self, link: int, **changes: Any) -> None:
         """Change inertia, surface or joint bounds of a link, or damping of the whole body.
 
@@ -172,7 +182,8 @@ class Body:
             **changes: Fields of `LinkDynamics` by name (`inertia` after `mass`, which sets the
                 inertia of the collision shapes), `joint_limit_force` [N m or N], and for the whole
                 body `linear_damping`, `angular_damping` [1/s], `max_joint_velocity`
-                [rad/s and m/s], `activation_state` and `sleep_threshold`.
+                [rad/s and m/s], `activation_state` (bits of `model.flags.ActivationChange`) and
+                `sleep_threshold`, the sum of squared velocities below which it is at rest.
         """
         from carom.dynamics_changes import change_body, change_link
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from carom.model.body_spec import BASE
-from carom.model.flags import LoadFlags
+from carom.model.flags import ActivationChange, LoadFlags
 from carom.model.inertia import inertia_from_shapes
 
 if TYPE_CHECKING:
@@ -21,12 +21,37 @@ def change_body(body: Body, changes: Mapping[str, Any]) -> None:
         "linear_damping": "tree_linear_damping",
         "angular_damping": "tree_angular_damping",
         "max_joint_velocity": "tree_max_velocity",
+        "sleep_threshold": "tree_sleep_threshold",
     }
     for name, value in changes.items():
         if name in fields:
             model[fields[name]][tree] = value
         else:
-            setattr(body.sleeping, name, value)
+            _change_activation(body, ActivationChange(value))
+
+
+def _change_activation(body: Body, change: ActivationChange) -> None:
+    """Put a body to sleep, wake it up, or change whether it may do so by itself.
+
+    As in Bullet it takes effect at the end of the next step, and a body that must not wake up keeps
+    whether it can sleep.
+    """
+    model, state = body.world.arrays.model.numpy, body.world.arrays.state.numpy
+    tree = body.rows.tree
+    if change & ActivationChange.WAKE_UP:
+        state["tree_tired"][0, tree], state["tree_idle_time"][0, tree] = False, 0.0
+    if change & ActivationChange.SLEEP:
+        state["tree_tired"][0, tree] = True
+    if model["tree_can_wake"][tree]:
+        if change & ActivationChange.ENABLE_SLEEPING:
+            model["tree_can_sleep"][tree] = True
+        if change & ActivationChange.DISABLE_SLEEPING:
+            model["tree_can_sleep"][tree] = False
+    if change & ActivationChange.ENABLE_WAKEUP:
+        model["tree_can_wake"][tree] = True
+    if change & ActivationChange.DISABLE_WAKEUP:
+        model["tree_can_wake"][tree] = False
+    body.world.constraints_changed()
 
 
 def change_link(body: Body, link: int, changes: Mapping[str, Any]) -> None:

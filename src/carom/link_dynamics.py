@@ -16,19 +16,6 @@ UNSET = -1.0
 
 
 @dataclass(slots=True)
-class SleepSettings:
-    """When a body may fall asleep. Recorded for the day bodies sleep; see docs/status.
-
-    Attributes:
-        activation_state: Bits of PyBullet's ACTIVATION_STATE_* as last set.
-        sleep_threshold: Sum of squared velocities below which it may.
-    """
-
-    activation_state: int = 0
-    sleep_threshold: float = 0.05
-
-
-@dataclass(slots=True)
 class LinkDynamics:
     """Inertia, surface and joint bounds of a link.
 

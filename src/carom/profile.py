@@ -94,9 +94,10 @@ class ProfiledStepper(Stepper):
         device: str,
         *,
         touching: bool,
+        sleeping: bool,
         clock: StageClock,
     ) -> None:
-        super().__init__(structs, touch, fault, substeps, device, touching=touching)
+        super().__init__(structs, touch, fault, substeps, device, touching=touching, sleeping=sleeping)
         self._launch = StagedStep(structs, device, clock)
         self._index = {name: name for name in (SUBSTEPS, BEGINS, ENDS)}
         if touching:

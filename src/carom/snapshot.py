@@ -148,6 +148,8 @@ def put_back(world: World, layout: Layout, snapshot: Snapshot) -> None:
     if len(snapshot.user_impulses) == world.touch.user_count:
         impulses[: world.touch.user_count] = snapshot.user_impulses
     world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
+    if snapshot.state["tree_activity"].any():
+        world.constraints_changed()
 
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:

@@ -12,6 +12,7 @@ from carom.model.launch import argument_indices, launch
 from carom.physics.coupled_step import coupled_step_kernel
 from carom.physics.kinematics import link_poses_kernel
 from carom.physics.quarantine import OVERFLOW
+from carom.physics.slumber import settle_kernel, watch_kernel
 from carom.physics.step import step_kernel
 from carom.touch_arrays import TouchArrays
 
@@ -50,12 +51,20 @@ class Detection:
         self._collide()
 
 
+class Slumber:
+    """Who is asleep: looked at before and after each substep, in a world where bodies can be."""
+
+    def __init__(self, structs: dict[str, Any], device: str, *, touching: bool) -> None:
+        self.settle = launch(settle_kernel, structs, device, touching=int(touching))
+        self.watch = launch(watch_kernel, structs, device)
+
+
 class Stepper:
     """One step of a world as it is now: its bodies, parameters and arrays.
 
     Without anything that can touch, a step is one launch whatever the number of substeps, and a
     simpler one if nothing is tied together either. Otherwise each substep is collision detection and
-    a launch.
+    a launch, between those of `Slumber` if need be.
 
     Args:
         structs: Warp structs by the name kernels give them.
@@ -64,6 +73,7 @@ class Stepper:
         substeps: Greatest number of substeps.
         device: Warp device name.
         touching: Some shapes could touch.
+        sleeping: Some body could fall asleep, or is asleep.
     """
 
     def __init__(
@@ -75,14 +85,16 @@ class Stepper:
         device: str,
         *,
         touching: bool,
+        sleeping: bool,
     ) -> None:
-        self._coupled = touching or touch.user_count > 0
+        self._coupled = touching or sleeping or touch.user_count > 0
         kernel = coupled_step_kernel if self._coupled else step_kernel
         self._launch: Any = launch(kernel, structs, device, **{SUBSTEPS: 1, BEGINS: 1, ENDS: 1})
         self._index: dict[str, Any] = argument_indices(kernel)
         self._touch = touch
         self._fault = fault
         self.detection = Detection(structs, touch, device) if touching else None
+        self.slumber = Slumber(structs, device, touching=touching) if sleeping else None
         if not touching:
             touch.forget_contacts()
         self._substeps = substeps
@@ -104,13 +116,15 @@ class Stepper:
             fit. Then the arrays have been replaced by longer ones, and another stepper can go on.
         """
         rounds = max(1, substeps)
-        if self.detection is None:
+        if self.detection is None and self.slumber is None:
             self._launch.replace(self._index[SUBSTEPS], substeps)
             self._launch()
             return rounds if self._fits() else 0
         for substep in range(done, rounds):
-            if not self.detection.run():
+            if self.detection is not None and not self.detection.run():
                 return substep
+            if self.slumber is not None:
+                self.slumber.settle()
             self._launch.replace(self._index[SUBSTEPS], min(1, substeps))
             self._launch.replace(self._index[BEGINS], int(substep == 0))
             self._launch.replace(self._index[ENDS], int(substep >= substeps - 1))
@@ -118,6 +132,8 @@ class Stepper:
             if self._fault[0]:
                 # Whatever went wrong, the coordinates are those of the start of the step.
                 return rounds if self._fits() else 0
+            if self.slumber is not None:
+                self.slumber.watch()
         return rounds
 
     def _fits(self) -> bool:

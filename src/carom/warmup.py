@@ -24,6 +24,7 @@ KERNEL_MODULES = (
     "carom.algorithms.reach.search",
     "carom.collision.closest",
     "carom.physics.kinematics",
+    "carom.physics.slumber",
     "carom.collision.rays",
     "carom.algorithms.kernels",
     "carom.render.kernels.draw",

@@ -450,6 +450,7 @@ class World:
             self.parameters.substeps,
             _DEVICE,
             touching=self._can_touch(),
+            sleeping=self._can_sleep(),
         )
         return self._stepper
 
@@ -467,6 +468,11 @@ class World:
             else:
                 fixed += 1
         return moving > 1 or (moving == 1 and fixed > 0)
+
+    def _can_sleep(self) -> bool:
+        """Whether a body may fall asleep, or has to be woken up."""
+        model, state, count = self.arrays.model.numpy, self.arrays.state.numpy, self.arrays.used["tree"]
+        return bool(model["tree_can_sleep"][:count].any() or state["tree_activity"][0, :count].any())
 
     def _step_with_care(self) -> None:
         """One step in substeps, and again with longer arrays as long as something does not fit."""
@@ -550,7 +556,7 @@ class World:
         return [
             {
                 "islandId": root,
-                "numBodies": sum(sum(moving_links(body)) for body in members),
+                "numBodies": sum(sum(moving_links(body)) for body in members if not body.is_asleep),
                 "numIterationsUsed": int(state["tree_iterations"][0, root]),
                 "remainingResidual": float(state["tree_residual"][0, root]),
             }

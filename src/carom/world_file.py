@@ -17,7 +17,7 @@ from carom.constraints import JointConstraint
 from carom.description.pose import Pose, Vector3
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
-from carom.link_dynamics import LinkDynamics, SleepSettings
+from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.codes import ConstraintKind, JointCode, UserConstraintKind
 from carom.physics.parameters import EngineParameters
@@ -72,7 +72,9 @@ class SavedBody:
     linear_damping: float
     angular_damping: float
     max_velocity: float
-    sleeping: SleepSettings
+    can_sleep: bool
+    can_wake: bool
+    sleep_threshold: float
     links: list[LinkDynamics]
     groups: list[int]
     masks: list[int]
@@ -262,7 +264,9 @@ def _saved_body(body: Body, spec: int) -> SavedBody:
         float(model["tree_linear_damping"][tree]),
         float(model["tree_angular_damping"][tree]),
         float(model["tree_max_velocity"][tree]),
-        body.sleeping,
+        bool(model["tree_can_sleep"][tree]),
+        bool(model["tree_can_wake"][tree]),
+        float(model["tree_sleep_threshold"][tree]),
         [body.dynamics(link) for link in range(BASE, body.joint_count)],
         shapes["link_group"][links].tolist(),
         shapes["link_mask"][links].tolist(),
@@ -347,9 +351,11 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
         linear_damping=record.linear_damping,
         angular_damping=record.angular_damping,
         max_joint_velocity=record.max_velocity,
-        activation_state=record.sleeping.activation_state,
-        sleep_threshold=record.sleeping.sleep_threshold,
+        sleep_threshold=record.sleep_threshold,
     )
+    model = body.world.arrays.model.numpy
+    model["tree_can_sleep"][body.rows.tree] = record.can_sleep
+    model["tree_can_wake"][body.rows.tree] = record.can_wake
 
 
 def _make_ties(

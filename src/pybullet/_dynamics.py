@@ -125,7 +125,9 @@ def changeDynamics(
         localInertiaDiagonal: Principal moments of inertia [kg m²].
         ccdSweptSphereRadius: Of continuous collision detection [m].
         contactProcessingThreshold: Distance beyond which contacts are not solved [m].
-        activationState: `ACTIVATION_STATE_*`, added up.
+        activationState: `ACTIVATION_STATE_*`, added up. A body with `ENABLE_SLEEPING` that hardly moves for
+            2 s, and all near it likewise, takes no part until one of them moves: it feels neither forces nor
+            motors nor gravity, and velocities given to it are lost.
         jointDamping: [N m s/rad or N s/m].
         anisotropicFriction: Factor on friction along the axes of the link.
         maxJointVelocity: Greatest velocity of every coordinate of the body [rad/s, m/s]; 100 at first.
@@ -133,7 +135,7 @@ def changeDynamics(
         jointLowerLimit: [rad or m]; the limits change when it is not greater than the upper one.
         jointUpperLimit: [rad or m].
         jointLimitForce: Greatest force of the limits [N m or N].
-        sleepThreshold: Motion below which a body may sleep.
+        sleepThreshold: Sum of all its squared velocities below which a body may sleep; 0.05 at first.
         physicsClientId: The connection.
 
     Raises:

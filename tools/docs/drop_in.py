@@ -58,7 +58,6 @@ LIMITED = {
     "connect": "there are no physics servers",
     "configureDebugVisualizer": "reflections, single-step rendering and the flags of virtual reality are "
     "recorded and have no effect",
-    "changeDynamics": "what concerns sleeping is recorded and has no effect",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
 }

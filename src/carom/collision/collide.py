@@ -8,14 +8,74 @@ from carom.collision.manifold import REPEATED, THERE, WANTED, keep_previous, ski
 from carom.collision.narrow_phase import touch
 from carom.collision.reach import breaking_distance, contact_reach
 from carom.collision.sides import in_order_of_sides
+from carom.model.codes import ASLEEP
 from carom.model.contact_structs import Contacts, Pairs, Shapes
-from carom.model.real import Int32, func, kernel
+from carom.model.real import Index4, Int32, func, kernel, real
 from carom.model.structs import Model, Settings, State
+
+# A point that is as near as this to where it was has not been moved [m].
+UNMOVED = real(1.0e-9)
+
+
+@func
+def is_at_rest(shapes: Shapes, model: Model, state: State, world: Int32, shape: Int32) -> bool:
+    """Whether the link of a shape is asleep or cannot move."""
+    return (
+        state.tree_activity[world, shapes.shape_tree[shape]] == ASLEEP
+        or model.link[shapes.shape_link[shape]].nearest_dof < 0
+    )
+
+
+@func
+def is_where_it_was(state: State, contacts: Contacts, world: Int32, row: Int32) -> bool:
+    """Whether both points of a contact that is still there from the last step are where they were."""
+    links = contacts.contact_shapes[world, row]
+    point_a = wp.transform_point(state.link_pose[world, links[2]], contacts.contact_local_a[world, row])
+    point_b = wp.transform_point(state.link_pose[world, links[3]], contacts.contact_local_b[world, row])
+    return (
+        wp.length_sq(point_a - contacts.contact_point_a[world, row]) < UNMOVED * UNMOVED
+        and wp.length_sq(point_b - contacts.contact_point_b[world, row]) < UNMOVED * UNMOVED
+    )
+
+
+@func
+def can_stay(
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    world: Int32,
+    pair: Index4,
+    wanted: Int32,
+    first: Int32,
+    last: Int32,
+) -> bool:
+    """Whether the contacts [first, last) of a pair from the last step are still right.
+
+    They are if both shapes are at rest and nobody has moved them. The next row to write being theirs,
+    they have not been overwritten.
+    """
+    if wanted != first or contacts.count_contacts[world, REPEATED] != 0:
+        return False
+    if not (
+        is_at_rest(shapes, model, state, world, pair[0]) and is_at_rest(shapes, model, state, world, pair[1])
+    ):
+        return False
+    for row in range(first, last):
+        if not is_where_it_was(state, contacts, world, row):
+            return False
+    return last > first
 
 
 @func
 def make_contacts(
-    shapes: Shapes, state: State, contacts: Contacts, pairs: Pairs, world: Int32, previous_count: Int32
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+    previous_count: Int32,
 ) -> Int32:
     """Contacts of all pairs; returns how many there are, those beyond the capacity included."""
     room = contacts.contact_shapes.shape[1]
@@ -25,6 +85,10 @@ def make_contacts(
         pair = pairs.pair_shapes[world, i]
         first = skip_contacts(pairs, world, first, previous_count, pair, 0)
         last = skip_contacts(pairs, world, first, previous_count, pair, 1)
+        if can_stay(shapes, model, state, contacts, world, pair, wanted, first, last):
+            wanted += last - first
+            first = last
+            continue
         reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
         sides = in_order_of_sides(shapes, pair)
         count = touch(shapes, pairs, world, sides[0], sides[1], reach)
@@ -40,11 +104,11 @@ def make_contacts(
 
 
 @func
-def find_contacts(shapes: Shapes, state: State, contacts: Contacts, pairs: Pairs, world: Int32):
+def find_contacts(shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32):
     """Contacts of all pairs, if the pairs did fit; those that persist keep their impulses."""
     if pairs.count_pairs[world, PAIRS] <= pairs.pair_shapes.shape[1]:
         previous_count = keep_previous(contacts, pairs, world)
-        wanted = make_contacts(shapes, state, contacts, pairs, world, previous_count)
+        wanted = make_contacts(shapes, model, state, contacts, pairs, world, previous_count)
         contacts.count_contacts[world, WANTED] = wanted
         if wanted <= contacts.contact_shapes.shape[1]:
             contacts.count_contacts[world, THERE] = wanted
@@ -70,7 +134,7 @@ def collide(
     else is done with the contacts.
     """
     find_pairs(shapes, model, state, settings, pairs, world)
-    find_contacts(shapes, state, contacts, pairs, world)
+    find_contacts(shapes, model, state, contacts, pairs, world)
 
 
 @func

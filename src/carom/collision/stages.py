@@ -16,6 +16,6 @@ def broad_phase_kernel(settings: Settings, shapes: Shapes, model: Model, state: 
 
 
 @kernel
-def narrow_phase_kernel(shapes: Shapes, state: State, contacts: Contacts, pairs: Pairs):
+def narrow_phase_kernel(shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs):
     """Contacts of these pairs."""
-    find_contacts(shapes, state, contacts, pairs, wp.tid())
+    find_contacts(shapes, model, state, contacts, pairs, wp.tid())

@@ -26,11 +26,13 @@ from carom.model.codes import (
     POSITION_COUNT,
     JointCode,
 )
+from carom.model.flags import LoadFlags
 from carom.model.structs import ENTRY_VIEWS, Model, Scratch, State
 
 # Bullet's default, a float32 in its source.
 DEFAULT_LINK_DAMPING = float(np.float32(0.04))
 DEFAULT_MAX_VELOCITY = 100.0
+DEFAULT_SLEEP_THRESHOLD = 0.05
 DEFAULT_MOTOR_IMPULSE = 1.0
 DEFAULT_SPHERICAL_MOTOR_IMPULSE = 1000.0
 DEFAULT_SPHERICAL_MOTOR_GAIN = 0.2
@@ -109,7 +111,7 @@ class WorldArrays:
         }
         grown = self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
-        self._write_tree(rows)
+        self._write_tree(rows, spec.flags)
         self._write_links(rows, spec, codes)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
@@ -117,7 +119,7 @@ class WorldArrays:
             self.used[axis] += number
         return rows, grown
 
-    def _write_tree(self, rows: TreeRows) -> None:
+    def _write_tree(self, rows: TreeRows, flags: int) -> None:
         model = self.model.numpy
         tree, first = rows.tree, rows.first
         model["tree_first_link"][tree] = first["link"]
@@ -133,6 +135,9 @@ class WorldArrays:
         model["tree_linear_damping"][tree] = DEFAULT_LINK_DAMPING
         model["tree_angular_damping"][tree] = DEFAULT_LINK_DAMPING
         model["tree_max_velocity"][tree] = DEFAULT_MAX_VELOCITY
+        model["tree_can_sleep"][tree] = bool(flags & LoadFlags.ENABLE_SLEEPING)
+        model["tree_can_wake"][tree] = True
+        model["tree_sleep_threshold"][tree] = DEFAULT_SLEEP_THRESHOLD
 
     def _write_links(self, rows: TreeRows, spec: BodySpec, codes: list[JointCode]) -> None:
         model = self.model.numpy

@@ -38,6 +38,15 @@ class UserConstraintKind(IntEnum):
     GEAR = 6
 
 
+class Activity(IntEnum):
+    """Whether a tree takes part in the simulation."""
+
+    ACTIVE = 0
+    DROWSY = 1  # takes part, but will not as soon as nobody of its island is active
+    ASLEEP = 2
+    STIRRED = 3  # was asleep until this substep; else as DROWSY
+
+
 class ShapeKind(IntEnum):
     """Kinds of collision shape, and what `Shapes.shape_size` holds for each."""
 
@@ -101,6 +110,10 @@ LIMIT = wp.constant(int(ConstraintKind.LIMIT))
 SPHERICAL_MOTOR = wp.constant(int(ConstraintKind.SPHERICAL_MOTOR))
 SPHERICAL_LIMIT = wp.constant(int(ConstraintKind.SPHERICAL_LIMIT))
 USER = wp.constant(int(ConstraintKind.USER))
+ACTIVE = wp.constant(int(Activity.ACTIVE))
+DROWSY = wp.constant(int(Activity.DROWSY))
+ASLEEP = wp.constant(int(Activity.ASLEEP))
+STIRRED = wp.constant(int(Activity.STIRRED))
 SPHERE = wp.constant(int(ShapeKind.SPHERE))
 BOX = wp.constant(int(ShapeKind.BOX))
 CAPSULE = wp.constant(int(ShapeKind.CAPSULE))

@@ -1,4 +1,4 @@
-"""Options of loading a robot, with PyBullet's values."""
+"""Options of loading a robot and of putting it to sleep, with PyBullet's values."""
 
 from __future__ import annotations
 
@@ -35,3 +35,14 @@ class LoadFlags(IntFlag):
         | USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
         | USE_SELF_COLLISION_INCLUDE_PARENT
     )
+
+
+class ActivationChange(IntFlag):
+    """What `changeDynamics(activationState=...)` takes."""
+
+    ENABLE_SLEEPING = 1
+    DISABLE_SLEEPING = 2
+    WAKE_UP = 4
+    SLEEP = 8
+    ENABLE_WAKEUP = 16
+    DISABLE_WAKEUP = 32

@@ -81,6 +81,9 @@ class TreeModel:
     linear_damping: real
     angular_damping: real
     max_velocity: real
+    can_sleep: Int32
+    can_wake: Int32  # by moving
+    sleep_threshold: real  # sum of its squared velocities below which it grows tired
 
 
 @wp.struct
@@ -169,6 +172,9 @@ class State:
     tree_island: IntRows  # root of its island; the next two are those of roots
     tree_iterations: IntRows
     tree_residual: RealRows
+    tree_activity: IntRows  # see `codes.Activity`
+    tree_tired: IntRows  # 1: it sleeps as soon as all of its island are
+    tree_idle_time: RealRows  # for how long it has hardly moved [s]
     fault_tree: IntRows  # its first entry: 1 + the tree whose velocities were not finite, 0, or OVERFLOW
 
 

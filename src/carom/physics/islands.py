@@ -9,6 +9,7 @@ import warp as wp
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Int32, func
 from carom.model.structs import Model, Settings, State
+from carom.physics.activity import is_asleep
 
 _NONE = wp.constant(-1)
 
@@ -60,7 +61,10 @@ def build_islands(
     couplings: Couplings,
     world: Int32,
 ):
-    """Join trees that touch or are tied together, and list the constraints and contacts of each island."""
+    """Join trees that touch or are tied together, and list the constraints and contacts of each island.
+
+    Those of trees that are asleep are left out.
+    """
     contact_count = contacts.count_contacts[world, 0]
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = model.tree[tree].batch
@@ -81,17 +85,20 @@ def build_islands(
         couplings.tree_first_contact[world, tree] = _NONE
     constraint = settings.constraint_count - 1
     while constraint >= 0:
-        root = state.tree_island[world, model.constraint[constraint].tree]
-        couplings.constraint_next[world, constraint] = couplings.tree_first_constraint[world, root]
-        couplings.tree_first_constraint[world, root] = constraint
+        tree = model.constraint[constraint].tree
+        if not is_asleep(state, world, tree):
+            root = state.tree_island[world, tree]
+            couplings.constraint_next[world, constraint] = couplings.tree_first_constraint[world, root]
+            couplings.tree_first_constraint[world, root] = constraint
         constraint -= 1
     contact = contact_count - 1
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
         tree = moving_tree(model, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
-        root = state.tree_island[world, tree]
-        couplings.contact_next[world, contact] = couplings.tree_first_contact[world, root]
-        couplings.tree_first_contact[world, root] = contact
+        if not is_asleep(state, world, tree):
+            root = state.tree_island[world, tree]
+            couplings.contact_next[world, contact] = couplings.tree_first_contact[world, root]
+            couplings.tree_first_contact[world, root] = contact
         contact -= 1
 
 

@@ -5,6 +5,7 @@ import warp as wp
 from carom.model.codes import FREE_MOTION
 from carom.model.real import Int32, Vector6, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.activity import has_stirred, is_asleep, stop
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
 from carom.physics.feedback import (
     clear_constraint_forces,
@@ -44,6 +45,8 @@ def free_motion(
     pushed: bool,
 ):
     """Velocities after the substep if there were no constraints; what they need if something is `pushed`."""
+    if is_asleep(state, world, tree):
+        return
     explicit_pd(model, state, world, tree)
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
@@ -57,6 +60,9 @@ def free_motion(
         measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
         clear_constraint_forces(model, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
+    if has_stirred(state, world, tree):
+        # Gravity and forces act on it from the next substep on.
+        stop(model, state, world, tree)
     if pushed:
         invert(model, scratch, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
@@ -66,6 +72,9 @@ def free_motion(
 def constrained_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
     """Add what the solver found to the velocities, and move on by them."""
     for tree in range(settings.tree_count):
+        if is_asleep(state, world, tree):
+            stop(model, state, world, tree)
+            continue
         if model.tree[tree].sensor_count > 0:
             constraint_feedback(model, settings, state, scratch, world, tree)
         apply_delta_velocities(model, state, scratch, world, tree)
