@@ -7,6 +7,7 @@
 #   make figures      the plots of the tutorials and the picture of the viewer, by running them; needs Chromium
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
 #   make record       record what real PyBullet does in every conformance scenario
+#   make surface      call every function of real PyBullet in every way and record what comes of it
 #   make conformance  compare Carom with real PyBullet, live
 #   make report       the comparison as tables and plots, in docs/conformance/
 #   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
@@ -29,7 +30,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record conformance report soak bench growth clean
+.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench growth clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -94,6 +95,9 @@ types: $(VENV)/dev
 
 record: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.conformance.record
+
+surface: oracle
+	env -u PYTHONPATH .oracle/bin/python -m tests.surface.record
 
 conformance: oracle $(VENV)/dev
 	$(RUN) -m tests.conformance.live --oracle .oracle/bin/python

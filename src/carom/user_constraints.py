@@ -40,7 +40,7 @@ class UserConstraint:
         child_frame: The same of the child; in world axes where there is no child.
         max_impulse: Greatest impulse of each row per substep.
         max_force: What users last set as greatest force [N or N m].
-        gear_ratio: Joint rate of the parent is minus this times that of the child.
+        gear_ratio: Joint rate of the parent is minus this times that of the child; 0 stands for 1.
         gear_auxiliary_link: Link of the parent whose joint's motion is taken off; -1 for none.
         relative_position_target: What the gear's joint positions are to add up to [rad].
         erp: Share of a gear's position error that is taken back; 0 leaves positions alone.
@@ -160,7 +160,7 @@ class UserConstraints:
             users["user_frame_b"][row] = constraint.child_frame.orientation
             users["user_axis"][row] = constraint.axis
             users["user_max_impulse"][row] = constraint.max_impulse
-            users["user_gear_ratio"][row] = constraint.gear_ratio
+            users["user_gear_ratio"][row] = constraint.gear_ratio or 1.0
             auxiliary = constraint.gear_auxiliary_link
             users["user_gear_auxiliary"][row] = (
                 constraint.parent.first_link + 1 + auxiliary if auxiliary >= 0 else -1

@@ -531,7 +531,7 @@ class World:
         settings.constraint_count = self.arrays.used["constraint"]
         settings.contact_erp = p.contact_erp
         settings.friction_erp = p.friction_erp
-        settings.contact_softness = p.global_cfm
+        settings.contact_softness = p.global_cfm / p.substep_time
         settings.contact_slop = p.contact_slop
         settings.contact_warm_starting = p.contact_warm_starting
         settings.restitution_threshold = p.restitution_velocity_threshold

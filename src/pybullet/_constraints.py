@@ -128,7 +128,7 @@ def changeConstraint(
         jointChildPivot: New pivot of the child, in the world if there is no child [m].
         jointChildFrameOrientation: New axes of the child, a quaternion.
         maxForce: Greatest force of each row [N or N m]; negative leaves it.
-        gearRatio: Of a gear; 0 leaves it.
+        gearRatio: Of a gear, 1 at first; 0 leaves it.
         gearAuxLink: Link of the parent whose joint's motion is taken off the gear's; negative leaves it.
         relativePositionTarget: What the joint positions of a gear are to add up to.
         erp: Share of a gear's position error that is taken back per step; negative leaves it.

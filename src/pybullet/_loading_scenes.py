@@ -126,7 +126,8 @@ def loadMJCF(
         from carom.model.flags import LoadFlags
         from carom.model.mjcf_inertia import set_mjcf_inertias
 
-        spec = assemble(placed.robot, flags=LoadFlags(bits & ~_NOT_FOR_MJCF | URDF_USE_IMPLICIT_CYLINDER))
+        loading = LoadFlags(bits & ~_NOT_FOR_MJCF | URDF_USE_IMPLICIT_CYLINDER)
+        spec = assemble(placed.robot, flags=loading, compound_margin=0.0)
         set_mjcf_inertias(spec)
         return spec
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pybullet._arguments import integer, sequence, text
-from pybullet._builtin import exported
+from pybullet._arguments import by_name, integer, sequence, text
+from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._constants import (
     STATE_LOGGING_ALL_COMMANDS,
@@ -131,17 +131,20 @@ def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
         client.logs.stop(client, integer(loggingId, "loggingId"))
 
 
-@exported
-def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0) -> None:
+@exported_as("(eventName=None, physicsClientId=0)")
+def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0, **spaced: str | None) -> None:
     """Begins a zone of the logs of `STATE_LOGGING_PROFILE_TIMINGS`, or ends the one begun last.
 
     Args:
         eventName: Name of a zone that begins; None ends one.
         physicsClientId: The connection.
+        spaced: `"eventName "`: what PyBullet calls the first argument, by mistake.
 
     Raises:
         pybullet.error: Not connected.
     """
+    if spaced:
+        eventName = by_name("submitProfileTiming", ("eventName ",), (), spaced)["eventName "]
     client = client_of(physicsClientId)
     if eventName is not None:
         name = text(eventName, "eventName")

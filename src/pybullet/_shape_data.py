@@ -193,7 +193,10 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
     from carom.model.inertia import is_in_place
 
     row = body.first_link + 1 + link
-    x, y, z, qx, qy, qz, qw = client.world.link_pose[row].tolist()
+    if link == BASE:
+        (x, y, z), (qx, qy, qz, qw) = client.bodies[body.id].base_pose()
+    else:
+        x, y, z, qx, qy, qz, qw = client.world.link_pose[row].tolist()
     spec = body.link_spec(link)
     lone = spec.collisions[0].geometry if is_in_place(spec.collisions, spec.inertial_frame) else None
     bounds = client.world.touch.shapes.bounds(row)

@@ -13,7 +13,11 @@ from pybullet import _unavailable
 
 HERE = Path(__file__).parent
 SURFACE = json.loads((HERE / "surface.json").read_text())
-SIGNATURES = json.loads((HERE / "signatures.json").read_text())
+SIGNATURES = {
+    name: entry["parameters"]
+    for name, entry in json.loads((HERE.parent / "surface" / "table.json").read_text()).items()
+    if entry["parameters"] is not None and name not in ("submitProfileTiming", "syncUserData")
+}
 FUNCTIONS = SURFACE["functions"]
 
 

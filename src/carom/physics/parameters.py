@@ -24,7 +24,7 @@ class EngineParameters:
         erp: Share of a joint limit's or user constraint's error taken back per step.
         contact_erp: The same for penetrations.
         friction_erp: The same for friction anchors.
-        global_cfm: Softness of all constraints.
+        global_cfm: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
         contact_breaking_threshold: Distance at which a contact point is given up [m].
         contact_slop: Penetration that is left alone [m].
         restitution_velocity_threshold: Slower impacts do not bounce [m/s].
