@@ -45,6 +45,7 @@ class Body:
         position_count: Number of position coordinates of each joint.
         velocity_count: Number of velocity coordinates of each joint.
         fixed_base: The base does not move now.
+        derived: What algorithms keep about the body until its masses, inertias or freedom change.
         first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
         first_position: Row of the first coordinate in `World.position`.
         first_velocity: Row of the first coordinate in `World.velocity`.
@@ -68,6 +69,7 @@ class Body:
         self.position_index: tuple[int, ...] = ()
         self.velocity_index: tuple[int, ...] = ()
         self.fixed_base = spec.fixed_base
+        self.derived: dict[Any, Any] = {}
         self._dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
         if spec.fixed_base:
             self._dynamics[0].mass = 0.0

@@ -110,6 +110,7 @@ def _set_inertia(body: Body, link: int, inertia: tuple[float, float, float]) -> 
 
 def _write(body: Body, link: int) -> None:
     dynamics = body.dynamics(link)
+    body.derived.clear()
     body.world.arrays.write_inertia(body.first_link + 1 + link, dynamics.mass, dynamics.inertia)
 
 

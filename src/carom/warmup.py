@@ -26,7 +26,8 @@ KERNEL_MODULES = (
     "carom.physics.kinematics",
     "carom.physics.slumber",
     "carom.collision.rays",
-    "carom.algorithms.kernels",
+    "carom.algorithms.tree.stable_pd",
+    "carom.algorithms.tree.dynamics",
     "carom.render.kernels.draw",
 )
 # The stages of `World.profile` are compiled again, each on its own, when someone asks for a profile.

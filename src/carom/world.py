@@ -11,7 +11,6 @@ from typing import Any, overload
 
 import numpy as np
 
-from carom.algorithms.query import QuerySpace
 from carom.body import Body
 from carom.constraints import JointConstraints, moving_links
 from carom.description.pose import IDENTITY, Pose, Vector3
@@ -243,8 +242,6 @@ class World:
         self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
         for other in self.bodies.values():
             other.relocate()
-        if self._query_space is not None:
-            self._query_space.forget_bodies()
         self.free_ids.append(body_id)
         self.constraints_changed()
 
@@ -288,6 +285,7 @@ class World:
         """Let the base of a body move, or hold it where it is."""
         self.arrays.set_base_freedom(body.rows, free=free)
         body.fixed_base = not free
+        body.derived.clear()
         self.constraints.base_freedom_changed(body)
         self.constraints_changed()
 
@@ -358,7 +356,6 @@ class World:
         self.touch.shapes.set_breaking_fraction(self.parameters.contact_breaking_threshold)
         self._step = None
         self._queries = None
-        self._query_space = None
 
     def constraints_changed(self) -> None:
         """Sort and number the constraints again before the next step."""
@@ -574,18 +571,11 @@ class World:
         self._pose_launch: Launch | None = None
         self._all_poses_launch: Launch | None = None
         self._twist_launch: Launch | None = None
-        self._query_space: QuerySpace | None = None
         for name, field in _VIEWS.items():
             view = self.arrays.state.numpy[field][0]
             setattr(self, name, view)
             setattr(self, f"{name}_memory", memoryview(view.reshape(-1)))
         self._fault = memoryview(self.arrays.state.numpy["fault_tree"][0])
-
-    def query_space(self) -> QuerySpace:
-        """Spare coordinates for the algorithms that need no step."""
-        if self._query_space is None:
-            self._query_space = QuerySpace(self._settings(), self._structs, self.arrays, _DEVICE)
-        return self._query_space
 
     @contextmanager
     def present_poses(self) -> Iterator[None]:

@@ -46,10 +46,11 @@ def test_joint_space_is_that_of_the_engine(name: str, seed: int) -> None:
     body = load(name, fixed_base=True)
     positions, rates, plain_rates, moving = extended_and_plain(body, seed)
     base = body.world.position[:BASE]
-    model = ExtendedModel(extended_nodes(body, as_pybullet=False), np.array([*base, *positions]))
-    matrix = model.mass_matrix()[BASE:, BASE:]
+    model = ExtendedModel(extended_nodes(body, as_pybullet=False))
+    position = np.array([*base, *positions])
+    matrix = model.mass_matrix(position)[BASE:, BASE:]
     assert matrix[np.ix_(moving, moving)] == pytest.approx(mass_matrix(body, positions), abs=1e-12)
-    forces = model.bias_forces(np.array([*[0.0] * BASE, *rates]), (0.3, -0.2, -9.8))
+    forces = model.bias_forces(position, np.array([*[0.0] * BASE, *rates]), (0.3, -0.2, -9.8))
     still = np.zeros_like(plain_rates)
     assert forces[BASE:][moving] == pytest.approx(
         inverse_dynamics(body, positions, plain_rates, still), abs=1e-12

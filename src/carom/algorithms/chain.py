@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.algorithms.joint_frames import JointFrames
 from carom.algorithms.reach.structs import Chain, ChainSizes
-from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
-from carom.description.transform import compose, conjugate, multiplied, turn_of_z
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BASE
 from carom.model.codes import DOF_COUNT, POSITION_COUNT, JointCode
@@ -18,7 +17,6 @@ from carom.model.codes import DOF_COUNT, POSITION_COUNT, JointCode
 if TYPE_CHECKING:
     from carom.body import Body
 
-_NO_TURN = (0.0, 0.0, 0.0, 1.0)
 # Of an unlimited joint: the range that new starts are drawn from, either way from 0 [rad or m].
 _UNLIMITED_RANGE = {JointCode.PRISMATIC: 1.0}
 
@@ -58,20 +56,17 @@ class BodyChain:
                 chain["dof_coordinate"][first_dof[joint] + k] = (
                     -1 if is_angle_of_ball else first_coordinate[joint] + k
                 )
-        self._turns: list[Quaternion] = []
-        node_of = {link: node for node, link in enumerate(moving)}
+        frames = JointFrames(body, moving)
         column = 0
         for node, link in enumerate(moving):
-            carrier, frame = self._seen(*_placement(body, link, node_of, moves=True))
-            turn = _turn_of_axis(body, link, codes[link])
-            self._turns.append(turn)
             chain["joint_kind"][node] = codes[link]
+            carrier, frame = frames.of_joint(link)
             chain["joint_parent"][node] = carrier
             chain["joint_first_coordinate"][node] = first_coordinate[link]
             chain["joint_first_dof"][node] = first_dof[link]
             chain["joint_first_column"][node] = column
             chain["joint_origin"][node] = frame.position
-            chain["joint_turn"][node] = multiplied(frame.orientation, turn)
+            chain["joint_turn"][node] = frame.orientation
             self._write_axes(body, link, node)
             low, high = _range(body, link, codes[link])
             for k in range(DOF_COUNT[codes[link]]):
@@ -79,16 +74,10 @@ class BodyChain:
                 chain["column_low"][column], chain["column_high"][column] = low, high
                 column += 1
         for end, link in enumerate(links):
-            carrier, frame = self._seen(*_placement(body, link, node_of, moves=False))
+            carrier, frame = frames.of_link(link)
             chain["end_joint"][end] = carrier
             chain["end_offset"][end] = frame.position
             chain["end_turn"][end] = frame.orientation
-
-    def _seen(self, carrier: int, frame: Pose) -> tuple[int, Pose]:
-        """A frame on a joint of the chain, seen from the frame whose z axis is that of the joint."""
-        if carrier == BASE:
-            return carrier, frame
-        return carrier, compose(Pose(orientation=conjugate(self._turns[carrier])), frame)
 
     def _write_axes(self, body: Body, link: int, node: int) -> None:
         model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
@@ -109,55 +98,9 @@ def _ancestors(body: Body, links: Sequence[int]) -> list[int]:
     return sorted(found)
 
 
-def _placement(body: Body, link: int, node_of: dict[int, int], *, moves: bool) -> tuple[int, Pose]:
-    """Where a joint or an end is at position 0.
-
-    Args:
-        body: The body.
-        link: The link whose joint it is, or which is the end.
-        node_of: Place in the chain of the links that move.
-        moves: The joint is meant, not the link it carries.
-
-    Returns:
-        The joint of the chain that carries it, -1 for the base, and its frame in that joint's.
-    """
-    frame = IDENTITY
-    if not moves and link in node_of:
-        return node_of[link], frame
-    model = body.world.arrays.model.numpy
-    while link != BASE:
-        row = body.first_link + 1 + link
-        at_joint = Pose(_vector(model["link_pivot_in_parent"][row]), _turn(model["link_joint_rotation"][row]))
-        frame = compose(at_joint, frame)
-        link = body.spec.links[link].parent
-        if link == BASE:
-            break
-        frame = compose(Pose(_vector(model["link_com_from_pivot"][body.first_link + 1 + link])), frame)
-        if link in node_of:
-            return node_of[link], frame
-    return BASE, frame
-
-
-def _turn_of_axis(body: Body, link: int, code: JointCode) -> Quaternion:
-    """The turn that takes z to the axis of a hinge or slider, in the frame of its link."""
-    if code not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
-        return _NO_TURN
-    return turn_of_z(_vector(body.world.arrays.model.numpy["link_unit_axis"][body.first_link + 1 + link]))
-
-
 def _range(body: Body, link: int, code: JointCode) -> tuple[float, float]:
     spec = body.spec.links[link]
     if spec.limited and code in (JointCode.REVOLUTE, JointCode.PRISMATIC) and spec.upper - spec.lower < inf:
         return spec.lower, spec.upper
     half = _UNLIMITED_RANGE.get(code, pi)
     return -half, half
-
-
-def _vector(row: np.ndarray) -> Vector3:
-    x, y, z = row.tolist()
-    return (x, y, z)
-
-
-def _turn(row: np.ndarray) -> Quaternion:
-    x, y, z, w = row.tolist()
-    return (x, y, z, w)

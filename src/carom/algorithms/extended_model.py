@@ -1,140 +1,94 @@
 """The equations of motion in extended coordinates: seven of the base, four of a spherical joint.
 
-PyBullet's stable PD controller sees a body this way, and so do its inverse dynamics and mass matrix with
-`flags=1`. Spatial vectors, angular above linear, are in joint frames: their origin at the joint, their
-axes such that a hinge turns about z and a slider moves along x.
+PyBullet's inverse dynamics and mass matrix see a body this way with `flags=1`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.extended_nodes import ROOT_COORDINATES, Node, extended_nodes, skew
+from carom.algorithms.extended_nodes import extended_nodes
+from carom.algorithms.moving_tree import MovingTree
+from carom.algorithms.nodes import Node
 from carom.description.pose import Vector3
-from carom.description.transform import NO_ROTATION, rotation_matrix
-from carom.model.codes import JointCode
+from carom.description.transform import rotation_matrix
+from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 
 if TYPE_CHECKING:
     from carom.body import Body
 
-_SUBSPACES = {
-    JointCode.REVOLUTE: np.array([[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]).T,
-    JointCode.PRISMATIC: np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]).T,
-    JointCode.SPHERICAL: np.vstack([np.eye(3, 4), np.zeros((3, 4))]),
-    JointCode.FIXED: np.zeros((6, 0)),
-}
-
 
 class ExtendedModel:
-    """A tree of nodes at given coordinates.
+    """A tree of nodes in extended coordinates.
+
+    Rates and forces are those of the base along the world's axes, linear before angular, and a zero; then of
+    a spherical joint its angular velocity and a zero. Positions are those of the base and of the joints,
+    quaternions (x, y, z, w).
 
     Attributes:
-        nodes: Links and the joints that carry them, parents first; the first is the root.
         size: Number of coordinates.
     """
 
-    def __init__(self, nodes: Sequence[Node], position: np.ndarray) -> None:
-        """Places the nodes.
+    def __init__(self, nodes: Sequence[Node]) -> None:
+        self._tree = MovingTree(nodes, free=True)
+        self.size = BASE_POSITIONS + self._tree.coordinates
+        # The coordinate of each dof of the tree, whose base has its angular dofs first.
+        places = [3, 4, 5, 0, 1, 2]
+        first = BASE_POSITIONS
+        for node in nodes:
+            places += range(first, first + len(node.axes))
+            first += POSITION_COUNT[node.kind]
+        self._places = np.array(places)
 
-        Args:
-            nodes: As `extended_nodes` makes them.
-            position: Coordinates; quaternions (x, y, z, w).
-        """
-        self.nodes = nodes
-        self.size = nodes[-1].first + nodes[-1].count
-        self._inertias = np.array([node.inertia for node in nodes])
-        self._transforms = _motion_transforms(nodes, position)
-        self._to_root = np.array(rotation_matrix(tuple(position[3:7].tolist()))).T
-        self._jacobians = self._make_jacobians()
-
-    def mass_matrix(self) -> np.ndarray:
+    def mass_matrix(self, position: np.ndarray) -> np.ndarray:
         """Mass matrix.
 
         Returns:
             (size, size); zeros for what does not move, the fourth coordinate of quaternions.
         """
-        momenta = self._inertias @ self._jacobians
-        return self._jacobians.reshape(-1, self.size).T @ momenta.reshape(-1, self.size)
+        moving = np.array(self._tree.mass_matrix(position[BASE_POSITIONS:]))
+        turn = np.eye(self._tree.dofs)
+        turn[:3, :3] = turn[3:6, 3:6] = _rotation(position)
+        matrix = np.zeros((self.size, self.size))
+        matrix[np.ix_(self._places, self._places)] = turn @ moving @ turn.T
+        return matrix
 
-    def bias_forces(self, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
-        """Forces of inertia and gravity at zero acceleration.
-
-        Args:
-            rate: Rates of the coordinates: of the base its linear and angular velocity in world axes and a
-                zero; of a spherical joint its angular velocity and a zero.
-            gravity: [m/s²].
-
-        Returns:
-            (size,).
-        """
-        velocities = self._jacobians @ rate
-        joint_velocities = velocities.copy()
-        for index, node in enumerate(self.nodes[1:], start=1):
-            joint_velocities[index] -= self._transforms[index] @ velocities[node.parent]
-        accelerations = _cross_motion(velocities, joint_velocities)
-        # The rate of the root's motion subspace, with the world's angular velocity where the body's belongs:
-        # so does PyBullet.
-        accelerations[0, 3:] -= self._to_root @ gravity + np.cross(rate[3:6], self._to_root @ rate[:3])
-        for index, node in enumerate(self.nodes[1:], start=1):
-            accelerations[index] += self._transforms[index] @ accelerations[node.parent]
-        motions = np.stack([velocities, accelerations], axis=2)
-        momenta, forces = np.moveaxis(self._inertias @ motions, 2, 0)
-        forces = forces + _cross_force(velocities, momenta)
-        return self._jacobians.reshape(-1, self.size).T @ forces.ravel()
-
-    def _make_jacobians(self) -> np.ndarray:
-        """Velocity of each node, in its axes, by rate: (nodes, 6, size)."""
-        jacobians = np.zeros((len(self.nodes), 6, self.size))
-        jacobians[0, 3:, :3] = jacobians[0, :3, 3:6] = self._to_root
-        for index, node in enumerate(self.nodes[1:], start=1):
-            np.matmul(self._transforms[index], jacobians[node.parent], out=jacobians[index])
-            jacobians[index, :, node.first : node.first + node.count] = _SUBSPACES[node.kind]
-        return jacobians
+    def bias_forces(self, position: np.ndarray, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
+        """Forces of inertia and gravity [m/s²] at zero acceleration, (size,)."""
+        rotation = _rotation(position)
+        self._tree.set_base_motion(*base_motion(rotation, rate[:3], rate[3:6], gravity))
+        still = np.zeros(self._tree.joint_dofs)
+        rates = rate[self._places[BASE_VELOCITIES:]]
+        forces = np.array(self._tree.forces(position[BASE_POSITIONS:], rates, still))
+        forces[:3], forces[3:6] = rotation @ forces[:3], rotation @ forces[3:6]
+        result = np.zeros(self.size)
+        result[self._places] = forces
+        return result
 
 
-def _motion_transforms(nodes: Sequence[Node], position: np.ndarray) -> np.ndarray:
-    """What takes motions from the joint frame of the parent to that of the node, (nodes, 6, 6)."""
-    turns, slides = [NO_ROTATION], np.zeros(len(nodes))
-    for index, node in enumerate(nodes[1:], start=1):
-        own = position[node.first : node.first + node.count].tolist()
-        turn = NO_ROTATION
-        if node.kind == JointCode.REVOLUTE:
-            c, s = cos(own[0]), sin(own[0])
-            turn = ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
-        elif node.kind == JointCode.SPHERICAL:
-            turn = rotation_matrix((own[0], own[1], own[2], own[3]))
-        elif node.kind == JointCode.PRISMATIC:
-            slides[index] = own[0]
-        turns.append(turn)
-    placements = np.array([node.rotation for node in nodes])
-    origins = np.array([node.origin for node in nodes]) + placements[:, :, 0] * slides[:, None]
-    back = np.swapaxes(placements @ np.array(turns), 1, 2)
-    transforms = np.zeros((len(nodes), 6, 6))
-    transforms[:, :3, :3] = transforms[:, 3:, 3:] = back
-    transforms[:, 3:, :3] = -back @ skew(origins)
-    return transforms
+def base_motion(
+    rotation: np.ndarray, velocity: np.ndarray, omega: np.ndarray, gravity: Vector3
+) -> np.ndarray:
+    """Motion of a base at zero acceleration, as `MovingTree.set_base_motion` takes it, in PyBullet's way.
+
+    Args:
+        rotation: From the base's axes to the world's.
+        velocity: In world axes [m/s].
+        omega: In world axes [rad/s].
+        gravity: In world axes [m/s²].
+    """
+    own_velocity, own_omega, own_gravity = np.array([velocity, omega, gravity]) @ rotation
+    # The world's angular velocity stands where that along the body's axes belongs.
+    acceleration = -own_gravity - np.cross(omega, own_velocity)
+    return np.concatenate([own_omega, own_velocity, np.zeros(3), acceleration])
 
 
-def _cross_motion(v: np.ndarray, m: np.ndarray) -> np.ndarray:
-    """Spatial vector product of motions, (nodes, 6)."""
-    angular, linear = v[:, :3], v[:, 3:]
-    result = np.empty_like(v)
-    result[:, :3] = np.cross(angular, m[:, :3])
-    result[:, 3:] = np.cross(linear, m[:, :3]) + np.cross(angular, m[:, 3:])
-    return result
-
-
-def _cross_force(v: np.ndarray, f: np.ndarray) -> np.ndarray:
-    """Spatial vector product of motions and forces, (nodes, 6)."""
-    angular, linear = v[:, :3], v[:, 3:]
-    result = np.empty_like(v)
-    result[:, :3] = np.cross(angular, f[:, :3]) + np.cross(linear, f[:, 3:])
-    result[:, 3:] = np.cross(angular, f[:, 3:])
-    return result
+def _rotation(position: np.ndarray) -> np.ndarray:
+    x, y, z, w = position[3:BASE_POSITIONS].tolist()
+    return np.array(rotation_matrix((x, y, z, w)))
 
 
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
@@ -152,8 +106,7 @@ def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    position = _with_base(body, positions, _base_pose(body))
-    matrix = ExtendedModel(extended_nodes(body, as_pybullet=True), position).mass_matrix()
+    matrix = _model(body).mass_matrix(_with_base(body, positions, _base_pose(body)))
     diagonal = np.diag_indices_from(matrix)
     matrix[diagonal] = np.where(matrix[diagonal] == 0.0, 1.0, matrix[diagonal])
     return matrix
@@ -179,12 +132,18 @@ def extended_bias_forces(body: Body, positions: Sequence[float], velocities: Seq
     u = body.first_velocity
     angular, linear = body.world.velocity[u : u + 3], body.world.velocity[u + 3 : u + 6]
     rate = _with_base(body, velocities, np.concatenate([linear, angular, [0.0]]))
-    model = ExtendedModel(extended_nodes(body, as_pybullet=True), position)
-    return model.bias_forces(rate, body.world.parameters.gravity)
+    return _model(body).bias_forces(position, rate, body.world.parameters.gravity)
+
+
+def _model(body: Body) -> ExtendedModel:
+    model = body.derived.get(ExtendedModel)
+    if model is None:
+        model = body.derived[ExtendedModel] = ExtendedModel(extended_nodes(body, as_pybullet=True))
+    return model
 
 
 def _base_pose(body: Body) -> np.ndarray:
-    return body.world.position[body.first_position : body.first_position + ROOT_COORDINATES]
+    return body.world.position[body.first_position : body.first_position + BASE_POSITIONS]
 
 
 def _with_base(body: Body, values: Sequence[float], of_fixed_base: np.ndarray) -> np.ndarray:

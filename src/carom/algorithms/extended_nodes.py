@@ -1,4 +1,4 @@
-"""Bodies as trees of nodes for `ExtendedModel`, as PyBullet's stable PD controller makes them.
+"""Bodies as trees of nodes, as PyBullet's stable PD controller makes them.
 
 What PyBullet does differently from its own engine is kept, so that its torques are met: inertias come
 from the first collision shape of a link alone, capsules have their axis along y, sliders move along the
@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import cos, sin, sqrt
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from carom.algorithms.nodes import Node, joint_axes, skew
 from carom.description import Box, Capsule, Collision, Sphere
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rpy_from_quaternion
@@ -25,45 +25,10 @@ from carom.model.flags import LoadFlags
 if TYPE_CHECKING:
     from carom.body import Body
 
-ROOT_COORDINATES = 7
-_COORDINATES = {
-    JointCode.REVOLUTE: 1,
-    JointCode.PRISMATIC: 1,
-    JointCode.SPHERICAL: 4,
-    JointCode.FIXED: 0,
-}
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _X, _Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 # PyBullet looks for the axis of a slider where there is none; what it finds is half a quaternion.
 _SLIDER_TURN = (0.0, 0.0, 0.0, sqrt(0.5))
-
-
-@dataclass(frozen=True, slots=True)
-class Node:
-    """A link and the joint that carries it.
-
-    Attributes:
-        parent: Index of the parent node, -1 for the root.
-        kind: Of the joint; the root's does not matter.
-        first: Its first coordinate.
-        count: How many it has.
-        rotation: Turns vectors from the joint frame at coordinate 0 to the parent's joint frame.
-        origin: Origin of the joint frame in the parent's joint frame [m].
-        inertia: Spatial inertia about the origin of the joint frame, (6, 6).
-    """
-
-    parent: int
-    kind: JointCode
-    first: int
-    count: int
-    rotation: np.ndarray
-    origin: np.ndarray
-    inertia: np.ndarray
-
-
-# Nodes of bodies, with and without the peculiarities, and the masses and inertias they were made with.
-_remembered: WeakKeyDictionary[Body, dict[bool, tuple[list[tuple[float, Vector3]], list[Node]]]]
-_remembered = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,37 +53,30 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    links = [body.dynamics(link) for link in range(BASE, body.joint_count)]
-    masses = [(link.mass, link.inertia) for link in links]
-    remembered = _remembered.setdefault(body, {})
-    if as_pybullet not in remembered or remembered[as_pybullet][0] != masses:
-        remembered[as_pybullet] = (masses, _make_nodes(body, as_pybullet))
-    return remembered[as_pybullet][1]
-
-
-def _make_nodes(body: Body, as_pybullet: bool) -> list[Node]:
     if JointCode.PLANAR in body.joint_types:
         raise ValueError("planar joints have no extended coordinates")
     first_link = 0 if as_pybullet and _base_is_left_out(body) else BASE
     nodes: list[Node] = []
     frames: dict[int, _Frame] = {}
     node_of: dict[int, int] = {}
-    first = 0
     for link in range(first_link, body.joint_count):
         spec = body.link_spec(link)
-        kind = JointCode.FIXED if link == BASE else JointCode(body.joint_types[link])
+        kind = JointCode.FIXED if link == first_link else JointCode(body.joint_types[link])
         frames[link] = frame = _joint_frame(kind, spec, as_pybullet, is_base=link == BASE)
         parent, rotation, origin = -1, np.eye(3), np.zeros(3)
         if nodes:
             parent = node_of[spec.parent]
             rotation, origin = _placement(body.link_spec(spec.parent), frames[spec.parent], spec, frame)
-        count = _COORDINATES[kind] if nodes else ROOT_COORDINATES
         node_of[link] = len(nodes)
-        nodes.append(
-            Node(parent, kind, first, count, rotation, origin, _inertia(body, link, frame, as_pybullet))
-        )
-        first += count
+        rigid = _rigid_body(body, link, frame, as_pybullet)
+        nodes.append(Node(parent, kind, rotation, origin, *rigid, _axes(kind)))
     return nodes
+
+
+def _axes(kind: JointCode) -> np.ndarray:
+    axes = joint_axes(kind)
+    # Sliders move along x.
+    return axes[:, :, ::-1] if kind == JointCode.PRISMATIC else axes
 
 
 def _base_is_left_out(body: Body) -> bool:
@@ -151,21 +109,20 @@ def _placement(
     return rotation, np.array(_turned(back, (jx + x, jy + y, jz + z)))
 
 
-def _inertia(body: Body, link: int, frame: _Frame, as_pybullet: bool) -> np.ndarray:
-    """Spatial inertia of a link about its joint."""
+def _rigid_body(
+    body: Body, link: int, frame: _Frame, as_pybullet: bool
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass of a link, and its first moment and inertia about its joint."""
     dynamics, spec = body.dynamics(link), body.link_spec(link)
     moments = dynamics.inertia
     if as_pybullet:
         implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         moments = _moments(dynamics.mass, spec.collisions, implicit)
     turn = _rotation_by_angles(conjugate(frame.turn))
-    offset = skew(np.array(frame.com))
-    inertia = np.zeros((6, 6))
-    inertia[:3, :3] = turn @ np.diag(moments) @ turn.T + dynamics.mass * offset @ offset.T
-    inertia[:3, 3:] = dynamics.mass * offset
-    inertia[3:, :3] = dynamics.mass * offset.T
-    inertia[3:, 3:] = dynamics.mass * np.eye(3)
-    return inertia
+    com = np.array(frame.com)
+    offset = skew(com)
+    about_joint = turn @ np.diag(moments) @ turn.T + dynamics.mass * offset @ offset.T
+    return dynamics.mass, dynamics.mass * com, about_joint
 
 
 def _moments(mass: float, collisions: tuple[Collision, ...], implicit_cylinder: bool) -> Vector3:
@@ -195,13 +152,6 @@ def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
         0.4 * radius * radius + 0.375 * radius * length + 0.5 * length * length
     )
     return (across, (0.5 * cylinder + 0.8 * half_ball) * radius * radius, across)
-
-
-def skew(v: np.ndarray) -> np.ndarray:
-    """Matrices of the vector product from the left, (..., 3, 3)."""
-    matrices = np.zeros((*v.shape, 3))
-    matrices[..., 2, 1], matrices[..., 0, 2], matrices[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
-    return matrices - np.swapaxes(matrices, -1, -2)
 
 
 def _shortest_turn(start: Vector3, end: Vector3, opposite: Quaternion) -> Quaternion:

@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.kernels import inverse_dynamics_kernel
-from carom.algorithms.query import reals
-from carom.description.transform import rotation_matrix
+from carom.algorithms.moving_tree import moving_tree
+from carom.description.transform import conjugate, rotation_matrix
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 
 if TYPE_CHECKING:
     from carom.body import Body
-
-_AT_REST = reals((0.0,) * BASE_VELOCITIES)
 
 
 def inverse_dynamics(
@@ -43,25 +40,26 @@ def inverse_dynamics(
         Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base
         along its own axes before them.
     """
-    space = body.world.query_space()
-    at = space.coordinates(body)
+    tree = moving_tree(body)
     if body.fixed_base:
-        first = body.first_position
-        at.base_position[:] = body.world.position_memory[first : first + BASE_POSITIONS]
-        if base_orientation is not None:
-            at.base_position[3:] = reals(base_orientation)
-        at.joint_position[:] = reals(positions)
-        at.velocity[:] = _AT_REST + reals(velocities)
-        at.acceleration[:] = _AT_REST + reals(accelerations)
-        space.run(inverse_dynamics_kernel, body.rows.tree)
-        return -at.force[BASE_VELOCITIES:]
+        if base_orientation is None:
+            first = body.first_position
+            base_orientation = body.world.position[first + 3 : first + BASE_POSITIONS].tolist()
+        x, y, z = _gravity_seen_from(body, base_orientation)
+        tree.set_resting_base((x, y, z))
+        return np.array(tree.forces(positions, velocities, accelerations))
 
-    q, v, a = (np.asarray(values, dtype=float) for values in (positions, velocities, accelerations))
-    x, y, z, w = q[3:7]
-    to_world = np.array(rotation_matrix((x, y, z, w)))
-    at.base_position[:] = reals(q[:BASE_POSITIONS])
-    at.joint_position[:] = reals(q[BASE_POSITIONS:])
-    for target, values in ((at.velocity, v), (at.acceleration, a)):
-        target[:] = reals(np.concatenate([to_world @ values[:3], to_world @ values[3:6], values[6:]]))
-    space.run(inverse_dynamics_kernel, body.rows.tree)
-    return -np.concatenate([at.force[3:6] @ to_world, at.force[:3] @ to_world, at.force[6:]])
+    v, a = np.asarray(velocities, dtype=float), np.asarray(accelerations, dtype=float)
+    omega, velocity = v[:3], v[3:BASE_VELOCITIES]
+    spatial = a[3:BASE_VELOCITIES] - np.cross(omega, velocity) - _gravity_seen_from(body, positions[3:7])
+    tree.set_base_motion(*omega, *velocity, *a[:3], *spatial)
+    forces = np.array(
+        tree.forces(positions[BASE_POSITIONS:], v[BASE_VELOCITIES:], a[BASE_VELOCITIES:]), dtype=float
+    )
+    return np.concatenate([forces[3:6], forces[:3], forces[6:]])
+
+
+def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Gravity in a frame, by the frame's quaternion."""
+    x, y, z, w = orientation
+    return np.array(rotation_matrix(conjugate((x, y, z, w)))) @ body.world.parameters.gravity

@@ -11,7 +11,6 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from carom.algorithms.chain import BodyChain
-from carom.algorithms.query import IDENTITY_BASE
 from carom.algorithms.reach.search import inverse_kinematics_kernel
 from carom.algorithms.reach.structs import Search
 from carom.model.arrays import ArrayTable
@@ -27,7 +26,7 @@ DEFAULT_THRESHOLD = 1e-4
 DEFAULT_DAMPING = 0.5
 _LEAST_DAMPING = 1e-9
 _DEVICE = "cpu"
-_NO_POSE = np.array(IDENTITY_BASE, dtype=NUMPY_REAL).data
+_NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
 _FIRST_OPTION = 3
 # More would not help, but take forever.

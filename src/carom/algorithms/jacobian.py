@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.kernels import jacobian_kernel
+from carom.algorithms.moving_tree import moving_tree
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -32,9 +32,7 @@ def jacobian(
         Matrices J with velocity = J rates, in axes of the base's inertial frame, each of shape
         (3, n); of a free body (3, 6 + n), the base first: angular, then linear.
     """
-    space = body.world.query_space()
-    at = space.coordinates(body)
-    at.take_joints_of_resting_base(positions)
-    space.answer["point_on_link"][0, 0] = local_position
-    space.run(jacobian_kernel, body.rows.tree, body.first_link + 1 + link)
-    return space.answer["dof_linear"][0, at.dofs].T.copy(), space.answer["dof_angular"][0, at.dofs].T.copy()
+    tree = moving_tree(body)
+    linear, angular = tree.jacobian(link, local_position, positions)
+    shape = (3, tree.dofs)
+    return np.array(linear).reshape(shape), np.array(angular).reshape(shape)

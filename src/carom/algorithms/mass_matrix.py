@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.kernels import mass_matrix_kernel
+from carom.algorithms.moving_tree import moving_tree
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -24,12 +24,5 @@ def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarr
         Symmetric matrix, shape (n, n); of a free body (6 + n, 6 + n), the base first: angular, then
         linear velocity along its own axes.
     """
-    space = body.world.query_space()
-    space.coordinates(body).take_joints_of_resting_base(positions)
-    tree = body.rows.tree
-    space.run(mass_matrix_kernel, tree)
-    count = int(space.model["tree_dof_count"][tree])
-    blocks = (count + 3) // 4
-    first = int(space.model["tree_first_block"][tree])
-    rows = space.scratch["block_factor"][0, first : first + count * blocks]
-    return rows.reshape(count, 4 * blocks)[:, :count].copy()
+    tree = moving_tree(body)
+    return np.array(tree.mass_matrix(positions)).reshape(tree.dofs, tree.dofs)

@@ -7,29 +7,33 @@ are solved together with the damping of the controller. High gains then stay sta
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import acos, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom.algorithms.extended_model import ExtendedModel
-from carom.algorithms.extended_nodes import ROOT_COORDINATES, extended_nodes
-from carom.description.pose import Quaternion
-from carom.description.transform import conjugate, multiplied
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES, JointCode
+from carom.algorithms.extended_model import base_motion
+from carom.algorithms.extended_nodes import extended_nodes
+from carom.algorithms.moving_tree import MovingTree
+from carom.algorithms.tree.stable_pd import Control, stable_pd_kernel
+from carom.algorithms.tree.structs import BASE_MOTION
+from carom.description.transform import rotation_matrix
+from carom.model.arrays import ArrayTable
+from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.model.launch import Launch, argument_indices
+from carom.model.real import NUMPY_REAL
 
 if TYPE_CHECKING:
     from carom.body import Body
 
+_DEVICE = "cpu"
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
 _UNSTATED_FORCE = 100000.0
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
-_NO_ANGLE = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class JointTarget:
+class JointTarget(NamedTuple):
     """What a joint is to do. Lists of a length that does not fit the joint count as not given.
 
     Attributes:
@@ -45,19 +49,6 @@ class JointTarget:
     force: Sequence[float]
     kp: float
     kd: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Coordinates:
-    """State, aims and gains in extended coordinates; quaternions (x, y, z, w), rates padded with a zero."""
-
-    position: np.ndarray
-    rate: np.ndarray
-    target: np.ndarray
-    target_rate: np.ndarray
-    kp: np.ndarray
-    kd: np.ndarray
-    most: np.ndarray
 
 
 def stable_pd_torques(body: Body, targets: Mapping[int, JointTarget], time_step: float) -> np.ndarray:
@@ -78,100 +69,71 @@ def stable_pd_torques(body: Body, targets: Mapping[int, JointTarget], time_step:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    nodes = extended_nodes(body, as_pybullet=not body.fixed_base)
-    coordinates = _coordinates(body, targets, nodes[-1].first + nodes[-1].count)
-    model = ExtendedModel(nodes, coordinates.position)
-    error = _expected_errors(body, coordinates, time_step)
-    rate_error = coordinates.target_rate - coordinates.rate
-    torque = coordinates.kp * error + coordinates.kd * rate_error
-    bias = model.bias_forces(coordinates.rate, body.world.parameters.gravity)
-    matrix = model.mass_matrix()
-    matrix[np.diag_indices_from(matrix)] += time_step * coordinates.kd
-    moving = matrix.diagonal() > 0.0
-    if body.fixed_base:
-        moving[:ROOT_COORDINATES] = False
-    acceleration = np.zeros(model.size)
-    acceleration[moving] = np.linalg.solve(matrix[np.ix_(moving, moving)], (torque - bias)[moving])
-    torque = torque - time_step * coordinates.kd * acceleration
-    return _by_freedom(body, np.clip(torque, -coordinates.most, coordinates.most))
+    controller = body.derived.get(_Controller)
+    if controller is None:
+        controller = body.derived[_Controller] = _Controller(body)
+    return controller.torques(targets, time_step)
 
 
-def _coordinates(body: Body, targets: Mapping[int, JointTarget], size: int) -> _Coordinates:
-    arrays = _Coordinates(*(np.zeros(size) for _ in range(7)))
-    world, q, u = body.world, body.first_position, body.first_velocity
-    arrays.position[:ROOT_COORDINATES] = world.position[q : q + BASE_POSITIONS]
-    arrays.target[:ROOT_COORDINATES] = arrays.position[:ROOT_COORDINATES]
-    arrays.rate[:3] = world.velocity[u + 3 : u + 6]
-    arrays.rate[3:6] = world.velocity[u : u + 3]
-    first = ROOT_COORDINATES
-    for joint, count in enumerate(body.position_count):
-        freedoms = body.velocity_count[joint]
-        own, moving = slice(first, first + count), slice(first, first + freedoms)
-        if count:
-            q, u = body.position_index[joint], body.velocity_index[joint]
-            arrays.position[own] = world.position[q : q + count]
-            arrays.rate[moving] = world.velocity[u : u + freedoms]
-            arrays.target[own] = _NO_TURN if count == 4 else 0.0
-        target = targets.get(joint)
-        if target is not None and count:
-            if len(target.position) == count:
-                arrays.target[own] = target.position
-            if len(target.velocity) == freedoms:
-                arrays.target_rate[moving] = target.velocity
-            arrays.kp[own], arrays.kd[own] = target.kp, target.kd
-            arrays.most[moving] = _UNSTATED_FORCE
-            arrays.most[first : first + len(target.force[:freedoms])] = target.force[:freedoms]
-        first += count
-    return arrays
+class _Controller:
+    """The controller of one body: arrays, and the kernel that works on them."""
 
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        tree = MovingTree(extended_nodes(body, as_pybullet=not body.fixed_base), free=True)
+        self._tree = tree
+        control = ArrayTable(Control, None)
+        control.reserve({"coordinate": tree.coordinates, "dof": tree.dofs, "entry": tree.dofs**2})
+        arrays = control.numpy
+        self._target = memoryview(arrays["coordinate_target"])
+        self._given = [arrays[f"dof_{name}"] for name in ("target_rate", "kp", "kd", "most")]
+        self._target_rate, self._kp, self._kd, self._most = map(memoryview, self._given)
+        self._torque = arrays["dof_torque"][: tree.dofs]
+        self._unaimed = array(_TYPE_CODE)
+        for count in body.position_count:
+            self._unaimed.extend(_NO_TURN if count == 4 else (0.0,) * count)
+        rates = int(BASE_MOTION) + tree.coordinates
+        given = memoryview(tree.arrays["input"])
+        self._position = given[int(BASE_MOTION) : rates]
+        self._rate = given[rates : rates + tree.joint_dofs]
+        arguments = [*tree.structs, control.struct(_DEVICE), int(body.fixed_base), 0.0]
+        self._launch = Launch(stable_pd_kernel, 1, arguments, _DEVICE)
+        self._time_step_at = argument_indices(stable_pd_kernel)["time_step"]
 
-def _expected_errors(body: Body, coordinates: _Coordinates, time_step: float) -> np.ndarray:
-    """From where the joints will be after a step at their present rates to where they ought to be."""
-    error = coordinates.target - coordinates.position - time_step * coordinates.rate
-    error[:ROOT_COORDINATES] = 0.0
-    first = ROOT_COORDINATES
-    for kind, count in zip(body.joint_types, body.position_count, strict=True):
-        if kind == JointCode.SPHERICAL:
-            own = slice(first, first + 4)
-            ahead = _advanced(coordinates.position[own], coordinates.rate[own], time_step)
-            error[own] = _turn_between(ahead, _quaternion(coordinates.target[own]))
-        first += count
-    return error
+    def torques(self, targets: Mapping[int, JointTarget], time_step: float) -> np.ndarray:
+        self._take_state()
+        self._take_targets(targets)
+        self._launch.replace(self._time_step_at, time_step)
+        self._launch()
+        return self._torque.copy()
 
+    def _take_state(self) -> None:
+        body, world = self._body, self._body.world
+        q, u = body.first_position, body.first_velocity
+        x, y, z, w = world.position_memory[q + 3 : q + BASE_POSITIONS]
+        rotation = np.array(rotation_matrix((x, y, z, w)))
+        omega, velocity = world.velocity[u : u + 3], world.velocity[u + 3 : u + BASE_VELOCITIES]
+        self._tree.set_base_motion(*base_motion(rotation, velocity, omega, world.parameters.gravity))
+        self._position[:] = world.position_memory[q + BASE_POSITIONS :][: self._tree.coordinates]
+        self._rate[:] = world.velocity_memory[u + BASE_VELOCITIES :][: self._tree.joint_dofs]
 
-def _advanced(position: np.ndarray, rate: np.ndarray, time_step: float) -> Quaternion:
-    """A rotation after one explicit step at an angular velocity in its own axes."""
-    q = _quaternion(position)
-    wx, wy, wz, _ = rate.tolist()
-    change = multiplied(q, (0.5 * time_step * wx, 0.5 * time_step * wy, 0.5 * time_step * wz, 0.0))
-    x, y, z, w = (a + b for a, b in zip(q, change, strict=True))
-    length = sqrt(x * x + y * y + z * z + w * w)
-    return (x / length, y / length, z / length, w / length)
-
-
-def _turn_between(start: Quaternion, end: Quaternion) -> tuple[float, float, float, float]:
-    """Rotation vector from one rotation to another, in the axes of the first, and a zero."""
-    x, y, z, w = multiplied(conjugate(start), end)
-    w = max(-1.0, min(1.0, w))
-    sine = sqrt(1.0 - w * w)
-    if sine <= _NO_ANGLE:
-        return (0.0, 0.0, 0.0, 0.0)
-    angle = 2.0 * acos(w)
-    if angle > np.pi:
-        angle -= 2.0 * np.pi
-    return (x / sine * angle, y / sine * angle, z / sine * angle, 0.0)
-
-
-def _quaternion(values: np.ndarray) -> Quaternion:
-    x, y, z, w = values.tolist()
-    return (x, y, z, w)
-
-
-def _by_freedom(body: Body, torque: np.ndarray) -> np.ndarray:
-    """Torques without the fourth coordinate of spherical joints, after those of the base."""
-    result = [np.zeros(BASE_VELOCITIES)]
-    first = ROOT_COORDINATES
-    for count, freedoms in zip(body.position_count, body.velocity_count, strict=True):
-        result.append(torque[first : first + freedoms])
-        first += count
-    return np.concatenate(result)
+    def _take_targets(self, targets: Mapping[int, JointTarget]) -> None:
+        for numbers in self._given:
+            numbers.fill(0.0)
+        self._target[: len(self._unaimed)] = self._unaimed
+        body = self._body
+        shift_q = body.first_position + BASE_POSITIONS
+        # The dofs of the tree begin with those of the base, as the body's do.
+        shift_u = body.first_velocity
+        for joint, (position, velocity, force, kp, kd) in targets.items():
+            count, freedoms = body.position_count[joint], body.velocity_count[joint]
+            q, u = body.position_index[joint] - shift_q, body.velocity_index[joint] - shift_u
+            if count and len(position) == count:
+                self._target[q : q + count] = array(_TYPE_CODE, position)
+            stated = len(force)
+            for k in range(freedoms):
+                self._kp[u + k] = kp
+                self._kd[u + k] = kd
+                self._most[u + k] = force[k] if k < stated else _UNSTATED_FORCE
+                if len(velocity) == freedoms:
+                    self._target_rate[u + k] = velocity[k]

@@ -1,0 +1,199 @@
+"""A body's equations of motion, ready to be asked about again and again at any coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property, partial
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.algorithms.nodes import End, Node, body_nodes
+from carom.algorithms.tree.dynamics import inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
+from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
+from carom.description.pose import Vector3
+from carom.model.arrays import ArrayTable
+from carom.model.codes import BASE_VELOCITIES, POSITION_COUNT
+from carom.model.launch import Launch
+from carom.model.real import NUMPY_REAL
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+Numbers = Sequence[float] | np.ndarray
+Rows = tuple[tuple[float, ...], ...]
+
+_DEVICE = "cpu"
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
+_SIZE = np.dtype(NUMPY_REAL).itemsize
+_JACOBIAN_ROWS = 6
+
+
+class MovingTree:
+    """A tree of nodes, with the memory of a question and its answer.
+
+    Everything is in the frame of the base. Sequences hold whatever `float` takes; one that holds something
+    else, or is not as long as is said here, raises `struct.error`.
+
+    Attributes:
+        coordinates: Number of positions of the joints: a quaternion for each spherical one.
+        joint_dofs: Number of their rates.
+        dofs: The same with those of a free base, six before the others: angular, then linear.
+        structs: What kernels are given: the sizes and the arrays.
+        arrays: The arrays by name.
+    """
+
+    def __init__(self, nodes: Sequence[Node], ends: Sequence[End] = (), *, free: bool) -> None:
+        """Take over the nodes.
+
+        Args:
+            nodes: Parents first, the base at the beginning.
+            ends: Links that Jacobians can be asked for, the base at the beginning.
+            free: The base moves.
+        """
+        self.joint_dofs = sum(len(node.axes) for node in nodes)
+        self.dofs = self.joint_dofs + (BASE_VELOCITIES if free else 0)
+        self.coordinates = sum(POSITION_COUNT[node.kind] for node in nodes)
+        sizes: Any = TreeSizes()
+        sizes.nodes = len(nodes)
+        sizes.coordinates = self.coordinates
+        sizes.dofs = self.dofs
+        sizes.base_dofs = self.dofs - self.joint_dofs
+        first_position = int(BASE_MOTION)
+        first_rate = first_position + self.coordinates
+        table = ArrayTable(Tree, None)
+        table.reserve(
+            {
+                "node": len(nodes),
+                "motion": len(nodes),
+                "dof": self.dofs,
+                "end": len(ends),
+                "input": first_rate + 2 * self.joint_dofs,
+                "output": _JACOBIAN_ROWS * self.dofs,
+                "matrix": self.dofs * self.dofs,
+            }
+        )
+        self.arrays = table.numpy
+        self._write_nodes(nodes, free=free)
+        self._write_ends(ends)
+        self.structs = (sizes, table.struct(_DEVICE))
+        self._jacobians: dict[int, Callable[[], None]] = {}
+        self._put_base = self._writer(0, first_position)
+        self._put_point = self._writer(0, 3)
+        self._put_positions = self._writer(first_position, self.coordinates)
+        self._put_rates = self._writer(first_rate, self.joint_dofs)
+        self._put_accelerations = self._writer(first_rate + self.joint_dofs, self.joint_dofs)
+        self._row = Struct(f"{self.dofs}{_TYPE_CODE}")
+        used = {"output": _JACOBIAN_ROWS * self.dofs, "matrix": self.dofs * self.dofs}
+        self._output, self._matrix = (
+            memoryview(self.arrays[name])[:count].cast("B") for name, count in used.items()
+        )
+
+    def set_resting_base(self, gravity: Vector3) -> None:
+        """For later questions about forces: the base rests under gravity [m/s²]."""
+        x, y, z = gravity
+        self.set_base_motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -x, -y, -z)
+
+    def set_base_motion(self, *motion: float) -> None:
+        """For later questions about forces: how the base moves.
+
+        Args:
+            *motion: Angular and linear velocity, angular and spatial acceleration less gravity.
+        """
+        self._put_base(*motion)
+
+    def forces(self, positions: Numbers, rates: Numbers, accelerations: Numbers) -> tuple[float, ...]:
+        """Generalized forces, as many as `dofs`, that cause a motion; of a free base torque, then force.
+
+        Args:
+            positions: As many as `coordinates`.
+            rates: As many as `joint_dofs`.
+            accelerations: As many as `joint_dofs`.
+        """
+        self._put_positions(*positions)
+        self._put_rates(*rates)
+        self._put_accelerations(*accelerations)
+        self._find_forces()
+        return self._row.unpack_from(self._output)
+
+    def mass_matrix(self, positions: Numbers) -> Rows:
+        """Rows of the symmetric mass matrix, (`dofs`, `dofs`), at joint positions as in `forces`."""
+        self._put_positions(*positions)
+        self._find_mass_matrix()
+        return self._rows(self._matrix)
+
+    def jacobian(self, link: int, point: Numbers, positions: Numbers) -> tuple[Rows, Rows]:
+        """Linear and angular Jacobian of a point, each three rows of `dofs` numbers.
+
+        Args:
+            link: Index of the link; -1 is the base.
+            point: Offset from the link frame's origin, of the base from its centre of mass, along the axes
+                of the inertial frame [m].
+            positions: As many as `coordinates`.
+        """
+        find = self._jacobians.get(link)
+        if find is None:
+            find = self._jacobians[link] = self._launch(jacobian_kernel, 1 + link)
+        self._put_point(*point)
+        self._put_positions(*positions)
+        find()
+        rows = self._rows(self._output)
+        return rows[:3], rows[3:]
+
+    @cached_property
+    def _find_forces(self) -> Callable[[], None]:
+        return self._launch(inverse_dynamics_kernel)
+
+    @cached_property
+    def _find_mass_matrix(self) -> Callable[[], None]:
+        return self._launch(mass_matrix_kernel)
+
+    def _launch(self, kernel: Any, *arguments: int) -> Callable[[], None]:
+        return Launch(kernel, 1, [*self.structs, *arguments], _DEVICE).function
+
+    def _rows(self, memory: memoryview) -> Rows:
+        return tuple(self._row.iter_unpack(memory)) if self.dofs else ()
+
+    def _writer(self, first: int, count: int) -> Callable[..., None]:
+        """What writes numbers to the question, from the first of these on."""
+        write = Struct(f"{count}{_TYPE_CODE}").pack_into
+        return partial(write, memoryview(self.arrays["input"]).cast("B"), first * _SIZE)
+
+    def _write_nodes(self, nodes: Sequence[Node], *, free: bool) -> None:
+        arrays = self.arrays
+        position = dof = 0
+        for index, node in enumerate(nodes):
+            axes = node.axes
+            if index == 0 and free:
+                axes = np.zeros((BASE_VELOCITIES, 2, 3))
+                axes[:3, 0] = axes[3:, 1] = np.eye(3)
+            after = dof + len(axes)
+            arrays["node_parent"][index] = node.parent
+            arrays["node_joint_type"][index] = node.kind
+            arrays["node_first_position"][index] = position
+            arrays["node_first_dof"][index] = dof
+            arrays["node_dof_count"][index] = len(axes)
+            arrays["node_turn"][index] = node.rotation
+            arrays["node_origin"][index] = node.origin
+            arrays["node_mass"][index] = node.mass
+            arrays["node_moment"][index] = node.moment
+            arrays["node_inertia"][index] = node.inertia
+            arrays["dof_angular"][dof:after] = axes[:, 0]
+            arrays["dof_linear"][dof:after] = axes[:, 1]
+            position += POSITION_COUNT[node.kind]
+            dof = after
+
+    def _write_ends(self, ends: Sequence[End]) -> None:
+        for index, end in enumerate(ends):
+            self.arrays["end_node"][index] = end.node
+            self.arrays["end_turn"][index] = end.rotation
+            self.arrays["end_origin"][index] = end.origin
+
+
+def moving_tree(body: Body) -> MovingTree:
+    """The tree of a body as it is now; the same one until masses, inertias or the base's freedom change."""
+    tree = body.derived.get(MovingTree)
+    if tree is None:
+        tree = body.derived[MovingTree] = MovingTree(*body_nodes(body), free=not body.fixed_base)
+    return tree

@@ -1,0 +1,129 @@
+"""Bodies as trees of nodes: joints that move, and what moves as one behind each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.algorithms.joint_frames import JointFrames
+from carom.description.pose import Pose
+from carom.description.transform import rotation_matrix
+from carom.model.body_spec import BASE
+from carom.model.codes import JointCode
+
+if TYPE_CHECKING:
+    from carom.body import Body
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A joint and the rigid body behind it; the first node is the base.
+
+    Attributes:
+        parent: Index of the parent node, -1 for the base.
+        kind: Of the joint; the base's does not matter.
+        rotation: From its frame at position 0 to the parent's, (3, 3).
+        origin: Of its frame in the parent's at position 0 [m], (3,).
+        mass: [kg].
+        moment: Mass times centre of mass, (3,).
+        inertia: About the origin, (3, 3).
+        axes: Angular and linear velocity by unit of each of the joint's dofs, (dofs, 2, 3).
+    """
+
+    parent: int
+    kind: JointCode
+    rotation: np.ndarray
+    origin: np.ndarray
+    mass: float
+    moment: np.ndarray
+    inertia: np.ndarray
+    axes: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """A link as points on it are given.
+
+    Attributes:
+        node: The node it belongs to.
+        rotation: From the axes of its inertial frame to the node's, (3, 3).
+        origin: Of its link frame, the base's centre of mass, in the node's frame [m], (3,).
+    """
+
+    node: int
+    rotation: np.ndarray
+    origin: np.ndarray
+
+
+def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
+    """The nodes of a body, parents first, and its links, the base first."""
+    moving = [link for link, kind in enumerate(body.joint_types) if kind != JointCode.FIXED]
+    frames = JointFrames(body, moving)
+    ends: list[End] = []
+    masses = np.zeros(1 + len(moving))
+    moments = np.zeros((1 + len(moving), 3))
+    inertias = np.zeros((1 + len(moving), 3, 3))
+    for link in range(BASE, body.joint_count):
+        carrier, frame = frames.of_link(link)
+        rotation, origin = _parts(frame)
+        ends.append(End(1 + carrier, rotation, origin))
+        dynamics = body.dynamics(link)
+        com = origin + rotation @ _com_from_joint(body, link)
+        offset = skew(com)
+        masses[1 + carrier] += dynamics.mass
+        moments[1 + carrier] += dynamics.mass * com
+        turned = rotation @ np.diag(dynamics.inertia) @ rotation.T
+        inertias[1 + carrier] += turned + dynamics.mass * offset @ offset.T
+    at_base = (np.eye(3), np.zeros(3), masses[0], moments[0], inertias[0])
+    nodes = [Node(BASE, JointCode.FIXED, *at_base, np.zeros((0, 2, 3)))]
+    for index, link in enumerate(moving, start=1):
+        carrier, frame = frames.of_joint(link)
+        kind = JointCode(body.joint_types[link])
+        rigid = (masses[index], moments[index], inertias[index])
+        nodes.append(Node(1 + carrier, kind, *_parts(frame), *rigid, _axes(body, link, kind)))
+    return nodes, ends
+
+
+def _parts(frame: Pose) -> tuple[np.ndarray, np.ndarray]:
+    return np.array(rotation_matrix(frame.orientation)), np.array(frame.position)
+
+
+def _com_from_joint(body: Body, link: int) -> np.ndarray:
+    if link == BASE:
+        return np.zeros(3)
+    return body.world.arrays.model.numpy["link_com_from_pivot"][body.first_link + 1 + link]
+
+
+def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
+    """What the dofs of a joint do, in the frame of its node, whose z axis is that of a hinge or slider."""
+    if kind == JointCode.SPHERICAL:
+        return joint_axes(kind)
+    model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
+    if kind != JointCode.PLANAR:
+        return joint_axes(kind) * np.linalg.norm(model["link_axis"][row])
+    none = np.zeros(3)
+    slides = (model["link_planar_axis1"][row], model["link_planar_axis2"][row])
+    return np.array([(model["link_axis"][row], none), *((none, slide) for slide in slides)])
+
+
+def joint_axes(kind: JointCode) -> np.ndarray:
+    """Axes as in `Node` of a hinge or slider along z, or a ball joint; none of a fixed joint."""
+    axes = np.zeros((3 if kind == JointCode.SPHERICAL else 1, 2, 3))
+    match kind:
+        case JointCode.REVOLUTE:
+            axes[0, 0, 2] = 1.0
+        case JointCode.PRISMATIC:
+            axes[0, 1, 2] = 1.0
+        case JointCode.SPHERICAL:
+            axes[:, 0, :] = np.eye(3)
+        case _:
+            return axes[:0]
+    return axes
+
+
+def skew(v: np.ndarray) -> np.ndarray:
+    """The matrix of the vector product from the left, (3, 3)."""
+    x, y, z = v
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
