@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from math import inf
+from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.description.transform import multiplied, quaternion_from_rpy
 from pybullet._arguments import Vector, integer, numbers, one_body, required
 from pybullet._builtin import exported, exported_as
-from pybullet._clients import client_of
+from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail
 from pybullet._lookup import body_of
@@ -99,6 +101,16 @@ def calculateInverseDynamics(
     Raises:
         pybullet.error: Not connected, there is no such body, or the lists do not fit it.
     """
+    try:
+        client = clients[physicsClientId]
+        tree = client.bodies[bodyUniqueId].tree
+        if tree is not None and not (flags or tree.free):
+            gravity = client.world.parameters.gravity
+            if gravity is not tree.gravity:
+                tree.set_resting_base(gravity)
+            return tree.forces(objPositions, objVelocities, objAccelerations)
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
     required(
         "calculateInverseDynamics",
@@ -176,6 +188,14 @@ def calculateJacobian(
         pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, or
             the lists do not fit the body.
     """
+    try:
+        tree = clients[physicsClientId].bodies[bodyUniqueId].tree
+        if tree is not None and len(objVelocities) == len(objAccelerations) == tree.joint_dofs:  # type: ignore[arg-type]
+            check = sum(localPosition) + sum(objPositions) + sum(objVelocities) + sum(objAccelerations)
+            if -inf < check < inf:
+                return tree.jacobian(linkIndex, localPosition, objPositions)  # type: ignore[arg-type]
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
     body = body_of(client_of(physicsClientId), bodyUniqueId, _JACOBIAN_SIZES)
     link = integer(linkIndex, "linkIndex")
     if JOINT_SPHERICAL in body.joint_types:
@@ -227,6 +247,12 @@ def calculateMassMatrix(
     Raises:
         pybullet.error: Not connected, there is no such body, or there are too few positions.
     """
+    try:
+        tree = clients[physicsClientId].bodies[bodyUniqueId].tree
+        if tree is not None and not flags and -inf < sum(objPositions) < inf:
+            return tree.mass_matrix(objPositions)  # type: ignore[arg-type]
+    except (KeyError, TypeError, StructError):
+        pass
     problem = "Internal error in calculateMassMatrix"
     body = body_of(client_of(physicsClientId), bodyUniqueId, problem)
     q = numbers(objPositions, _MASS_MATRIX_SIZES, "objPositions")

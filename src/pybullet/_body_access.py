@@ -7,6 +7,7 @@ from struct import Struct
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Quaternion, Vector3
+from pybullet._constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE
 from pybullet._joint_access import JointAccess, joint_access
 from pybullet._joint_groups import JointGroups
 from pybullet._joint_info import JointInfo, joint_info
@@ -14,6 +15,7 @@ from pybullet._link_access import LinkAccess
 from pybullet._rotations import canonical
 
 if TYPE_CHECKING:
+    from carom.algorithms.moving_tree import MovingTree
     from carom.body import Body
     from pybullet._clients import Client
 
@@ -46,6 +48,16 @@ class BodyAccess:
     def links(self) -> dict[int, LinkAccess]:
         """Access to the links other than the base, by index."""
         return {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
+
+    @cached_property
+    def tree(self) -> MovingTree | None:
+        """Its equations of motion, if it has joints that move, all of one freedom each."""
+        if not {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_FIXED}.issuperset(self.body.joint_types):
+            return None
+        from carom.algorithms.moving_tree import moving_tree
+
+        tree = moving_tree(self.body)
+        return tree if tree.joint_dofs else None
 
     @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:

@@ -81,9 +81,9 @@ def base_motion(
         gravity: In world axes [m/s²].
     """
     own_velocity, own_omega, own_gravity = np.array([velocity, omega, gravity]) @ rotation
-    # The world's angular velocity stands where that along the body's axes belongs.
-    acceleration = -own_gravity - np.cross(omega, own_velocity)
-    return np.concatenate([own_omega, own_velocity, np.zeros(3), acceleration])
+    # Nothing but gravity would be left if PyBullet did not take omega along the body's axes here.
+    acceleration = np.cross(own_omega - omega, own_velocity) - own_gravity
+    return np.concatenate([own_omega, np.zeros(3), acceleration])
 
 
 def _rotation(position: np.ndarray) -> np.ndarray:

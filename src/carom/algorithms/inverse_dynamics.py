@@ -42,17 +42,14 @@ def inverse_dynamics(
     """
     tree = moving_tree(body)
     if body.fixed_base:
-        if base_orientation is None:
-            first = body.first_position
-            base_orientation = body.world.position[first + 3 : first + BASE_POSITIONS].tolist()
-        x, y, z = _gravity_seen_from(body, base_orientation)
+        first = body.first_position
+        own = body.world.position[first + 3 : first + BASE_POSITIONS]
+        x, y, z = _gravity_seen_from(body, own if base_orientation is None else base_orientation)
         tree.set_resting_base((x, y, z))
         return np.array(tree.forces(positions, velocities, accelerations))
 
     v, a = np.asarray(velocities, dtype=float), np.asarray(accelerations, dtype=float)
-    omega, velocity = v[:3], v[3:BASE_VELOCITIES]
-    spatial = a[3:BASE_VELOCITIES] - np.cross(omega, velocity) - _gravity_seen_from(body, positions[3:7])
-    tree.set_base_motion(*omega, *velocity, *a[:3], *spatial)
+    tree.set_base_motion(*v[:3], *a[:3], *(a[3:6] - _gravity_seen_from(body, positions[3:7])))
     forces = np.array(
         tree.forces(positions[BASE_POSITIONS:], v[BASE_VELOCITIES:], a[BASE_VELOCITIES:]), dtype=float
     )

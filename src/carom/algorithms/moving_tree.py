@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
+from math import inf
 from struct import Struct
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -37,9 +38,11 @@ class MovingTree:
     else, or is not as long as is said here, raises `struct.error`.
 
     Attributes:
+        free: The base moves.
         coordinates: Number of positions of the joints: a quaternion for each spherical one.
         joint_dofs: Number of their rates.
         dofs: The same with those of a free base, six before the others: angular, then linear.
+        gravity: What the base was last said to rest under, if it still is.
         structs: What kernels are given: the sizes and the arrays.
         arrays: The arrays by name.
     """
@@ -52,6 +55,7 @@ class MovingTree:
             ends: Links that Jacobians can be asked for, the base at the beginning.
             free: The base moves.
         """
+        self.free = free
         self.joint_dofs = sum(len(node.axes) for node in nodes)
         self.dofs = self.joint_dofs + (BASE_VELOCITIES if free else 0)
         self.coordinates = sum(POSITION_COUNT[node.kind] for node in nodes)
@@ -68,9 +72,10 @@ class MovingTree:
                 "node": len(nodes),
                 "motion": len(nodes),
                 "dof": self.dofs,
+                "axis": self.dofs,
                 "end": len(ends),
                 "input": first_rate + 2 * self.joint_dofs,
-                "output": _JACOBIAN_ROWS * self.dofs,
+                "output": max(self.dofs + 1, _JACOBIAN_ROWS * self.dofs),
                 "matrix": self.dofs * self.dofs,
             }
         )
@@ -79,28 +84,33 @@ class MovingTree:
         self._write_ends(ends)
         self.structs = (sizes, table.struct(_DEVICE))
         self._jacobians: dict[int, Callable[[], None]] = {}
+        self._links = range(-1, len(ends) - 1)
+        self.gravity: Vector3 | None = None
         self._put_base = self._writer(0, first_position)
         self._put_point = self._writer(0, 3)
         self._put_positions = self._writer(first_position, self.coordinates)
         self._put_rates = self._writer(first_rate, self.joint_dofs)
         self._put_accelerations = self._writer(first_rate + self.joint_dofs, self.joint_dofs)
+        self._arriving = numbers_of(self.arrays["output"])[self.dofs :]
         self._row = Struct(f"{self.dofs}{_TYPE_CODE}")
         used = {"output": _JACOBIAN_ROWS * self.dofs, "matrix": self.dofs * self.dofs}
         self._output, self._matrix = (
-            memoryview(self.arrays[name])[:count].cast("B") for name, count in used.items()
+            self.arrays[name].data[:count].cast("B") for name, count in used.items()
         )
 
     def set_resting_base(self, gravity: Vector3) -> None:
         """For later questions about forces: the base rests under gravity [m/s²]."""
         x, y, z = gravity
-        self.set_base_motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -x, -y, -z)
+        self.set_base_motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -x, -y, -z)
+        self.gravity = gravity
 
     def set_base_motion(self, *motion: float) -> None:
         """For later questions about forces: how the base moves.
 
         Args:
-            *motion: Angular and linear velocity, angular and spatial acceleration less gravity.
+            *motion: Angular velocity, angular acceleration, and acceleration less gravity.
         """
+        self.gravity = None
         self._put_base(*motion)
 
     def forces(self, positions: Numbers, rates: Numbers, accelerations: Numbers) -> tuple[float, ...]:
@@ -110,11 +120,16 @@ class MovingTree:
             positions: As many as `coordinates`.
             rates: As many as `joint_dofs`.
             accelerations: As many as `joint_dofs`.
+
+        Raises:
+            ValueError: Something given is not finite, or too big for the forces to be.
         """
         self._put_positions(*positions)
         self._put_rates(*rates)
         self._put_accelerations(*accelerations)
         self._find_forces()
+        if not -inf < self._arriving[0] < inf:
+            raise ValueError("the forces are not finite")
         return self._row.unpack_from(self._output)
 
     def mass_matrix(self, positions: Numbers) -> Rows:
@@ -131,10 +146,16 @@ class MovingTree:
             point: Offset from the link frame's origin, of the base from its centre of mass, along the axes
                 of the inertial frame [m].
             positions: As many as `coordinates`.
+
+        Raises:
+            ValueError: There is no such link.
         """
         find = self._jacobians.get(link)
         if find is None:
-            find = self._jacobians[link] = self._launch(jacobian_kernel, 1 + link)
+            end = self._links.index(link)
+            find = self._jacobians[link] = self._launch(jacobian_kernel, end)
+        # The point takes the place of the motion of the base.
+        self.gravity = None
         self._put_point(*point)
         self._put_positions(*positions)
         find()
@@ -150,7 +171,7 @@ class MovingTree:
         return self._launch(mass_matrix_kernel)
 
     def _launch(self, kernel: Any, *arguments: int) -> Callable[[], None]:
-        return Launch(kernel, 1, [*self.structs, *arguments], _DEVICE).function
+        return Launch(kernel, 1, [*self.structs, *arguments], _DEVICE).brief_function
 
     def _rows(self, memory: memoryview) -> Rows:
         return tuple(self._row.iter_unpack(memory)) if self.dofs else ()
@@ -158,7 +179,7 @@ class MovingTree:
     def _writer(self, first: int, count: int) -> Callable[..., None]:
         """What writes numbers to the question, from the first of these on."""
         write = Struct(f"{count}{_TYPE_CODE}").pack_into
-        return partial(write, memoryview(self.arrays["input"]).cast("B"), first * _SIZE)
+        return partial(write, self.arrays["input"].data.cast("B"), first * _SIZE)
 
     def _write_nodes(self, nodes: Sequence[Node], *, free: bool) -> None:
         arrays = self.arrays
@@ -189,6 +210,11 @@ class MovingTree:
             self.arrays["end_node"][index] = end.node
             self.arrays["end_turn"][index] = end.rotation
             self.arrays["end_origin"][index] = end.origin
+
+
+def numbers_of(numbers: np.ndarray) -> memoryview[float]:
+    """The memory of an array of numbers: quicker than NumPy for single ones."""
+    return cast("memoryview[float]", numbers.data)
 
 
 def moving_tree(body: Body) -> MovingTree:

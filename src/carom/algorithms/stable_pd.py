@@ -15,7 +15,7 @@ import numpy as np
 
 from carom.algorithms.extended_model import base_motion
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.moving_tree import MovingTree
+from carom.algorithms.moving_tree import MovingTree, numbers_of
 from carom.algorithms.tree.stable_pd import Control, stable_pd_kernel
 from carom.algorithms.tree.structs import BASE_MOTION
 from carom.description.transform import rotation_matrix
@@ -85,15 +85,15 @@ class _Controller:
         control = ArrayTable(Control, None)
         control.reserve({"coordinate": tree.coordinates, "dof": tree.dofs, "entry": tree.dofs**2})
         arrays = control.numpy
-        self._target = memoryview(arrays["coordinate_target"])
+        self._target = numbers_of(arrays["coordinate_target"])
         self._given = [arrays[f"dof_{name}"] for name in ("target_rate", "kp", "kd", "most")]
-        self._target_rate, self._kp, self._kd, self._most = map(memoryview, self._given)
+        self._target_rate, self._kp, self._kd, self._most = map(numbers_of, self._given)
         self._torque = arrays["dof_torque"][: tree.dofs]
         self._unaimed = array(_TYPE_CODE)
         for count in body.position_count:
             self._unaimed.extend(_NO_TURN if count == 4 else (0.0,) * count)
         rates = int(BASE_MOTION) + tree.coordinates
-        given = memoryview(tree.arrays["input"])
+        given = numbers_of(tree.arrays["input"])
         self._position = given[int(BASE_MOTION) : rates]
         self._rate = given[rates : rates + tree.joint_dofs]
         arguments = [*tree.structs, control.struct(_DEVICE), int(body.fixed_base), 0.0]

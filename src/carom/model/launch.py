@@ -72,6 +72,14 @@ class Launch:
             return self._command.launch
         return functools.partial(self._entry_point, self._bounds, self._pointer)
 
+    @property
+    def brief_function(self) -> Callable[[], None]:
+        """The same for kernels that take less time than giving other threads a turn meanwhile."""
+        if self._entry_point is None:
+            return self._command.launch
+        address: Any = ctypes.cast(self._entry_point, ctypes.c_void_p).value
+        return functools.partial(ctypes.PYFUNCTYPE(None)(address), self._bounds, self._pointer)
+
 
 def argument_indices(kernel: Any) -> dict[str, int]:
     """Place of each argument of a kernel, by name."""

@@ -157,3 +157,13 @@ def kernel(function: _F) -> _F:
         options={"enable_backward": False},
         code_transformers=[_RealLiterals()],
     )
+
+
+def fuse_multiply_add(module: str) -> None:
+    """Let the kernels of a module round a product and the sum it goes into once, which is quicker.
+
+    Args:
+        module: Name of the Python module they are in.
+    """
+    flags = f"{wp.config.cpu_compiler_flags or '-march=native'} -ffp-contract=fast"
+    wp.get_module(module).options["cpu_compiler_flags"] = flags

@@ -22,7 +22,6 @@ from carom.model.real import (
     RealRows,
     TransformRows,
     Vector3,
-    Vector3Rows,
     Vector4Rows,
     Vector6Rows,
     Vector8Rows,
@@ -261,15 +260,6 @@ class Scratch:
     entry_delta_velocity: RealRows
 
     row: ConstraintRows
-
-
-@wp.struct
-class Query:
-    """Questions about one body that need no step, and their answers."""
-
-    point_on_link: Vector3Rows  # its first entry: offset from the link frame, axes of the inertial frame
-    dof_linear: Vector3Rows  # columns of a point's Jacobian
-    dof_angular: Vector3Rows
 
 
 # Scratch arrays that show another array's blocks entry by entry.

@@ -8,8 +8,10 @@ import warp as wp
 
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
 from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
-from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, kernel, real
+from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, fuse_multiply_add, kernel, real
 from carom.physics.rotation import axis_rotation, rotation_matrix
+
+fuse_multiply_add(__name__)
 
 
 @func
@@ -75,80 +77,146 @@ def newton_euler(sizes: TreeSizes, tree: Tree, accelerated: Int32):
     """
     rates = BASE_MOTION + sizes.coordinates - sizes.base_dofs
     accelerations = rates + sizes.dofs - sizes.base_dofs
-    for node in range(sizes.nodes):
-        omega = input_vector(tree, 0)
-        velocity = input_vector(tree, 3)
-        alpha = input_vector(tree, 6)
-        acceleration = input_vector(tree, 9)
-        if node > 0:
-            place(tree, node)
-            parent = tree.node[node].parent
-            turn = tree.motion[node].turn
-            origin = tree.motion[node].origin
+    omega = input_vector(tree, 0)
+    alpha = input_vector(tree, 3)
+    acceleration = input_vector(tree, 6)
+    swing = swing_matrix(omega, alpha)
+    keep_motion(tree, 0, omega, alpha, acceleration, swing)
+    for node in range(1, sizes.nodes):
+        place(tree, node)
+        parent = tree.node[node].parent
+        # Most nodes hang on the one before, whose motion is still at hand.
+        if parent != node - 1:
             omega = tree.motion[parent].omega
             alpha = tree.motion[parent].alpha
-            velocity = turned_back(turn, tree.motion[parent].velocity + wp.cross(omega, origin))
-            acceleration = turned_back(turn, tree.motion[parent].acceleration + wp.cross(alpha, origin))
-            omega = turned_back(turn, omega)
-            alpha = turned_back(turn, alpha)
+            acceleration = tree.motion[parent].acceleration
+            swing = tree.motion[parent].swing
+        turn = tree.motion[node].turn
+        acceleration = turned_back(turn, acceleration + swing * tree.motion[node].origin)
+        omega = turned_back(turn, omega)
+        alpha = turned_back(turn, alpha)
+        dof = tree.node[node].first_dof
+        if tree.node[node].joint_type == REVOLUTE:
+            spin = tree.dof[dof].angular[2] * tree.input[rates + dof]
+            alpha += Vector3(omega[1] * spin, -omega[0] * spin, 0.0)
+            omega += Vector3(0.0, 0.0, spin)
+            if accelerated == 1:
+                alpha += Vector3(0.0, 0.0, tree.dof[dof].angular[2] * tree.input[accelerations + dof])
+        else:
             joint_omega = Vector3(0.0, 0.0, 0.0)
             joint_velocity = Vector3(0.0, 0.0, 0.0)
-            first = tree.node[node].first_dof
-            for dof in range(first, first + tree.node[node].dof_count):
-                rate = tree.input[rates + dof]
-                joint_omega += tree.dof[dof].angular * rate
-                joint_velocity += tree.dof[dof].linear * rate
+            for k in range(tree.node[node].dof_count):
+                rate = tree.input[rates + dof + k]
+                joint_omega += tree.dof[dof + k].angular * rate
+                joint_velocity += tree.dof[dof + k].linear * rate
                 if accelerated == 1:
-                    change = tree.input[accelerations + dof]
-                    alpha += tree.dof[dof].angular * change
-                    acceleration += tree.dof[dof].linear * change
-            omega += joint_omega
-            velocity += joint_velocity
+                    change = tree.input[accelerations + dof + k]
+                    alpha += tree.dof[dof + k].angular * change
+                    acceleration += tree.dof[dof + k].linear * change
             alpha += wp.cross(omega, joint_omega)
-            acceleration += wp.cross(omega, joint_velocity) + wp.cross(velocity, joint_omega)
-        tree.motion[node].omega = omega
-        tree.motion[node].velocity = velocity
-        tree.motion[node].alpha = alpha
-        tree.motion[node].acceleration = acceleration
+            acceleration += wp.cross(2.0 * omega + joint_omega, joint_velocity)
+            omega += joint_omega
+        swing = swing_matrix(omega, alpha)
+        keep_motion(tree, node, omega, alpha, acceleration, swing)
+    gather_forces(sizes, tree)
 
-        mass = tree.node[node].mass
-        moment = tree.node[node].moment
-        inertia = tree.node[node].inertia
-        momentum = mass * velocity + wp.cross(omega, moment)
-        spin = inertia * omega + wp.cross(moment, velocity)
-        tree.motion[node].force = mass * acceleration + wp.cross(alpha, moment) + wp.cross(omega, momentum)
-        tree.motion[node].torque = (
-            inertia * alpha
-            + wp.cross(moment, acceleration)
-            + wp.cross(omega, spin)
-            + wp.cross(velocity, momentum)
-        )
 
+@func
+def swing_matrix(omega: Vector3, alpha: Vector3) -> Matrix3:
+    """What takes a place in a turning frame to its acceleration against the origin of the frame."""
+    xx, yy, zz = omega[0] * omega[0], omega[1] * omega[1], omega[2] * omega[2]
+    xy, xz, yz = omega[0] * omega[1], omega[0] * omega[2], omega[1] * omega[2]
+    return Matrix3(
+        -(yy + zz), xy - alpha[2], xz + alpha[1],
+        xy + alpha[2], -(xx + zz), yz - alpha[0],
+        xz - alpha[1], yz + alpha[0], -(xx + yy),
+    )  # fmt: skip
+
+
+@func
+def keep_motion(
+    tree: Tree, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3, swing: Matrix3
+):
+    """Keep the motion of a node, and the force and the torque about its origin that it takes."""
+    tree.motion[node].omega = omega
+    tree.motion[node].alpha = alpha
+    tree.motion[node].acceleration = acceleration
+    tree.motion[node].swing = swing
+    moment = tree.node[node].moment
+    inertia = tree.node[node].inertia
+    tree.motion[node].force = tree.node[node].mass * acceleration + swing * moment
+    tree.motion[node].torque = (
+        inertia * alpha + wp.cross(omega, inertia * omega) + wp.cross(moment, acceleration)
+    )
+
+
+@func
+def gather_forces(sizes: TreeSizes, tree: Tree):
+    """Pass the forces of the nodes on to their parents, and leave what the dofs have of them in `output`.
+
+    Behind them goes a number that is finite if everything is: the sum of what arrives at the base.
+    """
     for behind in range(sizes.nodes):
         node = sizes.nodes - 1 - behind
         force = tree.motion[node].force
         torque = tree.motion[node].torque
-        first = tree.node[node].first_dof
-        for dof in range(first, first + tree.node[node].dof_count):
-            tree.output[dof] = wp.dot(tree.dof[dof].angular, torque) + wp.dot(tree.dof[dof].linear, force)
+        dof = tree.node[node].first_dof
+        if tree.node[node].joint_type == REVOLUTE:
+            tree.output[dof] = tree.dof[dof].angular[2] * torque[2]
+        else:
+            for other in range(dof, dof + tree.node[node].dof_count):
+                tree.output[other] = wp.dot(tree.dof[other].angular, torque) + wp.dot(
+                    tree.dof[other].linear, force
+                )
         if node > 0:
             parent = tree.node[node].parent
             turn = tree.motion[node].turn
             force = turn * force
             tree.motion[parent].force += force
             tree.motion[parent].torque += turn * torque + wp.cross(tree.motion[node].origin, force)
+        else:
+            tree.output[sizes.dofs] = force[0] + force[1] + force[2] + torque[0] + torque[1] + torque[2]
+
+
+@func
+def place_in_base(tree: Tree, node: Int32):
+    """Find where a node is in the frame of the base, and what its dofs do there.
+
+    The node is placed, and its parent has been here. Linear velocities are those at the origin of the base.
+    """
+    rotation = wp.identity(3, dtype=real)
+    position = Vector3(0.0, 0.0, 0.0)
+    if node > 0:
+        parent = tree.node[node].parent
+        rotation = tree.motion[parent].rotation * tree.motion[node].turn
+        position = tree.motion[parent].position + tree.motion[parent].rotation * tree.motion[node].origin
+    tree.motion[node].rotation = rotation
+    tree.motion[node].position = position
+    first = tree.node[node].first_dof
+    for dof in range(first, first + tree.node[node].dof_count):
+        angular = rotation * tree.dof[dof].angular
+        tree.axis[dof].angular = angular
+        tree.axis[dof].linear = rotation * tree.dof[dof].linear + wp.cross(position, angular)
 
 
 @func
 def composite_inertia(sizes: TreeSizes, tree: Tree):
-    """Leave the mass matrix in `matrix`, row after row; the nodes are placed.
+    """Leave the mass matrix in `matrix`, row after row; the nodes are placed in the base.
 
     Entries of dofs of which neither moves the other are left alone: they are 0 from the beginning.
     """
     for node in range(sizes.nodes):
-        tree.motion[node].mass = tree.node[node].mass
-        tree.motion[node].moment = tree.node[node].moment
-        tree.motion[node].inertia = tree.node[node].inertia
+        rotation = tree.motion[node].rotation
+        c = tree.motion[node].position
+        mass = tree.node[node].mass
+        moment = rotation * tree.node[node].moment
+        tree.motion[node].mass = mass
+        tree.motion[node].moment = moment + mass * c
+        tree.motion[node].inertia = (
+            rotation * tree.node[node].inertia * wp.transpose(rotation)
+            + shift(c, moment)
+            + shift(c, 0.5 * mass * c)
+        )
     for behind in range(sizes.nodes):
         node = sizes.nodes - 1 - behind
         mass = tree.motion[node].mass
@@ -156,33 +224,23 @@ def composite_inertia(sizes: TreeSizes, tree: Tree):
         inertia = tree.motion[node].inertia
         first = tree.node[node].first_dof
         for dof in range(first, first + tree.node[node].dof_count):
-            angular = tree.dof[dof].angular
-            linear = tree.dof[dof].linear
+            angular = tree.axis[dof].angular
+            linear = tree.axis[dof].linear
             torque = inertia * angular + wp.cross(moment, linear)
             force = mass * linear + wp.cross(angular, moment)
             carrier = node + 0
             while carrier >= 0:
                 first_other = tree.node[carrier].first_dof
                 for other in range(first_other, first_other + tree.node[carrier].dof_count):
-                    value = wp.dot(tree.dof[other].angular, torque) + wp.dot(tree.dof[other].linear, force)
+                    value = wp.dot(tree.axis[other].angular, torque) + wp.dot(tree.axis[other].linear, force)
                     tree.matrix[dof * sizes.dofs + other] = value
                     tree.matrix[other * sizes.dofs + dof] = value
-                if carrier > 0:
-                    force = tree.motion[carrier].turn * force
-                    torque = tree.motion[carrier].turn * torque + wp.cross(
-                        tree.motion[carrier].origin, force
-                    )
                 carrier = tree.node[carrier].parent
         if node > 0:
             parent = tree.node[node].parent
-            turn = tree.motion[node].turn
-            c = tree.motion[node].origin
-            moved = turn * moment
             tree.motion[parent].mass += mass
-            tree.motion[parent].moment += moved + mass * c
-            tree.motion[parent].inertia += (
-                turn * inertia * wp.transpose(turn) + shift(c, moved) + shift(c, 0.5 * mass * c)
-            )
+            tree.motion[parent].moment += moment
+            tree.motion[parent].inertia += inertia
 
 
 @func
@@ -204,8 +262,9 @@ def inverse_dynamics_kernel(sizes: TreeSizes, tree: Tree):
 @kernel
 def mass_matrix_kernel(sizes: TreeSizes, tree: Tree):
     """Leave the mass matrix at the positions in `input` in `matrix`."""
-    for node in range(1, sizes.nodes):
+    for node in range(sizes.nodes):
         place(tree, node)
+        place_in_base(tree, node)
     composite_inertia(sizes, tree)
 
 
@@ -213,25 +272,19 @@ def mass_matrix_kernel(sizes: TreeSizes, tree: Tree):
 def jacobian_kernel(sizes: TreeSizes, tree: Tree, end: Int32):
     """Leave the Jacobian of a point in `output`: three rows of velocity, three of angular velocity."""
     last = tree.end[end].node
-    tree.motion[0].rotation = wp.identity(3, dtype=real)
-    tree.motion[0].position = Vector3(0.0, 0.0, 0.0)
-    for node in range(1, last + 1):
+    for node in range(last + 1):
         place(tree, node)
-        parent = tree.node[node].parent
-        rotation = tree.motion[parent].rotation
-        tree.motion[node].position = tree.motion[parent].position + rotation * tree.motion[node].origin
-        tree.motion[node].rotation = rotation * tree.motion[node].turn
+        place_in_base(tree, node)
     on_node = tree.end[end].origin + tree.end[end].turn * input_vector(tree, 0)
     point = tree.motion[last].position + tree.motion[last].rotation * on_node
     for entry in range(6 * sizes.dofs):
         tree.output[entry] = 0.0
     node = last + 0
     while node >= 0:
-        arm = point - tree.motion[node].position
         first = tree.node[node].first_dof
         for dof in range(first, first + tree.node[node].dof_count):
-            angular = tree.motion[node].rotation * tree.dof[dof].angular
-            linear = tree.motion[node].rotation * tree.dof[dof].linear + wp.cross(angular, arm)
+            angular = tree.axis[dof].angular
+            linear = tree.axis[dof].linear + wp.cross(angular, point)
             for row in range(3):
                 tree.output[row * sizes.dofs + dof] = linear[row]
                 tree.output[(3 + row) * sizes.dofs + dof] = angular[row]

@@ -4,10 +4,12 @@ import math
 
 import warp as wp
 
-from carom.algorithms.tree.dynamics import composite_inertia, newton_euler
+from carom.algorithms.tree.dynamics import composite_inertia, newton_euler, place_in_base
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
 from carom.model.codes import SPHERICAL
-from carom.model.real import Int32, Quaternion, Reals, Vector3, func, kernel, real
+from carom.model.real import Int32, Quaternion, Reals, Vector3, func, fuse_multiply_add, kernel, real
+
+fuse_multiply_add(__name__)
 
 _NO_ANGLE = real(1e-6)
 _HALF_TURN = real(math.pi)
@@ -66,9 +68,7 @@ def wanted_torques(sizes: TreeSizes, tree: Tree, control: Control, time_step: re
             start = quaternion_at(tree.input, BASE_MOTION + q)
             u = rates + first
             rate = Vector3(tree.input[u], tree.input[u + 1], tree.input[u + 2])
-            turn = turn_between(
-                advanced(start, rate, time_step), quaternion_at(control.coordinate_target, q)
-            )
+            turn = turn_between(advanced(start, rate, time_step), quaternion_at(control.coordinate_target, q))
         for k in range(tree.node[node].dof_count):
             dof = first + k
             if dof < sizes.base_dofs:
@@ -119,11 +119,11 @@ def solve(sizes: TreeSizes, tree: Tree, control: Control, first: Int32, time_ste
 
 
 @kernel
-def stable_pd_kernel(
-    sizes: TreeSizes, tree: Tree, control: Control, base_is_held: Int32, time_step: real
-):
+def stable_pd_kernel(sizes: TreeSizes, tree: Tree, control: Control, base_is_held: Int32, time_step: real):
     """Leave in `dof_torque` the torques for the next step."""
     newton_euler(sizes, tree, 0)
+    for node in range(sizes.nodes):
+        place_in_base(tree, node)
     composite_inertia(sizes, tree)
     wanted_torques(sizes, tree, control, time_step)
     solve(sizes, tree, control, base_is_held * sizes.base_dofs, time_step)

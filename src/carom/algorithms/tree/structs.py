@@ -6,9 +6,9 @@ is constant in its frame. A *dof* is one velocity coordinate: the six of a free 
 then those of the joints.
 
 `input` and `output` are all that changes from call to call, in one piece each, so that Python writes and
-reads them at once. `input` begins with the motion of the base along its own axes: angular and linear
-velocity, angular and linear acceleration (the spatial one, less gravity), or for a Jacobian the point; then
-come positions, rates and accelerations of the joints, as far as the question has them.
+reads them at once. `input` begins with the motion of the base along its own axes: angular velocity, angular
+acceleration, and acceleration less gravity; or for a Jacobian with the point. Then come positions, rates and
+accelerations of the joints, as far as the question has them.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ import warp as wp
 
 from carom.model.real import Int32, Matrix3, Reals, Vector3, real
 
-BASE_MOTION = wp.constant(12)
+BASE_MOTION = wp.constant(9)
 """Numbers of `input` before the positions."""
 
 
@@ -73,12 +73,12 @@ class NodeMotion:
     rotation: Matrix3  # to the base's frame
     position: Vector3  # in the base's frame
     omega: Vector3
-    velocity: Vector3  # of the point at the origin, and so its spatial acceleration
     alpha: Vector3
-    acceleration: Vector3
+    acceleration: Vector3  # of its origin, less gravity
+    swing: Matrix3  # what takes places in it to their acceleration against its origin
     torque: Vector3
     force: Vector3
-    mass: real  # of the node and all behind it
+    mass: real  # of the node and all behind it, in the frame of the base
     moment: Vector3
     inertia: Matrix3
 
@@ -101,6 +101,7 @@ class Tree:
 
     node: Nodes
     dof: Dofs
+    axis: Dofs  # the same in the frame of the base, at its origin
     end: Ends
     motion: Motions
     input: Reals
