@@ -12,6 +12,7 @@
 #   make report       the comparison as tables and plots, in docs/conformance/
 #   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
+#   make watching     what it costs to be watched, in a browser; needs Chromium
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
@@ -30,7 +31,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench growth clean
+.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench growth watching clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -114,6 +115,9 @@ bench: oracle .mujoco/mujoco $(VENV)/dev
 
 growth: oracle $(VENV)/dev
 	$(RUN) benchmarks/growth.py --oracle .oracle/bin/python
+
+watching: $(VENV)/dev
+	PYTHONPATH=. $(RUN) benchmarks/watching.py
 
 docs: $(VENV)/docs
 	$(RUN) tools/docs/drop_in.py

@@ -17,15 +17,17 @@ if TYPE_CHECKING:
     from carom.camera import Camera
     from carom.joint import Joint
     from carom.link import Link
+    from carom.recorder import Recorder
     from carom.world import World
 
-__all__ = ["Body", "Camera", "Joint", "Link", "World", "__version__", "control"]
+__all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "__version__", "control"]
 
 _HOME = {
     "Body": "carom.body",
     "Camera": "carom.camera",
     "Joint": "carom.joint",
     "Link": "carom.link",
+    "Recorder": "carom.recorder",
     "World": "carom.world",
 }
 

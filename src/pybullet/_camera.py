@@ -89,7 +89,7 @@ def getCameraImage(
     options = max(integer(flags, "flags"), 0)
     integer(renderer, "renderer")
     if viewMatrix is None or projectionMatrix is None:
-        view, projection = _default_camera(client)
+        view, projection = view_of_window(client), _projection_of_window(client)
     else:
         view = _matrix(viewMatrix, "viewMatrix")
         projection = _matrix(projectionMatrix, "projectionMatrix")
@@ -143,19 +143,25 @@ def _matrix(values: Vector, name: str) -> NDArray[np.float64]:
     return np.array(entries).reshape(4, 4).T
 
 
-def _default_camera(client: Client) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """View and projection of the window's camera, or of PyBullet's camera without a window."""
-    width, _, *matrices = client.window.camera_info()[:4]
-    if width:
-        view, projection = (values for values in matrices if isinstance(values, tuple))
-        return _matrix(view, "viewMatrix"), _matrix(projection, "projectionMatrix")
+def view_of_window(client: Client) -> NDArray[np.float64]:
+    """World to the camera of the window, or to PyBullet's camera without a window."""
+    width, _, view = client.window.camera_info()[:3]
+    if width and isinstance(view, tuple):
+        return _matrix(view, "viewMatrix")
     target = (0.0, 0.0, 0.0)
     eye, up = orbit(target, 1.5, -80.0, -10.0, 0.0, Z_UP)
-    view: Matrix16 | None = look_at(eye, target, up)
-    assert view is not None
+    default: Matrix16 | None = look_at(eye, target, up)
+    assert default is not None
+    return _matrix(default, "viewMatrix")
+
+
+def _projection_of_window(client: Client) -> NDArray[np.float64]:
+    """Camera of the window to image; PyBullet's without a window."""
+    width, _, _, projection = client.window.camera_info()[:4]
+    if width and isinstance(projection, tuple):
+        return _matrix(projection, "projectionMatrix")
     near, far, aspect = 0.01, 1000.0, 4.0 / 3.0
-    projection = frustum(-aspect * near, aspect * near, -near, near, near, far)
-    return _matrix(view, "viewMatrix"), _matrix(projection, "projectionMatrix")
+    return _matrix(frustum(-aspect * near, aspect * near, -near, near, near, far), "projectionMatrix")
 
 
 def _changed_light(

@@ -74,7 +74,8 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
             is not set.
         key: Of shared memory; checked, but there are no servers in this version of Carom.
         options: Of the window, separated by spaces: `--width=1024 --height=768`, the size of its image
-            until a page is open; `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1`
+            until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
+            `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1`
             and `--port=8400`, where the page is. Others are ignored.
         hostName: Of a server.
         port: Of a server.

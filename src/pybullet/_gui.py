@@ -7,6 +7,7 @@ from typing import Any
 from pybullet._arguments import Vector, integer, real, rotation, text, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
+from pybullet._constants import COV_ENABLE_SINGLE_STEP_RENDERING
 from pybullet._errors import fail
 from pybullet._window import Slider, VisualizerOptions
 
@@ -138,12 +139,13 @@ def configureDebugVisualizer(
     """Sets what the window shows. Negative numbers change nothing; nothing happens in `DIRECT`.
 
     Args:
-        flag: `COV_*`.
+        flag: `COV_*`. `COV_ENABLE_SINGLE_STEP_RENDERING` makes the call return when the pages in view have
+            drawn the present state, or after a tenth of a second; videos get a picture of it.
         enable: 1 to switch that on, 0 to switch it off.
         lightPosition: Where the light is [m].
         shadowMapResolution: Width and height of the shadow map in pixels.
         shadowMapWorldSize: Width and height of the area with shadows [m].
-        remoteSyncTransformInterval: Simulated time between two frames [s].
+        remoteSyncTransformInterval: Not used: pages get the newest state at display rate.
         shadowMapIntensity: Darkness of shadows from 0 to 1.
         rgbBackground: Red, green and blue from 0 to 1.
         physicsClientId: The connection.
@@ -167,6 +169,9 @@ def configureDebugVisualizer(
     options.shadow_map_intensity = intensity if intensity >= 0.0 else None
     options.remote_sync_transform_interval = interval if interval >= 0.0 else None
     client.window.configure(options)
+    if options.flags.get(COV_ENABLE_SINGLE_STEP_RENDERING):
+        client.window.draw_now()
+        client.logs.shoot()
 
 
 @exported

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from struct import Struct
 from time import perf_counter_ns
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from pybullet._constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_U
 
 if TYPE_CHECKING:
     from carom.body import Body
+    from carom.recorder import Film
     from carom.world import World
 
 _BASE_COLUMNS = (("pos", "XYZ"), ("ori", "XYZW"), ("vel", "XYZ"), ("omega", "XYZ"))
@@ -234,5 +235,5 @@ class TimingLog:
             self._file.write(f'{{"traceEvents":[\n{events}\n],\n"displayTimeUnit": "ns"}}')
 
 
-StateLog = BinaryLog | TimingLog
+StateLog: TypeAlias = "BinaryLog | TimingLog | Film"
 """Any log."""

@@ -31,6 +31,26 @@ class Logs:
 
         return [log for log in self.by_id.values() if isinstance(log, TimingLog)]
 
+    def shoot(self) -> None:
+        """Takes a picture for each video; from now on they have the pictures they are told to take."""
+        if not self.by_id:
+            return
+        from carom.recorder import Film
+
+        for log in self.by_id.values():
+            if isinstance(log, Film):
+                log.automatic = False
+                log.shoot()
+
+    def start(self, client: Client, log: StateLog | None) -> int:
+        """Begins a log and returns its id; None is one that is not written."""
+        number = self.next_id
+        self.next_id += 1
+        if log is not None:
+            self.by_id[number] = log
+            client.world.observers.append(log)
+        return number
+
     def stop(self, client: Client, number: int) -> None:
         """Ends a log and finishes its file; nothing if there is none."""
         log = self.by_id.pop(number, None)

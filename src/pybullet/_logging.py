@@ -27,7 +27,6 @@ __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
 _DEFAULT_ROOM = 12
 _WITHOUT_FILE = {
-    STATE_LOGGING_VIDEO_MP4: "there is no window to film; take images with getCameraImage",
     STATE_LOGGING_ALL_COMMANDS: "PyBullet writes its own memory there; use saveWorld or saveBullet",
     STATE_REPLAY_ALL_COMMANDS: "PyBullet's logs of commands cannot be replayed",
 }
@@ -53,7 +52,9 @@ def startStateLogging(
         loggingType: `STATE_LOGGING_GENERIC_ROBOT` for bases and joints, `STATE_LOGGING_CONTACT_POINTS`
             for contacts, both in PyBullet's binary layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a trace
             that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
-            `_0.json` added; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty. Videos and logs of
+            `_0.json` added; `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of
+            simulated time, from where the camera of the window is, which needs `pip install carom[video]`
+            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty. Logs of
             commands are not available: a warning says so, and no file is written.
         fileName: The file; one that is there is replaced.
         objectUniqueIds: Bodies to log; none for all. Those with more joints than columns, or with
@@ -72,7 +73,8 @@ def startStateLogging(
         The id of the log; None for types that log nothing (`STATE_LOGGING_MINITAUR` and others).
 
     Raises:
-        pybullet.error: Not connected, the file cannot be written, or `objectUniqueIds` is no sequence.
+        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, or a
+            video is asked for and PyAV is not installed.
     """
     client = client_of(physicsClientId)
     kind, path = integer(loggingType, "loggingType"), text(fileName, "fileName")
@@ -99,7 +101,11 @@ def startStateLogging(
             log = files.TimingLog(Path(path))
         elif kind == STATE_LOGGING_VR_CONTROLLERS:
             log = files.ControllerLog(Path(path))
-    except (OSError, ValueError) as reason:
+        elif kind == STATE_LOGGING_VIDEO_MP4:
+            from pybullet._film import film_of
+
+            log = film_of(client, Path(path))
+    except (OSError, ValueError, ImportError) as reason:
         fail(problem, f"{reason}.")
     if log is None and kind not in _WITHOUT_FILE:
         logger.warning("startStateLogging: logs of type %d are not available.", kind)
@@ -107,12 +113,7 @@ def startStateLogging(
     if log is None:
         logger.warning("startStateLogging: no log is written; %s.", _WITHOUT_FILE[kind])
     with client.lock:
-        number = client.logs.next_id
-        client.logs.next_id += 1
-        if log is not None:
-            client.logs.by_id[number] = log
-            client.world.observers.append(log)
-    return number
+        return client.logs.start(client, log)
 
 
 @exported

@@ -94,6 +94,9 @@ class PageWindow(RecordingWindow):
         super().configure(changes)
         self._show_options()
 
+    def draw_now(self) -> None:
+        self._viewer.draw_now()
+
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         self._viewer.camera.move(distance, yaw, pitch, target)
 
@@ -132,7 +135,7 @@ def open_window(client: Client, options: str) -> PageWindow:
         options: What `connect` was told of the window.
 
     Raises:
-        pybullet.error: The address asked for cannot be listened on.
+        pybullet.error: The address asked for cannot be listened on, or the video asked for not be written.
     """
     from carom.viewer.viewer import Viewer
 
@@ -148,13 +151,26 @@ def open_window(client: Client, options: str) -> PageWindow:
         viewer = Viewer(client.world, client.lock, title=Path(sys.argv[0]).stem or "Carom", **arguments)
     except OSError as problem:
         fail("Cannot open the window:", f"{problem}.")
-    window = PageWindow(viewer)
+    client.window = window = PageWindow(viewer)
     background = [values.get(f"background_color_{name}") for name in ("red", "green", "blue")]
     if any(background):
         window.configure(VisualizerOptions(background=_colour(background)))
+    if "mp4" in values:
+        _film(client, values["mp4"].strip("\"'"), values.get("mp4fps", ""))
     print(f"The simulation is shown at {viewer.address}", flush=True)
     viewer.open_browser()
     return window
+
+
+def _film(client: Client, file: str, fps: str) -> None:
+    from pybullet._film import PICTURES_PER_SECOND, film_of
+
+    rate = int(fps) if fps.isdecimal() and int(fps) > 0 else PICTURES_PER_SECOND
+    try:
+        client.logs.start(client, film_of(client, Path(file), rate))
+    except (ImportError, OSError) as problem:
+        client.window.close()
+        fail(f"Cannot write {file}:", f"{problem}.")
 
 
 def _colour(parts: Sequence[str | None]) -> Vector3:

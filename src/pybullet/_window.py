@@ -104,9 +104,11 @@ class Window(ABC):
 
     Attributes:
         held: Steps have to ask `wait_for_turn` or `has_turn` first, and may find the window closed then.
+        background: The plain background the script has asked for; None for the sky.
     """
 
     held = False
+    background: Vector3 | None = None
 
     @abstractmethod
     def wait_for_turn(self) -> None:
@@ -163,6 +165,10 @@ class Window(ABC):
     @abstractmethod
     def configure(self, changes: VisualizerOptions) -> None:
         """Changes the options that are not None, and the flags that are there."""
+
+    @abstractmethod
+    def draw_now(self) -> None:
+        """Returns when the world is shown as it is now."""
 
     @abstractmethod
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
@@ -222,6 +228,9 @@ class NoWindow(Window):
         return ()
 
     def configure(self, changes: VisualizerOptions) -> None:
+        """Nobody would see it."""
+
+    def draw_now(self) -> None:
         """Nobody would see it."""
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
@@ -314,8 +323,12 @@ class RecordingWindow(Window):
                 self.options.flags.update(value)
             elif value is not None:
                 setattr(self.options, name, value)
+        self.background = self.options.background
         if COV_ENABLE_Y_AXIS_UP in changes.flags:
             self.camera.up_axis = Y_UP if changes.flags[COV_ENABLE_Y_AXIS_UP] else Z_UP
+
+    def draw_now(self) -> None:
+        """Nobody would see it."""
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         camera = self.camera

@@ -176,6 +176,37 @@ def test_lines_points_and_texts_come_and_go(page: Page):
     page.page.get_by_text("gone soon").wait_for(state="detached")
 
 
+def test_the_ground_mirrors_what_is_above_it(page: Page):
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    p.resetDebugVisualizerCamera(2, 0, -20, [0.3, 0, 0])
+    floor = p.createVisualShape(p.GEOM_BOX, halfExtents=[5, 5, 0.5], rgbaColor=[0.6, 0.6, 0.6, 0.5])
+    p.createMultiBody(0, -1, floor, [0, 0, -0.5])
+    red_ball((0, 0, 0.4))
+    column, row = pixel_of((0, 0, -0.4))
+
+    def mirrored(picture: np.ndarray) -> bool:
+        red, green, blue = picture[row, column]
+        return red > 1.3 * max(green, blue)
+
+    page.wait_for_picture(red_at((0, 0, 0.4)))
+    page.wait_for_picture(lambda picture: not mirrored(picture))
+    p.configureDebugVisualizer(p.COV_ENABLE_PLANAR_REFLECTION, 1)
+    page.wait_for_picture(mirrored)
+    p.configureDebugVisualizer(p.COV_ENABLE_PLANAR_REFLECTION, 0)
+    page.wait_for_picture(lambda picture: not mirrored(picture))
+
+
+def test_each_step_can_be_seen(page: Page, viewer: Viewer):
+    page.page.wait_for_timeout(200)
+    numbers = []
+    for _ in range(3):
+        p.stepSimulation()
+        p.configureDebugVisualizer(p.COV_ENABLE_SINGLE_STEP_RENDERING, 1)
+        numbers.append(viewer._pictures.asked)
+    assert numbers == [1, 2, 3]
+    wait_for(lambda: 3 in viewer._pictures._drawn.values(), page)
+
+
 def test_texts_with_an_orientation_stand_in_the_world(page: Page):
     wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     # The panel covers the right half of so small a page.

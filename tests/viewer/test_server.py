@@ -60,8 +60,11 @@ def test_a_page_that_joins_late_gets_the_whole_scene(viewer: Viewer):
         looks = p.getVisualShapeData(arm)
         assert len(body["shapes"]) == len(looks)
         for shape in body["shapes"]:
-            mesh = page.shown["mesh", shape["mesh"]]
-            assert len(page.payloads["mesh", shape["mesh"]]) == 32 * mesh["vertices"] + 12 * mesh["triangles"]
+            mesh = page.shown["mesh", shape["meshes"][0][0]]
+            assert (
+                len(page.payloads["mesh", shape["meshes"][0][0]])
+                == 32 * mesh["vertices"] + 12 * mesh["triangles"]
+            )
         floor = page.shown["body", 1]["shapes"][0]
         assert ("texture", floor["texture"]) in page.shown
         assert page.shown["item", 0]["end"] == [1, 2, 3]
@@ -89,8 +92,14 @@ def test_bodies_come_and_go(viewer: Viewer):
     bodies = [p.createMultiBody(1, -1, ball, [i, 0, 0]) for i in range(3)]
     with Watcher(viewer.address) as page:
         page.wait_for(lambda: len(page.poses) == 3)
-        meshes = {page.shown["body", body]["shapes"][0]["mesh"] for body in bodies}
-        assert len(meshes) == 1
+        levels = [page.shown["body", body]["shapes"][0]["meshes"] for body in bodies]
+        assert levels[0] == levels[1] == levels[2]
+        # The smaller a ball looks, the fewer triangles it needs.
+        triangles = [page.shown["mesh", mesh]["triangles"] for mesh, _ in levels[0]]
+        reaches = [reach for _, reach in levels[0]]
+        assert triangles == sorted(triangles, reverse=True)
+        assert reaches[0] is None
+        assert reaches[1:] == sorted(reaches[1:], reverse=True)
         assert page.shown["body", bodies[0]]["shapes"][0]["rgba"] == [1, 0, 0, 0.5]
         assert page.shown["body", bodies[0]]["shapes"][0]["scale"] == [0.25] * 3
         p.removeBody(bodies[1])

@@ -15,9 +15,6 @@ from carom.render.render_mesh import RenderMesh, mesh_of
 SEGMENTS = 48
 """Sides of the polygon that stands for a circle: its edges are within 0.2 % of the radius."""
 
-RINGS = 24
-"""Bands of triangles from pole to pole of a ball; even, so that a capsule can be cut at the equator."""
-
 PLANE_HALF_SIZE = 128.0
 """A plane is drawn as a square of twice this side [m]."""
 
@@ -25,15 +22,20 @@ Primitive = Sphere | Box | Cylinder | Capsule | Plane
 
 
 @functools.lru_cache(maxsize=1024)
-def primitive_mesh(shape: Primitive) -> RenderMesh:
-    """The triangles of a primitive, in the frame of the shape."""
+def primitive_mesh(shape: Primitive, segments: int = SEGMENTS) -> RenderMesh:
+    """The triangles of a primitive, in the frame of the shape.
+
+    Args:
+        shape: The primitive.
+        segments: Sides of the polygon that stands for a circle; a multiple of 4.
+    """
     if isinstance(shape, Box):
         return _box(shape.half_extents)
     if isinstance(shape, Plane):
         return _plane(shape.normal)
     if isinstance(shape, Cylinder):
-        return _cylinder(shape.radius, shape.length)
-    return _rounded(shape.radius, 0.0 if isinstance(shape, Sphere) else shape.length)
+        return _cylinder(shape.radius, shape.length, segments)
+    return _rounded(shape.radius, 0.0 if isinstance(shape, Sphere) else shape.length, segments)
 
 
 # Each side of a box: its outward normal, two axes along the side with u × v = normal, and the texture
@@ -89,57 +91,60 @@ def _plane_axes(n: Vector3) -> tuple[Vector3, Vector3]:
     return first, second
 
 
-def _circle() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points (SEGMENTS + 1, 2) once around a circle of radius 1, and the fraction of the turn at each."""
-    turn = np.linspace(0.0, 1.0, SEGMENTS + 1)
+def _circle(segments: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points (segments + 1, 2) once around a circle of radius 1, and the fraction of the turn at each."""
+    turn = np.linspace(0.0, 1.0, segments + 1)
     return np.stack([np.cos(2.0 * np.pi * turn), np.sin(2.0 * np.pi * turn)], axis=1), turn
 
 
-def _cylinder(radius: float, length: float) -> RenderMesh:
-    circle, turn = _circle()
+def _cylinder(radius: float, length: float, segments: int) -> RenderMesh:
+    circle, turn = _circle(segments)
     rings, normals, uvs, triangles = [], [], [], []
     for z, v in ((-0.5 * length, 0.0), (0.5 * length, 1.0)):
-        rings.append(np.column_stack([radius * circle, np.full(SEGMENTS + 1, z)]))
-        normals.append(np.column_stack([circle, np.zeros(SEGMENTS + 1)]))
-        uvs.append(np.column_stack([turn, np.full(SEGMENTS + 1, v)]))
-    triangles.append(_band(0, SEGMENTS + 1))
+        rings.append(np.column_stack([radius * circle, np.full(segments + 1, z)]))
+        normals.append(np.column_stack([circle, np.zeros(segments + 1)]))
+        uvs.append(np.column_stack([turn, np.full(segments + 1, v)]))
+    triangles.append(_band(0, segments))
     for z, direction in ((-0.5 * length, -1.0), (0.5 * length, 1.0)):
         first = sum(map(len, rings))
         rim = circle[:-1]
-        rings.append(np.column_stack([radius * rim, np.full(SEGMENTS, z)]))
-        normals.append(np.tile([0.0, 0.0, direction], (SEGMENTS, 1)))
+        rings.append(np.column_stack([radius * rim, np.full(segments, z)]))
+        normals.append(np.tile([0.0, 0.0, direction], (segments, 1)))
         uvs.append(0.5 + 0.5 * rim)
-        fan = np.array([(first, first + i, first + i + 1) for i in range(1, SEGMENTS - 1)])
+        fan = np.array([(first, first + i, first + i + 1) for i in range(1, segments - 1)])
         triangles.append(fan if direction > 0.0 else fan[:, ::-1])
     return mesh_of(*(np.concatenate(parts) for parts in (rings, normals, uvs, triangles)))
 
 
-def _rounded(radius: float, length: float) -> RenderMesh:
+def _rounded(radius: float, length: float, segments: int) -> RenderMesh:
     """A ball, its halves `length` apart along z and joined by a cylinder."""
-    circle, turn = _circle()
+    circle, turn = _circle(segments)
+    # Bands of triangles from pole to pole; even, so that a capsule can be cut at the equator.
+    rings = segments // 2
     # From the lower pole to the upper; the equator occurs twice where a cylinder lies between.
-    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, RINGS + 1)
+    angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, rings + 1)
     halves = np.where(angles < 0.0, -0.5, 0.5) * length
     if length > 0.0:
-        middle = RINGS // 2
+        middle = rings // 2
         angles = np.insert(angles, middle, 0.0)
         halves = np.insert(halves, middle, -0.5 * length)
     positions, normals, uvs = [], [], []
     for angle, shift in zip(angles, halves, strict=True):
-        normal = np.column_stack([np.cos(angle) * circle, np.full(SEGMENTS + 1, np.sin(angle))])
+        normal = np.column_stack([np.cos(angle) * circle, np.full(segments + 1, np.sin(angle))])
         normals.append(normal)
         positions.append(radius * normal + (0.0, 0.0, shift))
-        uvs.append(np.column_stack([turn, np.full(SEGMENTS + 1, angle / np.pi + 0.5)]))
-    row = SEGMENTS + 1
-    bands = [_band(i * row, (i + 1) * row) for i in range(len(angles) - 1)]
+        uvs.append(np.column_stack([turn, np.full(segments + 1, angle / np.pi + 0.5)]))
+    row = segments + 1
+    bands = [_band(i * row, segments) for i in range(len(angles) - 1)]
     # At the poles half of the triangles of a band have no area.
     bands[0], bands[-1] = bands[0][1::2], bands[-1][::2]
     return mesh_of(*(np.concatenate(parts) for parts in (positions, normals, uvs, bands)))
 
 
-def _band(lower: int, upper: int) -> NDArray[np.int64]:
-    """Triangles (2 SEGMENTS, 3) between two rings, given by their first vertices."""
-    i = np.arange(SEGMENTS)
+def _band(lower: int, segments: int) -> NDArray[np.int64]:
+    """Triangles (2 segments, 3) between a ring, given by its first vertex, and the one that follows."""
+    upper = lower + segments + 1
+    i = np.arange(segments)
     first = np.stack([lower + i, lower + i + 1, upper + i], axis=1)
     second = np.stack([lower + i + 1, upper + i + 1, upper + i], axis=1)
     return np.stack([first, second], axis=1).reshape(-1, 3)

@@ -120,7 +120,9 @@ class SceneFeed:
             self._board.take_down(("body", number), {"type": "no body", "body": number})
         self._described = new
         shapes = [shape for facts in new.values() for shape in facts["shapes"]]
-        self._assets.keep_only({shape["mesh"] for shape in shapes}, {shape["texture"] for shape in shapes})
+        self._assets.keep_only(
+            {mesh for shape in shapes for mesh, _ in shape["meshes"]}, {shape["texture"] for shape in shapes}
+        )
         rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
         self._rows = np.concatenate([np.zeros(0, dtype=np.int64), *rows])
         self._layout += 1

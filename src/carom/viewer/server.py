@@ -118,6 +118,10 @@ class PageServer:
         """How many pages are open."""
         return len(self._pages)
 
+    def page_numbers(self) -> set[int]:
+        """The pages that are open, by the numbers `receive` is called with."""
+        return {page.number for page in tuple(self._pages)}
+
     def stop(self) -> None:
         """Closes all sockets; pages say that the simulation has ended."""
         loop = self._loop

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from math import cos, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,10 +36,39 @@ _COLLISION_COLOURS = (
 )
 _COLLISION_FLOOR = (0.82, 0.84, 0.86, 1.0)
 _NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
-# Shapes of all sizes share one mesh, so that a page draws any number of them at once.
-_UNIT_BOX = primitive_mesh(Box((1.0, 1.0, 1.0)))
-_UNIT_SPHERE = primitive_mesh(Sphere(1.0))
-_UNIT_CYLINDER = primitive_mesh(Cylinder(1.0, 1.0))
+# Sides of the polygons that stand for circles: round things that look small need fewer.
+_SEGMENTS = (48, 24, 12)
+# How far the outline of a round thing may be off, for nobody to see it [pixels].
+_OUTLINE_ERROR = 0.35
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """A mesh, and how large it may look.
+
+    Attributes:
+        mesh: The mesh.
+        reach: Up to what radius on the screen it looks like what it stands for [pixels]; None: any.
+    """
+
+    mesh: RenderMesh
+    reach: float | None = None
+
+
+# The finest first.
+Levels = tuple[Level, ...]
+
+
+def _round_levels(shape: Sphere | Cylinder) -> Levels:
+    finest, *coarser = (primitive_mesh(shape, segments) for segments in _SEGMENTS)
+    reaches = (_OUTLINE_ERROR / (1.0 - cos(pi / segments)) for segments in _SEGMENTS[1:])
+    return (Level(finest), *map(Level, coarser, reaches))
+
+
+# Shapes of all sizes share their meshes, so that a page draws any number of them at once.
+_UNIT_BOX: Levels = (Level(primitive_mesh(Box((1.0, 1.0, 1.0)))),)
+_UNIT_SPHERE = _round_levels(Sphere(1.0))
+_UNIT_CYLINDER = _round_levels(Cylinder(1.0, 1.0))
 
 
 class Assets:
@@ -49,8 +80,11 @@ class Assets:
         self._textures: dict[int, tuple[Texels, int]] = {}
         self._next = 0
 
-    def mesh(self, mesh: RenderMesh) -> int:
-        """Number of a mesh on the pages."""
+    def meshes(self, levels: Levels) -> list[tuple[int, float | None]]:
+        """Numbers of meshes on the pages, and how far they reach."""
+        return [(self._mesh(level.mesh), level.reach) for level in levels]
+
+    def _mesh(self, mesh: RenderMesh) -> int:
         known = self._meshes.get(id(mesh))
         if known is not None:
             return known[1]
@@ -144,14 +178,14 @@ def _link(body: Body, link: int) -> dict[str, Any]:
 def _shape(
     look: ShapeLook, link: int, to_inertial: Pose, appearance: Appearance, assets: Assets
 ) -> dict[str, Any]:
-    mesh, scale = _shared(look.geometry, look.mesh)
+    levels, scale = _shared(look.geometry, look.mesh)
     texture = NO_TEXTURE
     if look.texture != NO_TEXTURE:
         texture = assets.texture(appearance.textures.image(look.texture))
     frame = compose(to_inertial, look.frame)
     return {
         "link": link - BASE,
-        "mesh": assets.mesh(mesh),
+        "meshes": assets.meshes(levels),
         "texture": texture,
         "rgba": look.rgba,
         "specular": look.specular,
@@ -165,11 +199,11 @@ def _shape(
 def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
     colour = _COLLISION_COLOURS[(link - BASE) % len(_COLLISION_COLOURS)]
     for shape in body.link_spec(link).collisions:
-        mesh, scale = _shared(shape.geometry, None)
+        levels, scale = _shared(shape.geometry, None)
         frame = compose(to_inertial, shape.frame)
         yield {
             "link": link - BASE,
-            "mesh": assets.mesh(mesh),
+            "meshes": assets.meshes(levels),
             "texture": NO_TEXTURE,
             "rgba": _COLLISION_FLOOR if isinstance(shape.geometry, Plane) else colour,
             "specular": (0.2, 0.2, 0.2),
@@ -181,12 +215,12 @@ def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Ite
         }
 
 
-def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[RenderMesh, Vector3]:
-    """A mesh and the scale that makes the shape of it."""
+def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[Levels, Vector3]:
+    """Meshes, and the scale that makes the shape of them."""
     if isinstance(geometry, Box):
         return _UNIT_BOX, geometry.half_extents
     if isinstance(geometry, Sphere):
         return _UNIT_SPHERE, (geometry.radius, geometry.radius, geometry.radius)
     if isinstance(geometry, Cylinder):
         return _UNIT_CYLINDER, (geometry.radius, geometry.radius, geometry.length)
-    return (shape_mesh(geometry) if mesh is None else mesh), _NO_SCALE
+    return (Level(shape_mesh(geometry) if mesh is None else mesh),), _NO_SCALE

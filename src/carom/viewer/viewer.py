@@ -19,6 +19,7 @@ from carom.viewer.gate import Gate
 from carom.viewer.hands import Hands
 from carom.viewer.keys import Keyboard
 from carom.viewer.mouse import Mouse
+from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
 from carom.viewer.probes import sample
 from carom.viewer.scene_feed import SceneFeed
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 _MOST_PLOTS = 16
 # How long a page that goes may keep the server from letting go of what it held [s].
 _PATIENCE = 1.0
+# How long a script waits for pages to draw what it wants to be seen [s].
+_DRAWING_PATIENCE = 0.1
 # A page of the last run that is still open connects again within this time [s].
 _RECONNECTION = 1.5
 
@@ -85,6 +88,7 @@ class Viewer:
         self.keyboard = Keyboard()
         self.mouse = Mouse()
         self.gate = Gate()
+        self._pictures = Pictures()
         # Pulling makes constraints, which only whoever steps can allow.
         self._pulls = lock is not None
         self.lock = RLock() if lock is None else lock
@@ -104,6 +108,8 @@ class Viewer:
             "mouse": self._take_mouse,
             "camera": self._take_camera,
             "size": self._take_size,
+            "visible": lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
+            "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             "want": self._take_wish,
             "plot": self._take_plots,
             "grasp": self._take_grasp,
@@ -138,6 +144,14 @@ class Viewer:
         self.on_hold(paused)
         self._board.put("pause", {"type": "pause", "paused": paused})
 
+    def draw_now(self) -> None:
+        """Returns when all pages that can be seen have drawn the world as it is now.
+
+        It waits for no longer than a tenth of a second: pages are drawn when their browser has time.
+        """
+        if self.page_count:
+            self._pictures.wait(self._server.page_numbers, _DRAWING_PATIENCE)
+
     def open_browser(self) -> None:
         """Opens the page where there is a display, unless one of the last run is still open."""
         if not has_display():
@@ -164,14 +178,17 @@ class Viewer:
     def _frame(self) -> bytes | None:
         self.drawings.expire()
         self._hands.apply()
-        joints = set().union(*self._plotted.values())
-        return self._feed.frame({"joints": sample(self._world, joints)} if joints else {})
+        extras: dict[str, Any] = {"picture": self._pictures.asked}
+        if joints := set().union(*self._plotted.values()):
+            extras["joints"] = sample(self._world, joints)
+        return self._feed.frame(extras)
 
     def _receive(self, page: int, told: dict[str, Any]) -> None:
         self._answers[told["type"]](page, told)
 
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)
+        self._pictures.forget(page)
         self._collisions.pop(page, None)
         self._plotted.pop(page, None)
         self._feed.collisions = any(self._collisions.values())

@@ -85,6 +85,16 @@ export class Camera {
     return [((x + 1) / 2) * this.width, ((1 - y) / 2) * this.height, depth];
   }
 
+  /** The camera as it is seen in the ground through the origin, and what it sees there. */
+  mirrored() {
+    const axis = this.yUp ? 1 : 2;
+    const flip = (vector) => vector.map((value, i) => (i === axis ? -value : value));
+    const matrix = this.matrix.map((value, i) => (i >> 2 === axis ? -value : value));
+    const { width, height, yUp, distance } = this;
+    const [eye, forward, right, up] = [this.eye, this.forward, this.right, this.up].map(flip);
+    return { eye, forward, right, up, matrix, width, height, yUp, distance };
+  }
+
   state() {
     const { distance, yaw, pitch, target } = this;
     return { distance, yaw, pitch, target };

@@ -161,13 +161,13 @@ function addBounds(lines, scene, options) {
 }
 
 function boundsOfLink(scene, body, link, collisions) {
-  const pose = body.poses[link];
+  const pose = scene.inertialPose(body.body, link);
   const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions);
   if (!pose || shapes.length === 0) return null;
   const lower = [Infinity, Infinity, Infinity];
   const upper = [-Infinity, -Infinity, -Infinity];
   for (const shape of shapes) {
-    const mesh = scene.meshes.get(shape.mesh);
+    const mesh = scene.meshes.get(shape.meshes[0][0]);
     if (!mesh) continue;
     for (let corner = 0; corner < 8; corner++) {
       const local = [0, 1, 2].map((i) => (corner & (1 << i) ? mesh.bounds.upper : mesh.bounds.lower)[i] * shape.scale[i]);

@@ -58,6 +58,8 @@ export class Mesh {
     this.indexBuffer = this.elements(this.indices);
     this.edgeBuffer = null;
     this.bounds = boundsOf(this.positions);
+    /** Of the ball about the origin that holds it. */
+    this.radius = radiusOf(this.positions);
   }
 
   elements(indices) {
@@ -91,6 +93,14 @@ function boundsOf(positions) {
     upper[i % 3] = Math.max(upper[i % 3], positions[i]);
   }
   return { lower, upper };
+}
+
+function radiusOf(positions) {
+  let radius = 0;
+  for (let i = 0; i < positions.length; i += 3) {
+    radius = Math.max(radius, Math.hypot(positions[i], positions[i + 1], positions[i + 2]));
+  }
+  return radius;
 }
 
 /** Edges of triangles, but for those that lie within a flat face. */
@@ -187,5 +197,40 @@ export class ShadowMap {
   dispose() {
     this.gl.deleteTexture(this.texture);
     this.gl.deleteFramebuffer(this.target);
+  }
+}
+
+/** A picture that surfaces can show. */
+export class Picture {
+  constructor(gl) {
+    this.gl = gl;
+    [this.width, this.height] = [0, 0];
+    this.texture = gl.createTexture();
+    this.depth = gl.createRenderbuffer();
+    this.target = gl.createFramebuffer();
+  }
+
+  /** Makes it the one that is drawn to. */
+  begin(width, height) {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+    if (this.width !== width || this.height !== height) this.resize(width, height);
+    gl.viewport(0, 0, width, height);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+  }
+
+  resize(width, height) {
+    const gl = this.gl;
+    [this.width, this.height] = [width, height];
+    gl.activeTexture(gl.TEXTURE2);
+    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.LINEAR);
+    for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, edge, gl.CLAMP_TO_EDGE);
+    gl.bindTexture(gl.TEXTURE_2D, null);
+    gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, width, height);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.texture, 0);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
   }
 }

@@ -32,6 +32,9 @@ function start() {
   const drawings = new Drawings(renderer.gl, document.getElementById("labels"));
   let stale = true;
   let cameraMovedByUser = false;
+  /** Number of the picture that the script waits for, once it is to be drawn. */
+  let awaited = null;
+  let told = 0;
   const changed = () => (stale = true);
   const optionsChanged = () => {
     camera.yUp = options.yUp;
@@ -46,6 +49,8 @@ function start() {
     changed();
   };
   const tellSize = () => send({ type: "size", width: camera.width, height: camera.height });
+  const tellVisibility = () => send({ type: "visible", visible: !document.hidden });
+  document.addEventListener("visibilitychange", tellVisibility);
   const send = (message) => connection.send(message);
   const panel = new Panel(send, options, optionsChanged);
   const plots = new Plots(send);
@@ -71,6 +76,7 @@ function start() {
       scene.place(header, payload);
       panel.showTime(header);
       plots.take(header);
+      if (header.picture !== told) awaited = told = header.picture;
     },
     previews: (header, payload) => {
       previews.take(header, payload);
@@ -102,6 +108,8 @@ function start() {
       drawings.clear();
       panel.clear();
       previews.clear();
+      [awaited, told] = [null, 0];
+      tellVisibility();
       tellSize();
       plots.tell();
       send({ type: "want", collisions: options.collisions });
@@ -137,7 +145,11 @@ function start() {
     }
     if (!stale) return;
     stale = false;
-    if (!options.rendering) return;
+    if (options.rendering) drawScene();
+    if (awaited !== null) send({ type: "drawn", picture: awaited });
+    awaited = null;
+  }
+  function drawScene() {
     drawn = true;
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? underMouse() : null;
     const more = [pointer.grasp.line()].filter((line) => line !== null);

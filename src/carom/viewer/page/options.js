@@ -11,6 +11,7 @@ const FLAG = {
   rgbPreview: 13,
   depthPreview: 14,
   segmentationPreview: 15,
+  reflections: 16,
 };
 
 export class Options {
@@ -24,6 +25,7 @@ export class Options {
     this.rgbPreview = true;
     this.depthPreview = true;
     this.segmentationPreview = true;
+    this.reflections = false;
     this.names = false;
     this.colours = new Map();
     this.grid = true;
@@ -37,6 +39,8 @@ export class Options {
     this.shadowResolution = 2048;
     this.shadowWorldSize = null;
     this.told = {};
+    /** Grows when the script changes something. */
+    this.version = 0;
   }
 
   /** The colour a script has given to a link in wireframe, if any. */
@@ -46,6 +50,7 @@ export class Options {
 
   /** Takes over what the script has changed, and leaves what the user has. */
   take(message) {
+    this.version += 1;
     for (const [name, flag] of Object.entries(FLAG)) {
       const value = message.flags?.[flag];
       if (value !== undefined && value !== this.told[name]) this[name] = this.told[name] = value;

@@ -8,7 +8,7 @@ export function pick(scene, options, eye, direction) {
   for (const group of scene.groups) {
     if (group.collision !== options.collisions) continue;
     for (const { body, shape } of group.members) {
-      const pose = body.poses[shape.link];
+      const pose = scene.inertialPose(body.body, shape.link);
       if (!pose) continue;
       const back = inverse(pose.orientation);
       const own = inverse(shape.orientation);

@@ -1,7 +1,7 @@
 // Draws a scene.
 
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
-import { Program, ShadowMap } from "./gpu.js";
+import { Picture, Program, ShadowMap } from "./gpu.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, SURFACE, WIRE } from "./shaders.js";
 
 const GRID_EXTENT = 60;
@@ -41,10 +41,12 @@ export class Renderer {
     this.sign = new Program(gl, SIGN);
     this.surface.sampler("image", 0);
     this.surface.sampler("shadows", 1);
+    this.surface.sampler("reflection", 2);
     this.nothing = gl.createVertexArray();
     this.lineBuffer = gl.createBuffer();
     this.lineArray = this.makeLineArray();
     this.map = new ShadowMap(gl, 2048);
+    this.reflection = new Picture(gl);
     this.sharpness = slow ? LEAST_SHARPNESS : 1;
     // Without smooth edges, pictures there is time for are made with more pixels.
     this.stillSharpness = slow ? 2 : 1;
@@ -83,38 +85,31 @@ export class Renderer {
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
     scene.regroup();
-    scene.fill(options);
+    scene.fill(options, camera.eye, this.canvas.height / 2);
     const shown = scene.groups.filter((group) => group.instances > 0 && group.collision === options.collisions);
     const light = this.light(camera, options);
     const shadows = options.shadows && !options.wireframe;
     if (shadows) this.drawShadows(shown, light, options);
+    const reflecting = options.reflections && !options.wireframe;
+    const shading = {
+      toLight: light.direction,
+      lightCamera: light.matrix,
+      shadowStrength: shadows ? options.shadowIntensity : 0,
+      shadowTexel: 1 / this.map.size,
+      shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
+    };
+    if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    const common = {
-      eye: camera.eye,
-      upward: camera.yUp ? [0, 1, 0] : [0, 0, 1],
-      toLight: light.direction,
-      backdrop: options.background ?? [0, 0, 0],
-      plainBackdrop: options.background ? 1 : 0,
-      haze: Math.max(HAZE, camera.distance * HAZE_BY_DISTANCE),
-      camera: camera.matrix,
-    };
+    const common = this.seenFrom(camera, options);
     this.drawSky(camera, common);
     gl.enable(gl.DEPTH_TEST);
     if (options.wireframe) this.drawWires(shown, camera);
     else {
-      const strength = shadows ? options.shadowIntensity : 0;
-      this.surface.use({
-        ...common,
-        lightCamera: light.matrix,
-        shadowStrength: strength,
-        shadowTexel: 1 / this.map.size,
-        shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
-      });
-      gl.activeTexture(gl.TEXTURE1);
-      gl.bindTexture(gl.TEXTURE_2D, this.map.texture);
-      for (const group of shown) if (!group.clear) this.drawSolid(group, scene);
+      const mirror = { reflecting: reflecting ? 1 : 0, reflectionSize: [this.canvas.width, this.canvas.height] };
+      const uniforms = { ...common, ...shading, ...mirror, aboveGround: 0 };
+      this.drawSurfaces(shown, scene, uniforms, reflecting ? this.reflection.texture : null);
     }
     if (options.grid) this.drawGrid(camera, common);
     this.drawSigns(drawings.signs, scene, camera);
@@ -122,6 +117,42 @@ export class Renderer {
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
     gl.disable(gl.DEPTH_TEST);
+  }
+
+  /** What all programs have to know of a view. */
+  seenFrom(camera, options) {
+    return {
+      eye: camera.eye,
+      upward: camera.yUp ? [0, 1, 0] : [0, 0, 1],
+      backdrop: options.background ?? [0, 0, 0],
+      plainBackdrop: options.background ? 1 : 0,
+      haze: Math.max(HAZE, camera.distance * HAZE_BY_DISTANCE),
+      camera: camera.matrix,
+    };
+  }
+
+  /** Draws what the ground mirrors. */
+  drawReflection(groups, scene, mirrored, options, shading) {
+    const gl = this.gl;
+    this.reflection.begin(this.canvas.width, this.canvas.height);
+    const common = this.seenFrom(mirrored, options);
+    this.drawSky(mirrored, common);
+    gl.enable(gl.DEPTH_TEST);
+    // In a mirror the corners of a triangle go round the other way.
+    gl.frontFace(gl.CW);
+    this.drawSurfaces(groups, scene, { ...common, ...shading, reflecting: 0, aboveGround: 1 }, null);
+    gl.frontFace(gl.CCW);
+  }
+
+  /** Draws what cannot be seen through. */
+  drawSurfaces(groups, scene, uniforms, reflection) {
+    const gl = this.gl;
+    this.surface.use(uniforms);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, this.map.texture);
+    gl.activeTexture(gl.TEXTURE2);
+    gl.bindTexture(gl.TEXTURE_2D, reflection);
+    for (const group of groups) if (!group.clear) this.drawSolid(group, scene);
   }
 
   light(camera, options) {
@@ -176,8 +207,7 @@ export class Renderer {
     const gl = this.gl;
     if (group.twoSided) gl.disable(gl.CULL_FACE);
     else gl.enable(gl.CULL_FACE);
-    gl.bindVertexArray(group.solid);
-    gl.drawElementsInstanced(gl.TRIANGLES, group.mesh.count, gl.UNSIGNED_INT, 0, group.instances);
+    group.draw();
     gl.disable(gl.CULL_FACE);
   }
 
@@ -206,12 +236,8 @@ export class Renderer {
   }
 
   drawWires(groups, camera) {
-    const gl = this.gl;
     this.wire.use({ camera: camera.matrix });
-    for (const group of groups) {
-      gl.bindVertexArray(group.outline());
-      gl.drawElementsInstanced(gl.LINES, group.mesh.edgeCount, gl.UNSIGNED_INT, 0, group.instances);
-    }
+    for (const group of groups) group.drawEdges();
   }
 
   drawGrid(camera, common) {

@@ -81,6 +81,12 @@ uniform sampler2DShadow shadows;
 uniform float shadowStrength;
 uniform float shadowTexel;
 uniform float shadowBias;
+// Only what is above the ground; else everything.
+uniform float aboveGround;
+// What the ground mirrors, if it does, and the size of that picture in pixels.
+uniform sampler2D reflection;
+uniform vec2 reflectionSize;
+uniform float reflecting;
 out vec4 result;
 
 float lit(float slope) {
@@ -97,6 +103,8 @@ float lit(float slope) {
 }
 
 void main() {
+  float level = dot(point, upward);
+  if (aboveGround > 0.5 && level < 0.002) discard;
   vec3 base = linear(colour.rgb);
   if (textured > 0.5) base *= linear(texture(image, texel).rgb);
   vec3 toEye = normalize(eye - point);
@@ -114,6 +122,11 @@ void main() {
   float rim = pow(1.0 - max(dot(n, toEye), 0.0), 4.0) * 0.06;
   vec3 seen = base * light + shine * gleam + shine * rim * sky(reflect(-toEye, n));
   result = vec4(display(hazy(seen, point)), colour.a);
+  if (reflecting > 0.5 && abs(level) < 0.002 && dot(n, upward) > 0.99) {
+    // A floor lets the mirror under it through as far as it is transparent; an opaque one is polished.
+    vec3 mirrored = texture(reflection, gl_FragCoord.xy / reflectionSize).rgb;
+    result = vec4(mix(result.rgb, mirrored, max(1.0 - colour.a, 0.2)), 1.0);
+  }
 }`,
 };
 

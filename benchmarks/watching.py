@@ -1,0 +1,233 @@
+"""What it costs to be watched: `PYTHONPATH=. python benchmarks/watching.py [--page docs/viewer.md]`.
+
+Needs Chromium. Three questions: what many moving bodies cost the server for each frame, what they cost the
+page, apart from drawing, which a graphics card does, and by how much stepping gets slower while a page is
+open.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from run import put_between_marks, readable
+from tests.viewer.browser import Page, chromium
+from websockets.sync.client import connect
+
+import pybullet as p
+import pybullet_data
+from carom.viewer.messages import decoded
+from pybullet._clients import clients
+from pybullet._page_window import PageWindow
+
+WANTED_PERIOD = 1.0 / 30.0
+WANTED_SLOWDOWN = 0.20
+STEPS_IN_A_BLOCK, BLOCKS, ROUNDS = 5000, 12, 6
+SECONDS_TRACED = 6.0
+
+# A page that takes what it is sent and draws nothing; it says when it is connected, and goes with its input.
+READER = """
+import sys
+from threading import Thread
+from websockets.sync.client import connect
+socket = connect(sys.argv[1], max_size=None)
+socket.recv()
+Thread(target=lambda: (sys.stdin.read(), socket.close()), daemon=True).start()
+print("connected", flush=True)
+for message in socket:
+    pass
+"""
+
+
+@contextmanager
+def window() -> Iterator[PageWindow]:
+    """A world with a page; no browser opens by itself."""
+    os.environ["CI"] = "1"
+    client = p.connect(p.GUI, options="--port=0")
+    shown = clients[client].window
+    assert isinstance(shown, PageWindow)
+    yield shown
+    p.disconnect(client)
+
+
+def crowd(count: int) -> None:
+    """Boxes, balls and cylinders that spin, in all colours."""
+    random = np.random.default_rng(0)
+    shapes = [
+        p.createVisualShape(p.GEOM_BOX, halfExtents=[0.05, 0.06, 0.07]),
+        p.createVisualShape(p.GEOM_SPHERE, radius=0.06),
+        p.createVisualShape(p.GEOM_CYLINDER, radius=0.05, length=0.15),
+    ]
+    side = int(count**0.5)
+    for n in range(count):
+        place = [0.3 * (n % side - 0.5 * side), 0.3 * (n // side - 0.5 * side), 0.5]
+        body = p.createMultiBody(1, -1, shapes[n % 3], place)
+        p.resetBaseVelocity(body, [0, 0, 0], random.normal(size=3).tolist())
+        p.changeVisualShape(body, -1, rgbaColor=[*random.random(3).tolist(), 1])
+    p.resetDebugVisualizerCamera(0.2 * side, 40, -30, [0, 0, 0])
+
+
+@contextmanager
+def moving() -> Iterator[None]:
+    """Steps the world at display rate, in a thread."""
+    stop = threading.Event()
+
+    def steps() -> None:
+        while not stop.wait(1 / 60):
+            p.stepSimulation()
+
+    thread = threading.Thread(target=steps)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
+
+
+def work_of_main_thread(session: Any, page: Page) -> tuple[float, int]:
+    """Processor time of a page's main thread [s] while it is traced, and how many pictures it began."""
+    events: list[dict[str, Any]] = []
+    finished = threading.Event()
+    session.on("Tracing.dataCollected", lambda data: events.extend(data["value"]))
+    session.on("Tracing.tracingComplete", lambda _: finished.set())
+    categories = {"includedCategories": ["toplevel", "devtools.timeline"], "excludedCategories": ["*"]}
+    session.send("Tracing.start", {"traceConfig": categories, "transferMode": "ReportEvents"})
+    page.page.wait_for_timeout(1000 * SECONDS_TRACED)
+    session.send("Tracing.end")
+    while not finished.is_set():
+        page.page.wait_for_timeout(50)
+    main = {
+        (event["pid"], event["tid"])
+        for event in events
+        if event["name"] == "thread_name" and event["args"]["name"] == "CrRendererMain"
+    }
+    done = [event for event in events if event["ph"] == "X" and (event["pid"], event["tid"]) in main]
+    work = sum(event.get("tdur", 0) for event in done if event["name"] == "ThreadControllerImpl::RunTask")
+    return work / 1e6, sum(event["name"] == "FireAnimationFrame" for event in done)
+
+
+def watch_a_crowd(count: int) -> list[list[str]]:
+    """Rows of the table about frames of many bodies."""
+    with window() as shown, moving(), chromium() as browser:
+        crowd(count)
+        page = Page(browser, shown.viewer.address, 640, 480)
+        page.page.wait_for_timeout(3000)
+        server = clock_of_server()
+        before, began = time.clock_gettime(server), time.perf_counter()
+        work, pictures = work_of_main_thread(browser.new_browser_cdp_session(), page)
+        passed = time.perf_counter() - began
+        server_share = (time.clock_gettime(server) - before) / passed
+        page.page.close()
+        size = size_of_frame(shown.viewer.address)
+    # A page that has time for fewer pictures takes all frames the same, so this is the most it can be.
+    by_picture = work / max(pictures, 1)
+    wanted = f"≤ {readable(WANTED_PERIOD)}"
+    return [
+        [f"a frame of {count:,} bodies on its way", f"{size:,} bytes", "", ""],
+        ["the server's thread, a frame", readable(server_share / 60), wanted, mark(server_share / 60)],
+        ["the page's main thread, a picture", readable(by_picture), wanted, mark(by_picture)],
+        ["pictures a second without a graphics card", f"{pictures / passed:.0f}", "", ""],
+    ]
+
+
+def clock_of_server() -> int:
+    """The processor clock of the thread that sends."""
+    (server,) = (thread for thread in threading.enumerate() if thread.name == "carom viewer")
+    assert server.ident is not None
+    return time.pthread_getcpuclockid(server.ident)
+
+
+def size_of_frame(address: str) -> int:
+    """Length of the message with the poses of all bodies."""
+    with connect(address.replace("http", "ws") + "socket", max_size=None) as socket:
+        while True:
+            message = socket.recv()
+            assert isinstance(message, bytes)
+            if decoded(message)[0]["type"] == "frame":
+                return len(message)
+
+
+def mark(seconds: float) -> str:
+    """Whether there is time for it 30 times a second."""
+    return "PASS" if seconds <= WANTED_PERIOD else "FAIL"
+
+
+def block() -> float:
+    """Time of a step, as the mean over a block long enough for several frames [s]."""
+    began = time.perf_counter()
+    for _ in range(STEPS_IN_A_BLOCK):
+        p.stepSimulation()
+    return (time.perf_counter() - began) / STEPS_IN_A_BLOCK
+
+
+def watch_the_panda() -> list[list[str]]:
+    """Rows of the table about the Panda under its default motors, watched and not."""
+    p.connect(p.DIRECT)
+    panda()
+    alone = statistics.median(block() for _ in range(ROUNDS * BLOCKS))
+    p.disconnect()
+    unwatched: list[float] = []
+    watched: list[float] = []
+    with window() as shown:
+        panda()
+        for _ in range(ROUNDS):
+            unwatched += [block() for _ in range(BLOCKS)]
+            with reader(shown.viewer.address):
+                watched += [block() for _ in range(BLOCKS)]
+    before, after = statistics.median(unwatched), statistics.median(watched)
+    slower = after / before - 1.0
+    verdict = "PASS" if slower <= WANTED_SLOWDOWN else "FAIL"
+    return [
+        ["a step of the Panda in `DIRECT`", readable(alone), "", ""],
+        ["in `GUI`, with no page open", readable(before), "", ""],
+        ["with a page open", f"{readable(after)} ({100 * slower:+.0f} %)", "≤ +20 %", verdict],
+    ]
+
+
+def panda() -> None:
+    """The arm, at rest under its default motors; its kernels are there."""
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.setGravity(0, 0, -9.81)
+    p.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
+    block()
+
+
+@contextmanager
+def reader(address: str) -> Iterator[None]:
+    """Somebody who watches from another process."""
+    command = [sys.executable, "-c", READER, address.replace("http", "ws") + "socket"]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdin is not None and process.stdout is not None
+        process.stdout.readline()
+        yield
+        process.stdin.close()
+        process.wait()
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="Time what watching costs.")
+    parser.add_argument("--bodies", type=int, default=1000)
+    parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
+    arguments = parser.parse_args()
+    header = [["what", "cost", "wanted", ""], ["---", "---:", "---", "---"]]
+    rows = header + watch_a_crowd(arguments.bodies) + watch_the_panda()
+    figures = "\n".join("| " + " | ".join(row) + " |" for row in rows)
+    print(figures)
+    if arguments.page:
+        put_between_marks(arguments.page, figures)
+
+
+if __name__ == "__main__":
+    main()

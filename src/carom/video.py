@@ -1,0 +1,71 @@
+"""Video files."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.checks import positive
+
+# H.264 plays everywhere; a PyAV without it (some are built so) has MPEG-4.
+_CODECS = ("libx264", "mpeg4")
+# Clearly better than the encoder's own choice: edges of rendered surfaces are sharp.
+_QUALITY = {"crf": "18", "preset": "veryfast"}
+
+
+class VideoFile:
+    """An MP4 file that is being written. It can be played once it is closed.
+
+    Args:
+        path: The file; one that is there is replaced.
+        width: Number of columns of its pictures.
+        height: Number of rows.
+        fps: Pictures a second.
+
+    Raises:
+        ImportError: PyAV is not installed.
+        OSError: The file cannot be written.
+        ValueError: The size or the rate is not positive.
+    """
+
+    def __init__(self, path: str | Path, width: int, height: int, fps: float) -> None:
+        if width < 1 or height < 1:
+            raise ValueError(f"a video of {width} x {height} pixels cannot be written")
+        positive(fps, "fps")
+        try:
+            import av
+        except ImportError:
+            raise ImportError("videos need PyAV: pip install carom[video]") from None
+        self._frame_type = av.VideoFrame
+        # Codecs halve the resolution of colours, so they want even numbers.
+        self._margin = ((0, height % 2), (0, width % 2), (0, 0))
+        # FFmpeg would open it only for the first picture.
+        self._file = open(path, "wb")  # noqa: SIM115 (it is written to until the video is closed)
+        self._container: Any = av.open(self._file, "w", format="mp4")
+        codec = next(name for name in _CODECS if name in av.codecs_available)
+        self._stream: Any = self._container.add_stream(codec, rate=Fraction(fps).limit_denominator(1001))
+        self._stream.width = width + width % 2
+        self._stream.height = height + height % 2
+        self._stream.pix_fmt = "yuv420p"
+        if codec == "libx264":
+            self._stream.options = _QUALITY
+
+    def add(self, picture: NDArray[np.uint8]) -> None:
+        """Writes the next picture: (height, width, 3) red, green and blue, the top row first."""
+        padded = np.pad(picture, self._margin, mode="edge")
+        frame = self._frame_type.from_ndarray(padded, format="rgb24")
+        self._container.mux(self._stream.encode(frame))
+
+    def close(self) -> None:
+        """Finishes the file; closing it again does nothing."""
+        container, self._container = self._container, None
+        if container is not None:
+            # Without a picture nothing has been begun yet.
+            container.start_encoding()
+            container.mux(self._stream.encode(None))
+            container.close()
+            self._file.close()

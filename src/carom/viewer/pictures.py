@@ -1,0 +1,57 @@
+"""Pictures that a script waits for, so that each step is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from threading import Condition
+
+
+class Pictures:
+    """Which pictures pages are asked for, and which they have drawn. Safe to use from all threads.
+
+    Attributes:
+        asked: Number of the newest picture anybody has asked for; 0 before the first.
+    """
+
+    def __init__(self) -> None:
+        self.asked = 0
+        self._changed = Condition()
+        self._drawn: dict[int, int] = {}
+        self._hidden: set[int] = set()
+
+    def wait(self, pages: Callable[[], Iterable[int]], patience: float) -> None:
+        """Asks for a picture and returns when all pages that can be seen have drawn it.
+
+        Args:
+            pages: Gives the numbers of the pages that are open.
+            patience: How long to wait at most [s]: browsers may be too busy.
+        """
+        with self._changed:
+            self.asked += 1
+            picture = self.asked
+
+            def shown() -> bool:
+                return all(
+                    self._drawn.get(page, 0) >= picture for page in pages() if page not in self._hidden
+                )
+
+            self._changed.wait_for(shown, patience)
+
+    def drawn(self, page: int, picture: int) -> None:
+        """A page has drawn a picture."""
+        with self._changed:
+            self._drawn[page] = picture
+            self._changed.notify_all()
+
+    def show(self, page: int, *, visible: bool) -> None:
+        """A page has come into view, or gone out of it: browsers then draw nothing."""
+        with self._changed:
+            (self._hidden.discard if visible else self._hidden.add)(page)
+            self._changed.notify_all()
+
+    def forget(self, page: int) -> None:
+        """A page has been closed."""
+        with self._changed:
+            self._drawn.pop(page, None)
+            self._hidden.discard(page)
+            self._changed.notify_all()
