@@ -100,6 +100,11 @@ def calculateInverseDynamics(
 
     Raises:
         pybullet.error: Not connected, there is no such body, or the lists do not fit it.
+
+    Examples:
+        >>> torques = p.calculateInverseDynamics(arm, [0, 1, 0, 0, 0, 0, 0], [0] * 7, [0] * 7)
+        >>> round(torques[1], 1)
+        -45.1
     """
     try:
         client = clients[physicsClientId]
@@ -187,6 +192,11 @@ def calculateJacobian(
     Raises:
         pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, or
             the lists do not fit the body.
+
+    Examples:
+        >>> linear, angular = p.calculateJacobian(arm, 6, [0, 0, 0], [0] * 7, [0] * 7, [0] * 7)
+        >>> len(linear), len(linear[0])
+        (3, 7)
     """
     try:
         tree = clients[physicsClientId].bodies[bodyUniqueId].tree
@@ -246,6 +256,11 @@ def calculateMassMatrix(
 
     Raises:
         pybullet.error: Not connected, there is no such body, or there are too few positions.
+
+    Examples:
+        >>> matrix = p.calculateMassMatrix(arm, [0] * 7)
+        >>> len(matrix), len(matrix[0])
+        (7, 7)
     """
     try:
         tree = clients[physicsClientId].bodies[bodyUniqueId].tree

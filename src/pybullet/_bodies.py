@@ -39,6 +39,10 @@ def getNumBodies(physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getNumBodies()
+        3
     """
     return len(client_of(physicsClientId).world.bodies)
 
@@ -56,6 +60,10 @@ def getBodyUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> [p.getBodyUniqueId(serial) for serial in range(p.getNumBodies())]
+        [0, 1, 2]
     """
     bodies = client_of(physicsClientId).world.bodies
     position = integer(serialIndex, "serialIndex")
@@ -75,6 +83,11 @@ def getBodyInfo(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[bytes, byt
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
+
+    Examples:
+        >>> base, name = p.getBodyInfo(arm)
+        >>> base.decode(), name.decode()
+        ('lbr_iiwa_link_0', 'lbr_iiwa')
     """
     body = body_of(client_of(physicsClientId), bodyUniqueId, "Couldn't get body info")
     return body.spec.base.name.encode(), body.spec.name.encode()
@@ -92,6 +105,11 @@ def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.removeBody(cube)
+        >>> p.getNumBodies()
+        2
     """
     client = client_of(physicsClientId)
     body = client.body(bodyUniqueId)
@@ -117,6 +135,10 @@ def getNumJoints(bodyUniqueId: int, physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getNumJoints(arm)
+        7
     """
     body = client_of(physicsClientId).body(bodyUniqueId)
     return 0 if body is None else body.joint_count
@@ -136,6 +158,10 @@ def computeDofCount(bodyUniqueId: int, physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.computeDofCount(arm)
+        7
     """
     body = client_of(physicsClientId).body(bodyUniqueId)
     if body is None:
@@ -161,6 +187,11 @@ def getBasePositionAndOrientation(bodyUniqueId: int, physicsClientId: int = 0) -
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
+
+    Examples:
+        >>> position, orientation = p.getBasePositionAndOrientation(cube)
+        >>> position, orientation
+        ((0.5, 0.0, 0.025), (0.0, 0.0, 0.0, 1.0))
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].base_pose()
@@ -182,6 +213,11 @@ def resetBasePositionAndOrientation(
 
     Raises:
         pybullet.error: Not connected, or an argument is not three, or four, finite numbers.
+
+    Examples:
+        >>> p.resetBasePositionAndOrientation(cube, [1, 0, 1], p.getQuaternionFromEuler([0, 0, 0.5]))
+        >>> p.getBasePositionAndOrientation(cube)[0]
+        (1.0, 0.0, 1.0)
     """
     client = client_of(physicsClientId)
     body = client.body(bodyUniqueId)
@@ -207,6 +243,11 @@ def getBaseVelocity(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[Vector
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
+
+    Examples:
+        >>> linear, angular = p.getBaseVelocity(cube)
+        >>> linear
+        (0.0, 0.0, 0.0)
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].base_velocity()
@@ -231,6 +272,11 @@ def resetBaseVelocity(
 
     Raises:
         pybullet.error: Not connected, neither velocity is given, or one is not three finite numbers.
+
+    Examples:
+        >>> p.resetBaseVelocity(cube, linearVelocity=[1, 0, 0])
+        >>> p.getBaseVelocity(cube)
+        ((1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     """
     client = client_of(physicsClientId)
     body = client.body(objectUniqueId)

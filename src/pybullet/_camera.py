@@ -83,6 +83,13 @@ def getCameraImage(
     Raises:
         pybullet.error: Not connected, the size is out of range, or a matrix, a colour or the direction of
             the light is not fit.
+
+    Examples:
+        >>> view = p.computeViewMatrix([2, 0, 1], [0, 0, 0.5], [0, 0, 1])
+        >>> lens = p.computeProjectionMatrixFOV(60, 4 / 3, 0.1, 10)
+        >>> width, height, colour, depth, bodies = p.getCameraImage(64, 48, view, lens)
+        >>> colour.shape, depth.shape, bodies.shape
+        ((48, 64, 4), (48, 64), (48, 64))
     """
     client = client_of(physicsClientId)
     columns, rows = integer(width, "width"), integer(height, "height")

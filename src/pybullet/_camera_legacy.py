@@ -40,6 +40,11 @@ def renderImage(*arguments: Any) -> Any:
 
     Raises:
         pybullet.error: Not connected, there are other numbers of arguments, or one is not as it should be.
+
+    Examples:
+        >>> image = p.renderImage(8, 4, [2, 0, 1], [0, 0, 0.5], [0, 0, 1], 0.1, 10)
+        >>> len(image[2])
+        4
     """
     if len(arguments) == 2:
         return getCameraImage(*arguments)

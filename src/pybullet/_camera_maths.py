@@ -114,6 +114,11 @@ def computeViewMatrix(
     Raises:
         pybullet.error: A vector does not have three finite numbers, or the camera looks at itself or
             straight along its upward direction.
+
+    Examples:
+        >>> view = p.computeViewMatrix([0, 0, 5], [0, 0, 0], [0, 1, 0])
+        >>> [x + 0.0 for x in view[12:15]]
+        [0.0, 0.0, -5.0]
     """
     problem = "Error in computeViewMatrix."
     matrix = look_at(
@@ -153,6 +158,11 @@ def computeViewMatrixFromYawPitchRoll(
     Raises:
         pybullet.error: The target is not three finite numbers, a number is not finite, the distance is
             0, or the upward axis is neither 1 nor 2.
+
+    Examples:
+        >>> view = p.computeViewMatrixFromYawPitchRoll([0, 0, 0], 2, 0, 0, 0, 2)
+        >>> round(view[14], 6)
+        -2.0
     """
     problem = "Cannot convert cameraTargetPosition."
     target = vector3(cameraTargetPosition, problem, "cameraTargetPosition")
@@ -199,6 +209,10 @@ def computeProjectionMatrix(
 
     Raises:
         pybullet.error: A number is not finite, or two edges or the two planes coincide.
+
+    Examples:
+        >>> len(p.computeProjectionMatrix(-0.1, 0.1, -0.1, 0.1, 0.1, 10))
+        16
     """
     edges = [real(value, name) for value, name in ((left, "left"), (right, "right"))]
     sides = [real(value, name) for value, name in ((bottom, "bottom"), (top, "top"))]
@@ -231,6 +245,10 @@ def computeProjectionMatrixFOV(
 
     Raises:
         pybullet.error: A number is not finite, `fov` or `aspect` is 0, or the two planes coincide.
+
+    Examples:
+        >>> round(p.computeProjectionMatrixFOV(90, 1, 0.1, 10)[0], 6)
+        1.0
     """
     half_height = tan(pi / 180.0 * real(fov, "fov") / 2.0)
     ratio = real(aspect, "aspect")

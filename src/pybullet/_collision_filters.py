@@ -35,6 +35,13 @@ def setCollisionFilterPair(
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.setCollisionFilterPair(cube, plane, -1, -1, enableCollision=0)
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> p.getBasePositionAndOrientation(cube)[0][2] < -1
+        True
     """
     client = client_of(physicsClientId)
     enabled = integer(enableCollision, "enableCollision") != 0
@@ -70,6 +77,9 @@ def setCollisionFilterGroupMask(
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.setCollisionFilterGroupMask(cube, -1, collisionFilterGroup=0, collisionFilterMask=0)
     """
     client = client_of(physicsClientId)
     group = integer(collisionFilterGroup, "collisionFilterGroup")

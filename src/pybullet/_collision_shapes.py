@@ -93,6 +93,10 @@ def createCollisionShape(
     Raises:
         pybullet.error: Not connected, an unknown type, a size that is missing, negative or not finite, a
             file that is missing or cannot be used, or heights of another number.
+
+    Examples:
+        >>> shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.2, 0.3])
+        >>> box = p.createMultiBody(baseMass=1, baseCollisionShapeIndex=shape, basePosition=[0, 2, 1])
     """
     client = client_of(physicsClientId)
     kind, bits = integer(shapeType, "shapeType"), integer(flags, "flags")
@@ -169,6 +173,14 @@ def createCollisionShapeArray(
 
     Raises:
         pybullet.error: Not connected, an argument is not a sequence, or no part can be made.
+
+    Examples:
+        >>> shape = p.createCollisionShapeArray(
+        ...     [p.GEOM_SPHERE, p.GEOM_SPHERE],
+        ...     radii=[0.1, 0.2],
+        ...     collisionFramePositions=[[0, 0, 0], [0, 0, 0.3]],
+        ... )
+        >>> snowman = p.createMultiBody(1, shape, basePosition=[0, 2, 1])
     """
     client = client_of(physicsClientId)
     columns = ShapeColumns(
@@ -221,6 +233,10 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+        >>> p.removeCollisionShape(shape)
     """
     client = client_of(physicsClientId)
     number = integer(collisionShapeId, "collisionShapeId")

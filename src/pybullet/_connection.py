@@ -88,6 +88,12 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         pybullet.error: There is a window already, there are 1024 connections, the page cannot be served at
             the address asked for, or the method does not exist or is a kind of server that this version of
             Carom does not have.
+
+    Examples:
+        >>> other = p.connect(p.DIRECT)
+        >>> p.getNumBodies(physicsClientId=other)
+        0
+        >>> p.disconnect(other)
     """
     method = integer(method, "method")
     options = _connect_options(arguments, keywords)
@@ -129,6 +135,11 @@ def disconnect(physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: There is no such connection.
+
+    Examples:
+        >>> p.disconnect()
+        >>> p.isConnected()
+        0
     """
     client = client_of(physicsClientId)
     del clients[physicsClientId]
@@ -144,6 +155,10 @@ def isConnected(physicsClientId: int = 0) -> int:
 
     Returns:
         1 or 0.
+
+    Examples:
+        >>> p.isConnected(), p.isConnected(99)
+        (1, 0)
     """
     return int(living_client(physicsClientId) is not None)
 
@@ -157,6 +172,10 @@ def getConnectionInfo(physicsClientId: int = 0) -> dict[str, int]:
 
     Returns:
         `isConnected`: 1 or 0; `connectionMethod`: `DIRECT`, `GUI`, ..., 0 when not connected.
+
+    Examples:
+        >>> p.getConnectionInfo()
+        {'isConnected': 1, 'connectionMethod': 2}
     """
     client = living_client(physicsClientId)
     if client is None:
@@ -173,6 +192,10 @@ def getAPIVersion(physicsClientId: int = 0) -> int:
 
     Returns:
         A date and a counter as one integer.
+
+    Examples:
+        >>> p.getAPIVersion()
+        202010061
     """
     return _API_VERSION
 
@@ -186,6 +209,10 @@ def isNumpyEnabled(physicsClientId: int = 0) -> int:
 
     Returns:
         1.
+
+    Examples:
+        >>> p.isNumpyEnabled()
+        1
     """
     return 1
 
@@ -200,6 +227,9 @@ def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected, or the time is not finite.
+
+    Examples:
+        >>> p.setTimeOut(5)
     """
     client_of(physicsClientId)
     real(timeOutInSeconds, "timeOutInSeconds")
@@ -214,6 +244,9 @@ def syncBodyInfo(physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.syncBodyInfo()
     """
     client_of(physicsClientId)
 

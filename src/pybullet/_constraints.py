@@ -76,6 +76,13 @@ def createConstraint(
     Raises:
         pybullet.error: Not connected, there is no such body, link or type, or a vector is not what is
             asked for.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> round(p.getBasePositionAndOrientation(cube)[0][2], 2)
+        1.0
     """
     client = client_of(physicsClientId)
     parent = _body(client, parentBodyUniqueId, "parentBodyUniqueId")
@@ -136,6 +143,12 @@ def changeConstraint(
 
     Raises:
         pybullet.error: Not connected, or an argument is not what is asked for.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> p.changeConstraint(tie, jointChildPivot=[0.5, 0, 2], maxForce=50)
+        >>> p.getConstraintInfo(tie)[10]
+        50.0
     """
     client = client_of(physicsClientId)
     constraint = client.world.user_constraints.get(integer(userConstraintUniqueId, "userConstraintUniqueId"))
@@ -177,6 +190,12 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> p.removeConstraint(tie)
+        >>> p.getNumConstraints()
+        0
     """
     client = client_of(physicsClientId)
     number = integer(userConstraintUniqueId, "userConstraintUniqueId")
@@ -190,20 +209,42 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
 
 @exported
 def getNumConstraints(physicsClientId: int = 0) -> int:
-    """The number of constraints; raises `pybullet.error` when not connected."""
+    """The number of constraints.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        How many there are.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getNumConstraints()
+        0
+    """
     return len(client_of(physicsClientId).world.user_constraints)
 
 
 @exported
 def getConstraintUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
-    """The number of a constraint by its place among all; -1 if there are not so many.
+    """The number of a constraint by its place among all.
 
     Args:
         serialIndex: From 0 to `getNumConstraints()` - 1.
         physicsClientId: The connection.
 
+    Returns:
+        Its number; -1 if there are not so many.
+
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> p.getConstraintUniqueId(0) == tie
+        True
     """
     constraints = client_of(physicsClientId).world.user_constraints.all
     index = integer(serialIndex, "serialIndex")
@@ -226,6 +267,12 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
 
     Raises:
         pybullet.error: Not connected, or there is no such constraint.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> info = p.getConstraintInfo(tie)
+        >>> info[0] == cube, info[4] == p.JOINT_FIXED, info[7]
+        (True, True, (0.5, 0.0, 1.0))
     """
     constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't get user constraint info")
     return (
@@ -260,6 +307,12 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
 
     Raises:
         pybullet.error: Not connected, or there is no such constraint.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> _ = p.stepSimulation()
+        >>> len(p.getConstraintState(tie))
+        6
     """
     constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't getConstraintState.")
     world = client_of(physicsClientId).world

@@ -39,6 +39,11 @@ def performCollisionDetection(physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.performCollisionDetection()
+        >>> len(p.getContactPoints(cube, plane)) > 0
+        True
     """
     client = client_of(physicsClientId)
     with client.lock:
@@ -71,6 +76,13 @@ def getContactPoints(
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> for _ in range(24):
+        ...     _ = p.stepSimulation()
+        >>> point = p.getContactPoints(bodyA=cube, bodyB=plane)[0]
+        >>> [round(x) for x in point[7]], point[9] > 0
+        ([0, 0, 1], True)
     """
     world = client_of(physicsClientId).world
     wanted_a = (integer(bodyA, "bodyA"), integer(linkIndexA, "linkIndexA"))

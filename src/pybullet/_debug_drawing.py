@@ -54,6 +54,9 @@ def addUserDebugLine(
 
     Raises:
         pybullet.error: Not connected, a point is not three finite numbers, or a number is not finite.
+
+    Examples:
+        >>> line = p.addUserDebugLine([0, 0, 0], [1, 0, 0], lineColorRGB=[1, 0, 0], lineWidth=3)
     """
     client = client_of(physicsClientId)
     line = DebugLine(
@@ -101,6 +104,9 @@ def addUserDebugText(
     Raises:
         pybullet.error: Not connected, an argument is not three, or four, finite numbers, or a number is
             not finite.
+
+    Examples:
+        >>> label = p.addUserDebugText("goal", [0, 0, 1], textColorRGB=[1, 0, 0])
     """
     client = client_of(physicsClientId)
     orientation = None
@@ -148,6 +154,9 @@ def addUserDebugPoints(
     Raises:
         pybullet.error: Not connected, there are no points, there are not as many colours as points, an
             entry is not three finite numbers, or a number is not finite.
+
+    Examples:
+        >>> points = p.addUserDebugPoints([[0, 0, 1], [0, 1, 1]], [[1, 0, 0], [0, 1, 0]], pointSize=5)
     """
     client = client_of(physicsClientId)
     positions = _vectors(pointPositions, "pointPositions")
@@ -180,6 +189,10 @@ def removeUserDebugItem(itemUniqueId: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> line = p.addUserDebugLine([0, 0, 0], [1, 0, 0])
+        >>> p.removeUserDebugItem(line)
     """
     client_of(physicsClientId).window.remove(integer(itemUniqueId, "itemUniqueId"))
 
@@ -193,6 +206,9 @@ def removeAllUserDebugItems(physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.removeAllUserDebugItems()
     """
     client_of(physicsClientId).window.remove_drawings()
 
@@ -211,6 +227,9 @@ def setDebugObjectColor(
 
     Raises:
         pybullet.error: Not connected, or the colour is not three finite numbers.
+
+    Examples:
+        >>> p.setDebugObjectColor(cube, -1, [1, 0, 0])
     """
     client = client_of(physicsClientId)
     colour = None

@@ -41,6 +41,11 @@ def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0)
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> mass, friction = p.getDynamicsInfo(cube, -1)[:2]
+        >>> mass, friction
+        (0.1, 1.0)
     """
     problem = "getDynamicsInfo failed; invalid return status"
     access = body_access(
@@ -141,6 +146,11 @@ def changeDynamics(
     Raises:
         pybullet.error: Not connected, only one of stiffness and damping is given, or an argument is not
             finite or not three numbers.
+
+    Examples:
+        >>> p.changeDynamics(cube, -1, mass=0.2, lateralFriction=0.9)
+        >>> p.getDynamicsInfo(cube, -1)[:2]
+        (0.2, 0.9)
     """
     client = client_of(physicsClientId)
     named_link = integer(linkIndex, "linkIndex")
@@ -208,6 +218,12 @@ def enableJointForceTorqueSensor(
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> p.enableJointForceTorqueSensor(arm, 6)
+        >>> _ = p.stepSimulation()
+        >>> len(p.getJointState(arm, 6)[2])
+        6
     """
     problem = "Error: invalid jointIndex."
     access = body_access(bodyUniqueId, physicsClientId, problem, "Error: invalid bodyUniqueId")

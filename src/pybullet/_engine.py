@@ -44,6 +44,12 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
 
     Raises:
         pybullet.error: Not connected, or the motion of a body is no longer finite.
+
+    Examples:
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> p.getBasePositionAndOrientation(cube)[0][2] < 0.03
+        True
     """
     try:
         client = clients[physicsClientId]
@@ -72,6 +78,11 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.resetSimulation()
+        >>> p.getNumBodies()
+        0
     """
     client = client_of(physicsClientId)
     integer(flags, "flags")
@@ -97,6 +108,11 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
 
     Raises:
         pybullet.error: Not connected, or a number is not finite.
+
+    Examples:
+        >>> p.setGravity(0, 0, -1.62)
+        >>> p.getPhysicsEngineParameters()["gravityAccelerationZ"]
+        -1.62
     """
     client = client_of(physicsClientId)
     _change(client, gravity=(real(gravX, "gravX"), real(gravY, "gravY"), real(gravZ, "gravZ")))
@@ -114,6 +130,11 @@ def setTimeStep(timeStep: float, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected, or the time is not a finite number greater than 0.
+
+    Examples:
+        >>> p.setTimeStep(1 / 1000)
+        >>> p.getPhysicsEngineParameters()["fixedTimeStep"]
+        0.001
     """
     _set_time_step(client_of(physicsClientId), timeStep, "timeStep")
 
@@ -128,6 +149,9 @@ def setDefaultContactERP(defaultContactERP: float, physicsClientId: int = 0) -> 
 
     Raises:
         pybullet.error: Not connected, or it is not a finite number.
+
+    Examples:
+        >>> p.setDefaultContactERP(0.2)
     """
     _change(client_of(physicsClientId), contact_erp=real(defaultContactERP, "defaultContactERP"))
 
@@ -144,6 +168,9 @@ def setRealTimeSimulation(enableRealTimeSimulation: int, physicsClientId: int = 
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.setRealTimeSimulation(0)
     """
     client = client_of(physicsClientId)
     client.real_time = int(integer(enableRealTimeSimulation, "enableRealTimeSimulation") != 0)
@@ -168,6 +195,9 @@ def setInternalSimFlags(flags: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.setInternalSimFlags(0)
     """
     client_of(physicsClientId)
     integer(flags, "flags")
@@ -186,6 +216,10 @@ def getPhysicsEngineParameters(physicsClientId: int = 0) -> dict[str, int | floa
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getPhysicsEngineParameters()["numSolverIterations"]
+        50
     """
     client = client_of(physicsClientId)
     parameters = client.world.parameters
@@ -272,6 +306,11 @@ def setPhysicsEngineParameter(
 
     Raises:
         pybullet.error: Not connected, a number is not finite, or the time step is 0.
+
+    Examples:
+        >>> p.setPhysicsEngineParameter(numSubSteps=4, numSolverIterations=100)
+        >>> p.getPhysicsEngineParameters()["numSubSteps"]
+        4
     """
     client = client_of(physicsClientId)
     changes: dict[str, Any] = {}

@@ -51,6 +51,12 @@ def applyExternalForce(
     Raises:
         pybullet.error: Not connected, there is no such link or frame, or an argument is not three finite
             numbers.
+
+    Examples:
+        >>> p.applyExternalForce(cube, -1, [1, 0, 0], [0, 0, 0], p.LINK_FRAME)
+        >>> _ = p.stepSimulation()
+        >>> p.getBaseVelocity(cube)[0][0] > 0
+        True
     """
     client = client_of(physicsClientId)
     force = vector3(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
@@ -82,6 +88,12 @@ def applyExternalTorque(
     Raises:
         pybullet.error: Not connected, there is no such link or frame, or the torque is not three finite
             numbers.
+
+    Examples:
+        >>> p.applyExternalTorque(cube, -1, [0, 0, 1], p.WORLD_FRAME)
+        >>> _ = p.stepSimulation()
+        >>> p.getBaseVelocity(cube)[1][2] > 0
+        True
     """
     client = client_of(physicsClientId)
     torque = vector3(torqueObj, "torque needs a 3 coordinates [x,y,z].", "torqueObj")

@@ -47,6 +47,9 @@ def addUserDebugParameter(
 
     Raises:
         pybullet.error: Not connected, or a number is not finite.
+
+    Examples:
+        >>> slider = p.addUserDebugParameter("speed", 0, 2, 1)
     """
     slider = Slider(
         text(paramName, "paramName"),
@@ -70,6 +73,10 @@ def readUserDebugParameter(itemUniqueId: int, physicsClientId: int = 0) -> float
 
     Raises:
         pybullet.error: Not connected, or there is no such slider; in `DIRECT` there never is.
+
+    Examples:
+        >>> slider = p.addUserDebugParameter("speed", 0, 2, 1)
+        >>> speed = p.readUserDebugParameter(slider) if slider >= 0 else 1.0
     """
     item = integer(itemUniqueId, "itemUniqueId")
     value = client_of(physicsClientId).window.slider_value(item)
@@ -87,6 +94,9 @@ def removeAllUserParameters(physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.removeAllUserParameters()
     """
     client_of(physicsClientId).window.remove_sliders()
 
@@ -103,6 +113,11 @@ def getKeyboardEvents(physicsClientId: int = 0) -> dict[int, int]:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> keys = p.getKeyboardEvents()
+        >>> bool(keys.get(ord("q"), 0) & p.KEY_WAS_TRIGGERED)
+        False
     """
     return client_of(physicsClientId).window.key_events()
 
@@ -120,6 +135,10 @@ def getMouseEvents(physicsClientId: int = 0) -> tuple[tuple[int, float, float, i
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getMouseEvents()
+        ()
     """
     return tuple(client_of(physicsClientId).window.mouse_events())
 
@@ -152,6 +171,9 @@ def configureDebugVisualizer(
 
     Raises:
         pybullet.error: Not connected, an argument is not three finite numbers, or a number is not finite.
+
+    Examples:
+        >>> p.configureDebugVisualizer(p.COV_ENABLE_SHADOWS, 0)
     """
     client = client_of(physicsClientId)
     number, on = integer(flag, "flag"), integer(enable, "enable")
@@ -193,6 +215,9 @@ def resetDebugVisualizerCamera(
 
     Raises:
         pybullet.error: Not connected, the target is not three finite numbers, or a number is not finite.
+
+    Examples:
+        >>> p.resetDebugVisualizerCamera(1.5, 45, -30, [0, 0, 0.5])
     """
     client = client_of(physicsClientId)
     distance = real(cameraDistance, "cameraDistance")
@@ -218,6 +243,11 @@ def getDebugVisualizerCamera(physicsClientId: int = 0) -> tuple[Any, ...]:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> width, height, view = p.getDebugVisualizerCamera()[:3]
+        >>> width, height, len(view)
+        (0, 0, 16)
     """
     return client_of(physicsClientId).window.camera_info()
 
@@ -238,6 +268,10 @@ def getVREvents(
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getVREvents()
+        ()
     """
     client_of(physicsClientId)
     integer(deviceTypeFilter, "deviceTypeFilter")
@@ -264,6 +298,9 @@ def setVRCameraState(
 
     Raises:
         pybullet.error: Not connected, or an argument is not three, or four, finite numbers.
+
+    Examples:
+        >>> p.setVRCameraState(rootPosition=[0, 0, 1])
     """
     client_of(physicsClientId)
     if rootPosition is not None:

@@ -137,6 +137,13 @@ def calculateInverseKinematics(
 
     Raises:
         pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
+
+    Examples:
+        >>> angles = p.calculateInverseKinematics(arm, 6, [0.5, 0, 0.5], maxNumIterations=100)
+        >>> for joint, angle in enumerate(angles):
+        ...     p.resetJointState(arm, joint, angle)
+        >>> [round(x, 2) + 0.0 for x in p.getLinkState(arm, 6, computeForwardKinematics=1)[4]]
+        [0.5, 0.0, 0.5]
     """
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseKinematics")
     for name, value in (
@@ -208,6 +215,11 @@ def calculateInverseKinematics2(
 
     Raises:
         pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
+
+    Examples:
+        >>> angles = p.calculateInverseKinematics2(arm, [6], [[0.5, 0, 0.5]], maxNumIterations=100)
+        >>> len(angles)
+        7
     """
     client = client_of(physicsClientId)
     links = indices(endEffectorLinkIndices, _NO_POSITION, "endEffectorLinkIndices")

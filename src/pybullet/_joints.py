@@ -55,6 +55,14 @@ def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> info = p.getJointInfo(arm, 3)
+        >>> info[1].decode(), info[2] == p.JOINT_REVOLUTE
+        ('lbr_iiwa_joint_4', True)
+        >>> lower, upper = info[8:10]
+        >>> round(lower, 2), round(upper, 2)
+        (-2.09, 2.09)
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joint_infos[jointIndex]
@@ -81,6 +89,11 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> position, velocity, reaction, torque = p.getJointState(arm, 3)
+        >>> position, velocity
+        (0.0, 0.0)
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].state()
@@ -104,6 +117,10 @@ def getJointStates(
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> [state[0] for state in p.getJointStates(arm, range(7))]
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
     try:
         group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
@@ -135,6 +152,11 @@ def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: i
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> position, velocity, reaction, torque = p.getJointStateMultiDof(arm, 3)
+        >>> position, velocity
+        ((0.0,), (0.0,))
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].multi_dof_state()
@@ -158,6 +180,10 @@ def getJointStatesMultiDof(
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> [state[0] for state in p.getJointStatesMultiDof(arm, [0, 1])]
+        [(0.0,), (0.0,)]
     """
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(jointIndex, NO_INDICES, "jointIndex")
@@ -188,6 +214,11 @@ def resetJointState(
 
     Raises:
         pybullet.error: Not connected, there is no such body or joint, or a number is not finite.
+
+    Examples:
+        >>> p.resetJointState(arm, 3, 0.5, targetVelocity=0.1)
+        >>> p.getJointState(arm, 3)[:2]
+        (0.5, 0.1)
     """
     joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
     position, velocity = real(targetValue, "targetValue"), real(targetVelocity, "targetVelocity")
@@ -218,6 +249,11 @@ def resetJointStateMultiDof(
     Raises:
         pybullet.error: Not connected, there is no such body or joint, both lists are empty, or they hold
             something that is not a finite number.
+
+    Examples:
+        >>> p.resetJointStateMultiDof(arm, 3, [0.5], [0.1])
+        >>> p.getJointState(arm, 3)[:2]
+        (0.5, 0.1)
     """
     client_of(physicsClientId)
     position, velocity = _targets(targetValue, targetVelocity)
@@ -246,6 +282,11 @@ def resetJointStatesMultiDof(
     Raises:
         pybullet.error: Not connected, there is no such body or joint, the numbers of lists and of joints
             differ, both lists of a joint are empty, or one holds something that is not a finite number.
+
+    Examples:
+        >>> p.resetJointStatesMultiDof(arm, [2, 3], [[0.25], [0.5]])
+        >>> [state[0] for state in p.getJointStates(arm, [2, 3])]
+        [0.25, 0.5]
     """
     client = client_of(physicsClientId)
     requested = indices(jointIndices, NO_INDICES, "jointIndices")

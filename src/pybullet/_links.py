@@ -51,6 +51,11 @@ def getLinkState(
 
     Raises:
         pybullet.error: Not connected, there is no such body, or the index is negative.
+
+    Examples:
+        >>> state = p.getLinkState(arm, 6, computeForwardKinematics=1)
+        >>> [round(x, 3) for x in state[4]]
+        [0.0, 0.0, 1.261]
     """
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     index = integer(linkIndex, "linkIndex")
@@ -85,6 +90,10 @@ def getLinkStates(
 
     Raises:
         pybullet.error: Not connected, there is no such body, or the indices are not a sequence.
+
+    Examples:
+        >>> [round(state[4][2], 3) for state in p.getLinkStates(arm, [5, 6])]
+        [1.18, 1.261]
     """
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(linkIndices, "expected a sequence of joint indices", "linkIndices")

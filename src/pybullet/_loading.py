@@ -32,6 +32,10 @@ def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> import pybullet_data
+        >>> p.setAdditionalSearchPath(pybullet_data.getDataPath())
     """
     client_of(physicsClientId).search_path = Path(text(path, "path"))
 
@@ -87,6 +91,11 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         pybullet.error: Not connected, the file is missing or cannot be used (what follows PyBullet's text
             names file, line, element and reason), or the pose is not three and four finite numbers. The
             world is then as it was.
+
+    Examples:
+        >>> robot = p.loadURDF("r2d2.urdf", basePosition=[0, 2, 0.5])
+        >>> p.getNumJoints(robot)
+        15
     """
     options = _legacy_pose(arguments, keywords) or _named(arguments, keywords)
     name = text(fileName, "fileName")

@@ -59,6 +59,11 @@ def loadSDF(
     Raises:
         pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
             text names file, line, element and reason). The world is then as it was.
+
+    Examples:
+        >>> bodies = p.loadSDF("kuka_iiwa/model.sdf")
+        >>> [p.getNumJoints(body) for body in bodies]
+        [7]
     """
     name = text(sdfFileName, "sdfFileName")
     maximal = integer(useMaximalCoordinates, "useMaximalCoordinates")
@@ -104,6 +109,11 @@ def loadMJCF(
     Raises:
         pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
             text names file, line, element and reason). The world is then as it was.
+
+    Examples:
+        >>> bodies = p.loadMJCF("mjcf/inverted_pendulum.xml")
+        >>> p.getBodyInfo(bodies[-1])[1].decode()
+        'inverted pendulum'
     """
     name = text(mjcfFileName, "mjcfFileName")
     bits = max(0, integer(flags, "flags"))

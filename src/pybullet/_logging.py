@@ -75,6 +75,11 @@ def startStateLogging(
     Raises:
         pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, or a
             video is asked for and PyAV is not installed.
+
+    Examples:
+        >>> log = p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, folder + "/arm.bin", [arm])
+        >>> _ = p.stepSimulation()
+        >>> p.stopStateLogging(log)
     """
     client = client_of(physicsClientId)
     kind, path = integer(loggingType, "loggingType"), text(fileName, "fileName")
@@ -126,6 +131,10 @@ def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> log = p.startStateLogging(p.STATE_LOGGING_CONTACT_POINTS, folder + "/contacts.bin")
+        >>> p.stopStateLogging(log)
     """
     client = client_of(physicsClientId)
     with client.lock:
@@ -143,6 +152,12 @@ def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0, 
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> log = p.startStateLogging(p.STATE_LOGGING_PROFILE_TIMINGS, folder + "/trace")
+        >>> p.submitProfileTiming("plan")
+        >>> p.submitProfileTiming()
+        >>> p.stopStateLogging(log)
     """
     if spaced:
         eventName = by_name("submitProfileTiming", ("eventName ",), (), spaced)["eventName "]

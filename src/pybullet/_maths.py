@@ -57,6 +57,10 @@ def getQuaternionFromEuler(eulerAngles: Vector, physicsClientId: int = 0) -> Qua
 
     Raises:
         pybullet.error: It is not a sequence of three finite numbers.
+
+    Examples:
+        >>> [round(x, 4) for x in p.getQuaternionFromEuler([0, 0, 3.14159265 / 2])]
+        [0.0, 0.0, 0.7071, 0.7071]
     """
     roll, pitch, yaw = vector3(
         eulerAngles, "Euler angles need a 3 coordinates [roll, pitch, yaw].", "eulerAngles"
@@ -81,6 +85,10 @@ def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vect
 
     Raises:
         pybullet.error: It is not a sequence of four finite numbers.
+
+    Examples:
+        >>> [round(x, 4) + 0.0 for x in p.getEulerFromQuaternion([0, 0, 0.6, 0.8])]
+        [0.0, 0.0, 1.287]
     """
     return rpy_from_quaternion(vector4(quaternion, "Quaternion need a 4 components [x,y,z,w].", "quaternion"))
 
@@ -98,6 +106,10 @@ def getMatrixFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tup
 
     Raises:
         pybullet.error: It is not a sequence of four finite numbers, or its length is 0.
+
+    Examples:
+        >>> [round(x, 2) + 0.0 for x in p.getMatrixFromQuaternion([0, 0, 0.6, 0.8])]
+        [0.28, -0.96, 0.0, 0.96, 0.28, 0.0, 0.0, 0.0, 1.0]
     """
     rows = rotation_matrix(rotation(quaternion, "Couldn't convert quaternion [x,y,z,w].", "quaternion"))
     return (*rows[0], *rows[1], *rows[2])
@@ -121,6 +133,11 @@ def multiplyTransforms(
 
     Raises:
         pybullet.error: An argument has not three, or four, finite numbers, or a quaternion has length 0.
+
+    Examples:
+        >>> position, orientation = p.multiplyTransforms([1, 0, 0], [0, 0, 1, 0], [1, 0, 0], [0, 0, 0, 1])
+        >>> [round(x, 4) + 0.0 for x in position]
+        [0.0, 0.0, 0.0]
     """
     problem = "Invalid input: expected positionA [x,y,z], orientationA [x,y,z,w], positionB, orientationB."
     ax, ay, az = vector3(positionA, problem, "positionA")
@@ -146,6 +163,11 @@ def invertTransform(
 
     Raises:
         pybullet.error: An argument has not three, or four, finite numbers, or the quaternion has length 0.
+
+    Examples:
+        >>> position, orientation = p.invertTransform([1, 2, 3], [0, 0, 0, 1])
+        >>> position
+        (-1.0, -2.0, -3.0)
     """
     problem = "Invalid input: expected position [x,y,z] and orientation [x,y,z,w]."
     origin = vector3(position, problem, "position")
@@ -168,6 +190,10 @@ def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -
 
     Raises:
         pybullet.error: An argument has not three, or four, finite numbers.
+
+    Examples:
+        >>> [round(x, 4) + 0.0 for x in p.rotateVector([0, 0, 1, 0], [1, 2, 3])]
+        [-1.0, -2.0, 3.0]
     """
     problem = "Require quaternion with 4 components [x,y,z,w] and a vector [x,y,z]."
     q = vector4(quaternion, problem, "quaternion")
@@ -190,6 +216,10 @@ def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int 
 
     Raises:
         pybullet.error: The axis is not three finite numbers, or the angle is not finite.
+
+    Examples:
+        >>> [round(x, 4) for x in p.getQuaternionFromAxisAngle([0, 0, 1], 3.14159265)]
+        [0.0, 0.0, 1.0, 0.0]
     """
     problem = "Require axis [x,y,z] and angle."
     direction = vector3(axis, problem, "axis")
@@ -216,6 +246,11 @@ def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> 
 
     Raises:
         pybullet.error: It is not a sequence of four finite numbers.
+
+    Examples:
+        >>> axis, angle = p.getAxisAngleFromQuaternion([0, 0, 1, 0])
+        >>> axis, round(angle, 4)
+        ((0.0, 0.0, 1.0), 3.1416)
     """
     x, y, z, w = vector4(quaternion, "Require a quaternion with 4 components [x,y,z,w].", "quaternion")
     # This close to no rotation the answer hangs on the rounding of w to single precision.
@@ -245,6 +280,10 @@ def getQuaternionSlerp(
 
     Raises:
         pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
+
+    Examples:
+        >>> [round(x, 4) for x in p.getQuaternionSlerp([0, 0, 0, 1], [0, 0, 1, 0], 0.5)]
+        [0.0, 0.0, 0.7071, 0.7071]
     """
     a = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     b = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
@@ -280,6 +319,10 @@ def getDifferenceQuaternion(
 
     Raises:
         pybullet.error: An argument has not four finite numbers.
+
+    Examples:
+        >>> [round(x, 4) for x in p.getDifferenceQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8])]
+        [0.0, 0.0, 0.6, 0.8]
     """
     return _difference(
         vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart"),
@@ -303,6 +346,10 @@ def getAxisDifferenceQuaternion(
 
     Raises:
         pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
+
+    Examples:
+        >>> [round(x, 4) + 0.0 for x in p.getAxisDifferenceQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8])]
+        [0.0, 0.0, -1.287]
     """
     start = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     end = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
@@ -332,6 +379,10 @@ def calculateVelocityQuaternion(
 
     Raises:
         pybullet.error: An argument has not four finite numbers, or the time is 0 or not finite.
+
+    Examples:
+        >>> [round(x, 4) for x in p.calculateVelocityQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8], 0.1)]
+        [0.0, 0.0, 12.87]
     """
     start = vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     end = vector4(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")

@@ -110,6 +110,13 @@ def setJointMotorControl2(
 
     Raises:
         pybullet.error: Not connected, there is no such body, joint or mode, or a number is not finite.
+
+    Examples:
+        >>> p.setJointMotorControl2(arm, 3, p.POSITION_CONTROL, targetPosition=0.5, force=200)
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> round(p.getJointState(arm, 3)[0], 2)
+        0.5
     """
     try:
         check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
@@ -197,6 +204,13 @@ def setJointMotorControlArray(
     Raises:
         pybullet.error: Not connected, there is no such body, joint or mode, a list has not as many
             numbers as there are joints, or a number is not finite.
+
+    Examples:
+        >>> p.setJointMotorControlArray(arm, [0, 1], p.VELOCITY_CONTROL, targetVelocities=[0.5, 0])
+        >>> for _ in range(24):
+        ...     _ = p.stepSimulation()
+        >>> round(p.getJointState(arm, 0)[1], 2)
+        0.5
     """
     try:
         group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
@@ -298,6 +312,9 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
     Raises:
         pybullet.error: Not connected, there is no such body, joint or mode, the number of arguments is
             none of these, or a number is not finite.
+
+    Examples:
+        >>> p.setJointMotorControl(arm, 3, p.POSITION_CONTROL, 0.5, 200)
     """
     client_of(physicsClientId)
     count = len(arguments)

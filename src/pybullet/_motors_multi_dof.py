@@ -66,6 +66,9 @@ def setJointMotorControlMultiDof(
     Raises:
         pybullet.error: Not connected, there is no such body, joint or mode, or an argument holds something
             that is not a finite number.
+
+    Examples:
+        >>> p.setJointMotorControlMultiDof(arm, 3, p.POSITION_CONTROL, targetPosition=[0.5], force=[200])
     """
     client_of(physicsClientId)
     position = _list(targetPosition, "targetPosition", 4)
@@ -121,6 +124,11 @@ def setJointMotorControlMultiDofArray(
     Raises:
         pybullet.error: Not connected, there is no such body, joint or mode, or a list holds something that
             is not a finite number.
+
+    Examples:
+        >>> p.setJointMotorControlMultiDofArray(
+        ...     arm, [2, 3], p.POSITION_CONTROL, targetPositions=[[0.1], [0.5]], forces=[[200], [200]]
+        ... )
     """
     client = client_of(physicsClientId)
     mode = integer(controlMode, "controlMode")

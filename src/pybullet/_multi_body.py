@@ -97,6 +97,25 @@ def createMultiBody(
     Raises:
         pybullet.error: Not connected, the link lists are not equally long, an item is not what it should
             be, or the links form no tree. No body is made then.
+
+    Examples:
+        >>> ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+        >>> pendulum = p.createMultiBody(
+        ...     baseMass=0,
+        ...     linkMasses=[1],
+        ...     linkCollisionShapeIndices=[ball],
+        ...     linkVisualShapeIndices=[-1],
+        ...     linkPositions=[[0, 0, -1]],
+        ...     linkOrientations=[[0, 0, 0, 1]],
+        ...     linkInertialFramePositions=[[0, 0, 0]],
+        ...     linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        ...     linkParentIndices=[0],
+        ...     linkJointTypes=[p.JOINT_REVOLUTE],
+        ...     linkJointAxis=[[0, 1, 0]],
+        ...     basePosition=[0, 2, 2],
+        ... )
+        >>> p.getNumJoints(pendulum)
+        1
     """
     client = client_of(physicsClientId)
     maximal, bits = integer(useMaximalCoordinates, "useMaximalCoordinates"), integer(flags, "flags")

@@ -63,6 +63,11 @@ def getClosestPoints(
 
     Raises:
         pybullet.error: Not connected, or a position or orientation is not three, or four, finite numbers.
+
+    Examples:
+        >>> point = p.getClosestPoints(cube, plane, distance=1)[0]
+        >>> point[8] < 0.01
+        True
     """
     client = client_of(physicsClientId)
     world = client.world
@@ -133,6 +138,10 @@ def getOverlappingObjects(
 
     Raises:
         pybullet.error: Not connected, or a corner is not three finite numbers.
+
+    Examples:
+        >>> p.getOverlappingObjects([0.45, -0.05, 0.02], [0.55, 0.05, 0.1])
+        ((2, -1),)
     """
     world = client_of(physicsClientId).world
     lower = vector3(aabbMin, _BAD_CORNER, "aabbMin")

@@ -41,6 +41,10 @@ def loadPlugin(pluginPath: str, postFix: str | None = None, physicsClientId: int
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.loadPlugin("fileIOPlugin") >= 0
+        True
     """
     client = client_of(physicsClientId)
     name = text(pluginPath, "pluginPath")
@@ -69,6 +73,10 @@ def unloadPlugin(pluginUniqueId: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> plugin = p.loadPlugin("fileIOPlugin")
+        >>> p.unloadPlugin(plugin)
     """
     client = client_of(physicsClientId)
     number = integer(pluginUniqueId, "pluginUniqueId")
@@ -105,6 +113,11 @@ def executePluginCommand(
 
     Raises:
         pybullet.error: Not connected, or what should be a sequence of numbers is not.
+
+    Examples:
+        >>> plugin = p.loadPlugin("fileIOPlugin")
+        >>> p.executePluginCommand(plugin, "missing.zip", [p.AddFileIOAction, p.ZipFileIO])
+        -1
     """
     client = client_of(physicsClientId)
     number = integer(pluginUniqueId, "pluginUniqueId")

@@ -54,6 +54,11 @@ def rayTest(
 
     Raises:
         pybullet.error: Not connected, or a position is not three finite numbers.
+
+    Examples:
+        >>> body, link, fraction, position, normal = p.rayTest([0.5, 0, 1], [0.5, 0, -1])[0]
+        >>> body == cube, link, round(position[2], 3)
+        (True, -1, 0.05)
     """
     world = client_of(physicsClientId).world
     start = vector3(rayFromPosition, _BAD_ITEM, "rayFromPosition")
@@ -96,6 +101,11 @@ def rayTestBatch(
     Raises:
         pybullet.error: Not connected, positions are not lists of three finite numbers, their numbers
             differ, or there are too many.
+
+    Examples:
+        >>> hits = p.rayTestBatch([[0.5, 0, 1], [9, 9, 1]], [[0.5, 0, -1], [9, 9, 2]])
+        >>> [hit[0] for hit in hits]
+        [2, -1]
     """
     world = client_of(physicsClientId).world
     if rayFromPositions is None or rayToPositions is None:

@@ -45,6 +45,11 @@ def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected, or the file cannot be written.
+
+    Examples:
+        >>> p.saveWorld(folder + "/scene.py")
+        >>> "loadURDF" in open(folder + "/scene.py").read()
+        True
     """
     client = client_of(physicsClientId)
     name = text(worldFileName, "worldFileName")

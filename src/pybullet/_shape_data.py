@@ -69,6 +69,11 @@ def getCollisionShapeData(
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> shape = p.getCollisionShapeData(cube, -1)[0]
+        >>> shape[2] == p.GEOM_BOX, shape[3]
+        (True, (0.05, 0.05, 0.05))
     """
     client = client_of(physicsClientId)
     body, link = _body_and_link(client, objectUniqueId, linkIndex, _NO_COLLISION_DATA)
@@ -108,6 +113,11 @@ def getVisualShapeData(
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> look = p.getVisualShapeData(cube)[0]
+        >>> look[2] == p.GEOM_MESH, look[4].decode().endswith("cube.obj")
+        (True, True)
     """
     client = client_of(physicsClientId)
     number, bits = integer(objectUniqueId, "objectUniqueId"), integer(flags, "flags")
@@ -152,6 +162,11 @@ def getMeshData(
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> count, corners = p.getMeshData(arm, 3)
+        >>> count == len(corners)
+        True
     """
     client = client_of(physicsClientId)
     body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_MESH)
@@ -181,6 +196,11 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> lower, upper = p.getAABB(cube)
+        >>> [round(x, 3) for x in lower], [round(x, 3) for x in upper]
+        ([0.475, -0.025, 0.0], [0.525, 0.025, 0.05])
     """
     client = client_of(physicsClientId)
     if integer(bodyUniqueId, "bodyUniqueId") < 0:

@@ -34,6 +34,13 @@ def createSoftBodyAnchor(
 
     Raises:
         pybullet.error: Always: not connected, or the body is not soft.
+
+    Examples:
+        >>> try:
+        ...     p.createSoftBodyAnchor(cube, 0)
+        ... except p.error as problem:
+        ...     print(problem)
+        createSoftBodyAnchor failed. Body 2 is rigid; Carom has no soft bodies in this version.
     """
     for value, name in ((nodeIndex, "nodeIndex"), (bodyUniqueId, "bodyUniqueId"), (linkIndex, "linkIndex")):
         integer(value, name)
@@ -51,6 +58,13 @@ def getTetraMeshData(bodyUniqueId: int, flags: int = -1, physicsClientId: int = 
 
     Raises:
         pybullet.error: Always: not connected, or the body is not soft.
+
+    Examples:
+        >>> try:
+        ...     p.getTetraMeshData(cube)
+        ... except p.error as problem:
+        ...     print(problem)
+        getTetraMeshData failed Body 2 is rigid; Carom has no soft bodies in this version.
     """
     integer(flags, "flags")
     _refuse(bodyUniqueId, "getTetraMeshData failed", physicsClientId)
@@ -67,6 +81,13 @@ def resetMeshData(bodyUniqueId: int, vertices: Any, physicsClientId: int = 0) ->
 
     Raises:
         pybullet.error: Always: not connected, or the body is not soft.
+
+    Examples:
+        >>> try:
+        ...     p.resetMeshData(cube, [[0, 0, 0]])
+        ... except p.error as problem:
+        ...     print(problem)
+        resetMeshData failed Body 2 is rigid; Carom has no soft bodies in this version.
     """
     _refuse(bodyUniqueId, "resetMeshData failed", physicsClientId)
 

@@ -32,6 +32,13 @@ def saveState(physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> state = p.saveState()
+        >>> p.resetJointState(arm, 0, 1.0)
+        >>> p.restoreState(state)
+        >>> p.getJointState(arm, 0)[0]
+        0.0
     """
     client = client_of(physicsClientId)
     with client.lock:
@@ -53,6 +60,13 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
     Raises:
         pybullet.error: Not connected, there is no such state or file, the file cannot be used, or bodies
             have come or gone since, or have other joints. The world is then as it was.
+
+    Examples:
+        >>> state = p.saveState()
+        >>> p.resetBasePositionAndOrientation(cube, [0, 0, 9], [0, 0, 0, 1])
+        >>> p.restoreState(stateId=state)
+        >>> p.getBasePositionAndOrientation(cube)[0]
+        (0.5, 0.0, 0.025)
     """
     client = client_of(physicsClientId)
     number = integer(stateId, "stateId")
@@ -82,6 +96,10 @@ def removeState(stateUniqueId: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> state = p.saveState()
+        >>> p.removeState(state)
     """
     client = client_of(physicsClientId)
     with client.lock:
@@ -101,6 +119,10 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected, or the file cannot be written.
+
+    Examples:
+        >>> p.saveBullet(folder + "/scene.bullet")
+        >>> p.restoreState(fileName=folder + "/scene.bullet")
     """
     client = client_of(physicsClientId)
     path = text(bulletFileName, "bulletFileName")
@@ -129,6 +151,12 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
     Raises:
         pybullet.error: Not connected, the file is missing or damaged, or it is no file of `saveBullet`.
             The world is then as it was.
+
+    Examples:
+        >>> p.saveBullet(folder + "/scene.bullet")
+        >>> p.resetSimulation()
+        >>> p.loadBullet(folder + "/scene.bullet")
+        (0, 1, 2)
     """
     client = client_of(physicsClientId)
     path = find_file(client, text(bulletFileName, "bulletFileName"), _CANNOT_LOAD)

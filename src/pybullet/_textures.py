@@ -41,6 +41,10 @@ def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected, or the file is missing or broken.
+
+    Examples:
+        >>> texture = p.loadTexture("checker_blue.png")
+        >>> p.changeVisualShape(cube, -1, textureUniqueId=texture)
     """
     client = client_of(physicsClientId)
     name = text(textureFilename, "textureFilename")
@@ -77,6 +81,10 @@ def changeTexture(
     Raises:
         pybullet.error: Not connected, there is no such texture, or the numbers are not 3 * width * height
             whole numbers from 0 to 255.
+
+    Examples:
+        >>> texture = p.loadTexture("checker_blue.png")
+        >>> p.changeTexture(texture, [255, 0, 0] * 4, 2, 2)
     """
     client = client_of(physicsClientId)
     number = integer(textureUniqueId, "textureUniqueId")
@@ -121,6 +129,11 @@ def changeVisualShape(
     Raises:
         pybullet.error: Not connected, there is no such texture, or a colour is not four, or three, finite
             numbers.
+
+    Examples:
+        >>> p.changeVisualShape(cube, -1, rgbaColor=[1, 0, 0, 1])
+        >>> p.getVisualShapeData(cube)[0][7]
+        (1.0, 0.0, 0.0, 1.0)
     """
     client = client_of(physicsClientId)
     shape, texture = integer(shapeIndex, "shapeIndex"), integer(textureUniqueId, "textureUniqueId")
@@ -164,7 +177,26 @@ def resetVisualShapeData(
     flags: int = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """The older name of `changeVisualShape`; it takes the same arguments and does the same."""
+    """The older name of `changeVisualShape`; it does the same.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        shapeIndex: Which of the link's visual shapes, from 0; -1 for all.
+        textureUniqueId: From `loadTexture`; -1 takes the texture off, -2 leaves it.
+        rgbaColor: Red, green, blue, opacity, each from 0 to 1.
+        specularColor: Red, green, blue of highlights, each from 0 to 1.
+        flags: `VISUAL_SHAPE_DOUBLE_SIDED`, or 0; -1 leaves it.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: As `changeVisualShape` does.
+
+    Examples:
+        >>> p.resetVisualShapeData(cube, -1, rgbaColor=[0, 1, 0, 1])
+        >>> p.getVisualShapeData(cube)[0][7]
+        (0.0, 1.0, 0.0, 1.0)
+    """
     changeVisualShape(
         objectUniqueId,
         linkIndex,

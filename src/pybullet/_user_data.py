@@ -47,6 +47,11 @@ def addUserData(
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
+
+    Examples:
+        >>> data = p.addUserData(cube, "colour", "green")
+        >>> p.getUserData(data)
+        b'green'
     """
     client = client_of(physicsClientId)
     name, content = _c_string(key, "key"), _c_string(value, "value")
@@ -69,6 +74,11 @@ def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> data = p.addUserData(cube, "colour", "green")
+        >>> p.getUserData(data).decode()
+        'green'
     """
     client = client_of(physicsClientId)
     datum = client.world.user_data.get(integer(userDataId, "userDataId"))
@@ -97,6 +107,11 @@ def getUserDataId(
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> data = p.addUserData(cube, "colour", "green")
+        >>> p.getUserDataId(cube, "colour") == data
+        True
     """
     client = client_of(physicsClientId)
     datum = client.world.user_data.find(
@@ -121,6 +136,10 @@ def getNumUserData(bodyUniqueId: int, physicsClientId: int = 0) -> int:
 
     Raises:
         pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getNumUserData(cube)
+        0
     """
     client = client_of(physicsClientId)
     return len(client.world.user_data.of_body(integer(bodyUniqueId, "bodyUniqueId")))
@@ -142,6 +161,11 @@ def getUserDataInfo(
 
     Raises:
         pybullet.error: Not connected, or there are not that many texts.
+
+    Examples:
+        >>> data = p.addUserData(cube, "colour", "green")
+        >>> p.getUserDataInfo(cube, 0)[1]
+        b'colour'
     """
     client = client_of(physicsClientId)
     number, index = integer(bodyUniqueId, "bodyUniqueId"), integer(userDataIndex, "userDataIndex")
@@ -162,6 +186,12 @@ def removeUserData(userDataId: int, physicsClientId: int = 0) -> None:
 
     Raises:
         pybullet.error: Not connected, or there is no such id.
+
+    Examples:
+        >>> data = p.addUserData(cube, "colour", "green")
+        >>> p.removeUserData(data)
+        >>> p.getNumUserData(cube)
+        0
     """
     client = client_of(physicsClientId)
     number = integer(userDataId, "userDataId")
@@ -183,6 +213,9 @@ def syncUserData(bodyUniqueId: Any = -1, physicsClientId: int = 0, *, bodyUnique
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
+
+    Examples:
+        >>> p.syncUserData(arm)
     """
     client = client_of(physicsClientId)
     problem = "Error in syncUserInfo command."

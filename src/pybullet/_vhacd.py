@@ -71,6 +71,11 @@ def vhacd(
 
     Raises:
         pybullet.error: CoACD is not installed, or a file cannot be read or written.
+
+    Examples:
+        >>> import pybullet_data
+        >>> duck = pybullet_data.getDataPath() + "/duck.obj"
+        >>> p.vhacd(duck, folder + "/pieces.obj", folder + "/log.txt")  # doctest: +SKIP
     """
     source, target = text(fileNameIn, "fileNameIn"), text(fileNameOut, "fileNameOut")
     log = text(fileNameLogging, "fileNameLogging")

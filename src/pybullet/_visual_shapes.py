@@ -83,6 +83,10 @@ def createVisualShape(
 
     Raises:
         pybullet.error: Not connected, an unknown type, or a size that is missing, negative or not finite.
+
+    Examples:
+        >>> look = p.createVisualShape(p.GEOM_SPHERE, radius=0.1, rgbaColor=[1, 0, 0, 1])
+        >>> ball = p.createMultiBody(baseVisualShapeIndex=look, basePosition=[0, 2, 1])
     """
     client = client_of(physicsClientId)
     kind = integer(shapeType, "shapeType")
@@ -152,6 +156,13 @@ def createVisualShapeArray(
 
     Raises:
         pybullet.error: Not connected, an argument is not a sequence, or no part can be made.
+
+    Examples:
+        >>> look = p.createVisualShapeArray(
+        ...     [p.GEOM_SPHERE, p.GEOM_SPHERE],
+        ...     radii=[0.1, 0.2],
+        ...     visualFramePositions=[[0, 0, 0], [0, 0, 0.3]],
+        ... )
     """
     client = client_of(physicsClientId)
     columns = ShapeColumns(

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pybullet
+from pybullet import _constants
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -54,12 +55,54 @@ NOTES = {
     "_gui": "The window is [a page in the browser](viewer.md).",
 }
 
+# What the examples of the reference start from. They are run as tests.
+EXAMPLE_WORLD = """\
+import pybullet as p
+import pybullet_data
+
+p.connect(p.DIRECT)
+p.setAdditionalSearchPath(pybullet_data.getDataPath())
+p.setGravity(0, 0, -9.8)
+plane = p.loadURDF("plane.urdf")
+arm = p.loadURDF("kuka_iiwa/model.urdf", useFixedBase=1)
+cube = p.loadURDF("cube_small.urdf", [0.5, 0, 0.025])
+"""
+
 LIMITED = {
     "connect": "there are no physics servers",
-    "configureDebugVisualizer": "reflections, single-step rendering and the flags of virtual reality are "
-    "recorded and have no effect",
+    "configureDebugVisualizer": "the flags of virtual reality are recorded and have no effect",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
+}
+
+# Constants that can be given and change nothing, or that no function takes or returns, and why.
+_NOBODY_TAKES_IT = "no function takes it, nor does one in PyBullet"
+_NO_SOFT_BODIES = "no effect yet: there are no soft bodies"
+_NO_DEVICES = "no effect: devices of virtual reality are never there"
+WITHOUT_EFFECT = {
+    **dict.fromkeys(
+        ["CONTACT_REPORT_EXISTING", "CONTACT_RECOMPUTE_CLOSEST", "SENSOR_FORCE_TORQUE"], _NOBODY_TAKES_IT
+    ),
+    **{name: _NOBODY_TAKES_IT for name in vars(_constants) if name.startswith("IK_HAS_")},
+    **{name: _NO_DEVICES for name in vars(_constants) if name.startswith(("VR_", "COV_ENABLE_VR_"))},
+    **dict.fromkeys(
+        ["RESET_USE_DEFORMABLE_WORLD", "RESET_USE_REDUCED_DEFORMABLE_WORLD", "MESH_DATA_SIMULATION_MESH"],
+        _NO_SOFT_BODIES,
+    ),
+    "RESET_USE_DISCRETE_DYNAMICS_WORLD": "no effect: worlds of rigid bodies are all alike",
+    "RESET_USE_SIMPLE_BROADPHASE": "no effect: pairs are found in one way",
+    "URDF_GLOBAL_VELOCITIES_MB": "no effect: bodies move the same with it in PyBullet, but for rounding",
+    "URDF_ENABLE_CACHED_GRAPHICS_SHAPES": "no effect: shapes that are the same are always shared",
+    "URDF_INITIALIZE_SAT_FEATURES": "no effect: faces and edges are always known",
+    "GEOM_CONCAVE_INTERNAL_EDGE": "no effect",
+    "CONSTRAINT_SOLVER_LCP_PGS": "no effect yet: solved as type 1",
+    "CONSTRAINT_SOLVER_LCP_DANTZIG": "no effect yet: solved as type 1",
+    "ER_TINY_RENDERER": "no effect: there is one renderer",
+    "ER_BULLET_HARDWARE_OPENGL": "no effect: there is one renderer",
+    "STATE_LOGGING_MINITAUR": "logs nothing, as PyBullet does for bodies that are no Minitaur",
+    "STATE_LOGGING_CUSTOM_TIMER": "logs nothing",
+    "STATE_LOGGING_ALL_COMMANDS": "no file is written; a warning says so",
+    "STATE_REPLAY_ALL_COMMANDS": "nothing is replayed; a warning says so",
 }
 
 MEMBERS = """
@@ -98,6 +141,32 @@ def sections() -> dict[str, tuple[str, list[str]]]:
     return {**ordered, UNAVAILABLE: ("Not available yet", sorted(missing))}
 
 
+def constants() -> dict[str, dict[str, int]]:
+    """The constants by the titles they have in their file, with their values."""
+    groups: dict[str, dict[str, int]] = {}
+    title = ""
+    for line in inspect.getsource(_constants).splitlines():
+        if line.startswith("# "):
+            title = line.removeprefix("# ")
+        elif " = " in line:
+            name = line.partition(" = ")[0]
+            groups.setdefault(title, {})[name] = getattr(pybullet, name)
+    return groups
+
+
+def list_of_constants() -> list[str]:
+    """The part of the status that tells of constants."""
+    groups = constants()
+    count = sum(map(len, groups.values()))
+    lines = ["", "## Constants", ""]
+    lines.append(f"All {count} constants are there with their values. Some change nothing:")
+    for title, group in groups.items():
+        lines += ["", f"### {title}", "", "| constant | value | state |", "|---|---|---|"]
+        for name, value in group.items():
+            lines.append(f"| `{name}` | {value} | {WITHOUT_EFFECT.get(name, 'works')} |")
+    return lines
+
+
 def status() -> str:
     """The page that lists all functions and how far they are."""
     available = functions()
@@ -110,7 +179,7 @@ def status() -> str:
         "",
         f"Of the {len(available)} functions of PyBullet 3.2.7, {len(available) - len(missing)} work in this "
         "version of Carom, with",
-        "every keyword, default, return layout and error. All constants are there with their values.",
+        "every keyword, default, return layout and error. The [constants](#constants) come last.",
     ]
     for file, (title, names) in parts.items():
         lines += ["", f"## {title}", ""]
@@ -129,6 +198,7 @@ def status() -> str:
             "",
             ", ".join(f"`{name}`" for name in missing) + ".",
         ]
+    lines += list_of_constants()
     return "\n".join(lines) + "\n"
 
 
@@ -142,6 +212,12 @@ def reference() -> str:
         "The drop-in, function by function. Keywords, defaults and return values are PyBullet's; the texts",
         "are ours. Everything is a name of the module `pybullet`. Functions that are not built yet are",
         "listed under [status](../status.md).",
+        "",
+        "The examples start from this world; `folder` is an empty directory.",
+        "",
+        "```python",
+        *EXAMPLE_WORLD.splitlines(),
+        "```",
     ]
     for file, (title, _) in sections().items():
         if file != UNAVAILABLE:
