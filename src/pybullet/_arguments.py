@@ -19,6 +19,7 @@ _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
 # Lists, tuples, ranges and NumPy arrays are all iterables to a type checker, but not all sequences.
 Vector = Iterable[float]
 Indices = Iterable[int]
+Vectors = Iterable[Vector]
 
 
 def integer(value: Any, name: str) -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.pose import IDENTITY
-from pybullet._arguments import Vector, integer, real, text
+from pybullet._arguments import Indices, Vector, Vectors, integer, real, text
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH
@@ -25,7 +25,7 @@ from pybullet._shape_columns import ShapeColumns
 from pybullet._shape_registry import CollisionShape
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
 __all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollisionShape"]
 
@@ -47,10 +47,10 @@ def createCollisionShape(
     flags: int = 0,
     collisionFramePosition: Vector | None = None,
     collisionFrameOrientation: Vector | None = None,
-    vertices: Any = None,
-    indices: Any = None,
+    vertices: Vectors | None = None,
+    indices: Indices | None = None,
     heightfieldTextureScaling: float = 1,
-    heightfieldData: Any = None,
+    heightfieldData: Vector | None = None,
     numHeightfieldRows: int = -1,
     numHeightfieldColumns: int = -1,
     replaceHeightfieldIndex: int = -1,
@@ -139,15 +139,15 @@ def createCollisionShape(
 @exported
 def createCollisionShapeArray(
     shapeTypes: Sequence[int],
-    radii: Any = None,
-    halfExtents: Any = None,
-    lengths: Any = None,
-    fileNames: Any = None,
-    meshScales: Any = None,
-    planeNormals: Any = None,
-    flags: Any = None,
-    collisionFramePositions: Any = None,
-    collisionFrameOrientations: Any = None,
+    radii: Vector | None = None,
+    halfExtents: Vectors | None = None,
+    lengths: Vector | None = None,
+    fileNames: Iterable[str] | None = None,
+    meshScales: Vectors | None = None,
+    planeNormals: Vectors | None = None,
+    flags: Indices | None = None,
+    collisionFramePositions: Vectors | None = None,
+    collisionFrameOrientations: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> int:
     """Makes one collision shape of several parts.

@@ -11,6 +11,7 @@ from pybullet._algebra import joint_coordinates
 from pybullet._arguments import (
     Indices,
     Vector,
+    Vectors,
     indices,
     integer,
     numbers,
@@ -179,7 +180,7 @@ def calculateInverseKinematics(
 def calculateInverseKinematics2(
     bodyUniqueId: int,
     endEffectorLinkIndices: Indices,
-    targetPositions: Any,
+    targetPositions: Vectors,
     lowerLimits: Vector | None = None,
     upperLimits: Vector | None = None,
     jointRanges: Vector | None = None,

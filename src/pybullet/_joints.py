@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pybullet._arguments import Indices, Vector, indices, integer, numbers, real, sequence
+from pybullet._arguments import Indices, Vector, Vectors, indices, integer, numbers, real, sequence
 from pybullet._builtin import exported
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
@@ -266,8 +266,8 @@ def resetJointStateMultiDof(
 def resetJointStatesMultiDof(
     bodyUniqueId: int,
     jointIndices: Indices,
-    targetValues: Any,
-    targetVelocities: Any = None,
+    targetValues: Vectors,
+    targetVelocities: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> None:
     """Puts several joints somewhere: `resetJointStateMultiDof` for each. Nothing moves if one is wrong.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose, Robot
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
-from pybullet._arguments import Vector, integer, real, rotation, sequence, vector3
+from pybullet._arguments import Indices, Vector, Vectors, integer, real, rotation, sequence, vector3
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
@@ -37,6 +37,55 @@ _ORIGIN = (0.0, 0.0, 0.0)
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
+@overload
+def createMultiBody(
+    baseMass: float = 0,
+    baseCollisionShapeIndex: int = -1,
+    baseVisualShapeIndex: int = -1,
+    basePosition: Vector | None = None,
+    baseOrientation: Vector | None = None,
+    baseInertialFramePosition: Vector | None = None,
+    baseInertialFrameOrientation: Vector | None = None,
+    linkMasses: Vector | None = None,
+    linkCollisionShapeIndices: Indices | None = None,
+    linkVisualShapeIndices: Indices | None = None,
+    linkPositions: Vectors | None = None,
+    linkOrientations: Vectors | None = None,
+    linkInertialFramePositions: Vectors | None = None,
+    linkInertialFrameOrientations: Vectors | None = None,
+    linkParentIndices: Indices | None = None,
+    linkJointTypes: Indices | None = None,
+    linkJointAxis: Vectors | None = None,
+    useMaximalCoordinates: int = 0,
+    flags: int = -1,
+    batchPositions: None = None,
+    physicsClientId: int = 0,
+) -> int: ...
+@overload
+def createMultiBody(
+    baseMass: float = 0,
+    baseCollisionShapeIndex: int = -1,
+    baseVisualShapeIndex: int = -1,
+    basePosition: Vector | None = None,
+    baseOrientation: Vector | None = None,
+    baseInertialFramePosition: Vector | None = None,
+    baseInertialFrameOrientation: Vector | None = None,
+    linkMasses: Vector | None = None,
+    linkCollisionShapeIndices: Indices | None = None,
+    linkVisualShapeIndices: Indices | None = None,
+    linkPositions: Vectors | None = None,
+    linkOrientations: Vectors | None = None,
+    linkInertialFramePositions: Vectors | None = None,
+    linkInertialFrameOrientations: Vectors | None = None,
+    linkParentIndices: Indices | None = None,
+    linkJointTypes: Indices | None = None,
+    linkJointAxis: Vectors | None = None,
+    useMaximalCoordinates: int = 0,
+    flags: int = -1,
+    *,
+    batchPositions: Vectors,
+    physicsClientId: int = 0,
+) -> tuple[int, ...]: ...
 @exported
 def createMultiBody(
     baseMass: float = 0,
@@ -46,21 +95,21 @@ def createMultiBody(
     baseOrientation: Vector | None = None,
     baseInertialFramePosition: Vector | None = None,
     baseInertialFrameOrientation: Vector | None = None,
-    linkMasses: Any = None,
-    linkCollisionShapeIndices: Any = None,
-    linkVisualShapeIndices: Any = None,
-    linkPositions: Any = None,
-    linkOrientations: Any = None,
-    linkInertialFramePositions: Any = None,
-    linkInertialFrameOrientations: Any = None,
-    linkParentIndices: Any = None,
-    linkJointTypes: Any = None,
-    linkJointAxis: Any = None,
+    linkMasses: Vector | None = None,
+    linkCollisionShapeIndices: Indices | None = None,
+    linkVisualShapeIndices: Indices | None = None,
+    linkPositions: Vectors | None = None,
+    linkOrientations: Vectors | None = None,
+    linkInertialFramePositions: Vectors | None = None,
+    linkInertialFrameOrientations: Vectors | None = None,
+    linkParentIndices: Indices | None = None,
+    linkJointTypes: Indices | None = None,
+    linkJointAxis: Vectors | None = None,
     useMaximalCoordinates: int = 0,
     flags: int = -1,
-    batchPositions: Any = None,
+    batchPositions: Vectors | None = None,
     physicsClientId: int = 0,
-) -> Any:
+) -> int | tuple[int, ...]:
     """Makes a body: a base and, if there are link lists, links on joints.
 
     Links are called `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`...,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NoReturn
 
-from pybullet._arguments import integer
+from pybullet._arguments import Vector, Vectors, integer
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._errors import fail
@@ -19,7 +19,7 @@ def createSoftBodyAnchor(
     nodeIndex: int,
     bodyUniqueId: int = -1,
     linkIndex: int = -1,
-    bodyFramePosition: Any = None,
+    bodyFramePosition: Vector | None = None,
     physicsClientId: int = 0,
 ) -> int:
     """Ties a point of a soft body to a body. As for any rigid body in PyBullet, it fails.
@@ -71,7 +71,7 @@ def getTetraMeshData(bodyUniqueId: int, flags: int = -1, physicsClientId: int = 
 
 
 @exported
-def resetMeshData(bodyUniqueId: int, vertices: Any, physicsClientId: int = 0) -> None:
+def resetMeshData(bodyUniqueId: int, vertices: Vectors, physicsClientId: int = 0) -> None:
     """Moves the points of a soft body. As for any rigid body in PyBullet, it fails.
 
     Args:

@@ -61,7 +61,7 @@ def _parameter(argument: ast.arg, default: ast.expr | None, kind: Any) -> Parame
     return Parameter(argument.arg, kind, default=value)
 
 
-loadSoftBody = _later(
+loadSoftBody: Callable[..., Any] = _later(
     "loadSoftBody",
     "fileName, basePosition=None, baseOrientation=None, scale=-1, mass=-1, collisionMargin=-1, "
     "useMassSpring=0, useBendingSprings=0, useNeoHookean=0, springElasticStiffness=1, "
@@ -69,4 +69,6 @@ loadSoftBody = _later(
     "NeoHookeanMu=1, NeoHookeanLambda=1, NeoHookeanDamping=0.1, frictionCoeff=0, useFaceContact=0, "
     'useSelfCollision=0, repulsionStiffness=0.5, simFileName="", physicsClientId=0',
 )
-unsupportedChangeScaling = _later("unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0")
+unsupportedChangeScaling: Callable[..., Any] = _later(
+    "unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0"
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
-from pybullet._arguments import Vector, integer, text, vector3, vector4
+from pybullet._arguments import Indices, Vector, Vectors, integer, text, vector3, vector4
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import GEOM_MESH
@@ -22,7 +22,7 @@ from pybullet._shape_arguments import (
 from pybullet._shape_columns import Column, ShapeColumns
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -49,10 +49,10 @@ def createVisualShape(
     specularColor: Vector | None = None,
     visualFramePosition: Vector | None = None,
     visualFrameOrientation: Vector | None = None,
-    vertices: Any = None,
-    indices: Any = None,
-    normals: Any = None,
-    uvs: Any = None,
+    vertices: Vectors | None = None,
+    indices: Indices | None = None,
+    normals: Vectors | None = None,
+    uvs: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> int:
     """Makes a visual shape, from which `createMultiBody` makes what is seen of bodies.
@@ -120,16 +120,16 @@ def createVisualShape(
 @exported
 def createVisualShapeArray(
     shapeTypes: Sequence[int],
-    radii: Any = None,
-    halfExtents: Any = None,
-    lengths: Any = None,
-    fileNames: Any = None,
-    meshScales: Any = None,
-    planeNormals: Any = None,
-    flags: Any = None,
-    rgbaColors: Any = None,
-    visualFramePositions: Any = None,
-    visualFrameOrientations: Any = None,
+    radii: Vector | None = None,
+    halfExtents: Vectors | None = None,
+    lengths: Vector | None = None,
+    fileNames: Iterable[str] | None = None,
+    meshScales: Vectors | None = None,
+    planeNormals: Vectors | None = None,
+    flags: Indices | None = None,
+    rgbaColors: Vectors | None = None,
+    visualFramePositions: Vectors | None = None,
+    visualFrameOrientations: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> int:
     """Makes one visual shape of several parts.

@@ -97,6 +97,7 @@ WITHOUT_EFFECT = {
     "GEOM_CONCAVE_INTERNAL_EDGE": "no effect",
     "CONSTRAINT_SOLVER_LCP_PGS": "no effect yet: solved as type 1",
     "CONSTRAINT_SOLVER_LCP_DANTZIG": "no effect yet: solved as type 1",
+    "COV_ENABLE_TINY_RENDERER": "no effect: there is one renderer",
     "ER_TINY_RENDERER": "no effect: there is one renderer",
     "ER_BULLET_HARDWARE_OPENGL": "no effect: there is one renderer",
     "STATE_LOGGING_MINITAUR": "logs nothing, as PyBullet does for bodies that are no Minitaur",
