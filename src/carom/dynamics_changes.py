@@ -101,6 +101,7 @@ def _set_mass(body: Body, link: int, mass: float) -> None:
     _write(body, link)
     if link == BASE and (mass > 0.0) == body.fixed_base:
         body.world.set_base_freedom(body, free=mass > 0.0)
+        body.world.touch.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
 
 
 def _set_inertia(body: Body, link: int, inertia: tuple[float, float, float]) -> None:

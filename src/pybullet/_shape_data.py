@@ -85,7 +85,7 @@ def getCollisionShapeData(
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     result = []
     for collision in spec.collisions:
-        described = _collision_geometry(client, collision.geometry, implicit)
+        described = _collision_geometry(collision.geometry, implicit)
         if described is not None:
             kind, dimensions, file = described
             rotation, position = placement(spec.inertial_frame, collision.frame)
@@ -133,7 +133,7 @@ def getVisualShapeData(
         appearance.number_textures(client.world)
         for link in range(BASE, body.joint_count):
             for look in appearance.shapes(body, link):
-                described = _visual_geometry(client, look.geometry)
+                described = _visual_geometry(look.geometry)
                 frame = look.frame
                 data = (body.id, link, *described, frame.position, frame.orientation, look.rgba)
                 result.append((*data, look.texture) if bits & VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS else data)
@@ -234,9 +234,7 @@ def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) 
     return body, link
 
 
-def _collision_geometry(
-    client: Client, geometry: Geometry, implicit_cylinder: bool
-) -> tuple[int, Vector3, bytes] | None:
+def _collision_geometry(geometry: Geometry, implicit_cylinder: bool) -> tuple[int, Vector3, bytes] | None:
     """Type, dimensions and file of a collision shape; None for one that is not reported."""
     match geometry:
         case Sphere(radius):
@@ -250,7 +248,7 @@ def _collision_geometry(
         case Plane(normal):
             return GEOM_PLANE, normal, b""
         case Mesh(_, scale):
-            return GEOM_MESH, scale, _file_name(client, geometry)
+            return GEOM_MESH, scale, _file_name(geometry)
         case Cylinder() | ConvexHull() | TriangleMesh():
             file, dimensions = _UNKNOWN_FILE
             return GEOM_MESH, dimensions, file
@@ -258,7 +256,7 @@ def _collision_geometry(
             return None
 
 
-def _visual_geometry(client: Client, geometry: Geometry) -> tuple[int, Vector3, bytes]:
+def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
     """Type, dimensions and file of a visual shape."""
     match geometry:
         case Sphere(radius):
@@ -272,7 +270,7 @@ def _visual_geometry(client: Client, geometry: Geometry) -> tuple[int, Vector3, 
         case Plane():
             return GEOM_PLANE, (0.0, 0.0, 0.0), b""
         case Mesh(_, scale):
-            return GEOM_MESH, scale, _file_name(client, geometry)
+            return GEOM_MESH, scale, _file_name(geometry)
         case ConvexHull(scale=scale) | TriangleMesh(scale=scale):
             return GEOM_MESH, scale, b""
         case Heightfield():
@@ -285,11 +283,6 @@ _SIGNED_DISTANCE_FIELD = 8
 """What PyBullet calls the type of a signed distance field; it has no name for it."""
 
 
-def _file_name(client: Client, mesh: Mesh) -> bytes:
-    """The file of a mesh as PyBullet names it: as asked for, or without the additional search path."""
-    if mesh.asked_for:
-        return mesh.asked_for.encode()
-    path = mesh.path
-    if client.search_path is not None and path.is_relative_to(client.search_path):
-        path = path.relative_to(client.search_path)
-    return str(path).encode()
+def _file_name(mesh: Mesh) -> bytes:
+    """The file of a mesh: as a script asked for it, or where a robot file's reference was found."""
+    return (mesh.asked_for or str(mesh.path)).encode()

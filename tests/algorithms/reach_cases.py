@@ -50,7 +50,7 @@ WAYS = {
     "default": Way(1000),
     "100 iterations": Way(1000, options={"maxNumIterations": 100, "residualThreshold": 1e-5}),
     "1000 iterations": Way(1000, options=_PATIENT),
-    "oriented": Way(200, oriented=True),
+    "oriented": Way(200, oriented=True, options={"maxNumIterations": 20}),
     "oriented, 1000 iterations": Way(200, oriented=True, options=_PATIENT),
     "limits and rest poses": Way(300, limited=True, options=_PATIENT),
     "limits and rest poses, oriented": Way(200, oriented=True, limited=True, options=_PATIENT),

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.algorithms.reach_cases import ARMS, CLOSE, ROBOTS, WAYS, Reach, single_calls, two_ends
+from tests.algorithms.reach_cases import ARMS, CLOSE, ROBOTS, WAYS, Reach, Way, single_calls, two_ends
 from tests.physics.aba_reference import rotation
 from tests.physics.robots import random_tree
 
@@ -64,6 +64,12 @@ def test_where_pybullet_arrives_the_answer_is_the_same(reach, name, title):
             assert_allclose(reach.ask(way, target), answer, rtol=0, atol=2e-6)
             compared += 1
     assert compared or title not in ("100 iterations", "1000 iterations")
+
+
+def test_an_orientation_without_a_word_about_accuracy_gets_pybullets_answer_arrived_or_not(reach, name):
+    asked, way = ORACLE[name]["ways"]["oriented"]["answers"], Way(200, oriented=True)
+    for target, answer in zip(reach.targets(len(asked)), asked, strict=True):
+        assert_allclose(reach.ask(way, target), answer, rtol=0, atol=1e-6)
 
 
 def test_single_calls_agree_with_pybullet(reach, name):

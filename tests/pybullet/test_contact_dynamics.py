@@ -119,3 +119,17 @@ def test_fast_bodies_with_swept_spheres_meet(client: int) -> None:
     assert positions[0] < positions[1]
     momentum = sum(p.getBaseVelocity(body)[0][0] for body in (left, right))
     assert momentum == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("masses", [(1.0,), (0.0, 2.0)])
+def test_a_base_that_may_move_again_collides_with_fixed_ones(client: int, masses: tuple[float, ...]) -> None:
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5, 0.5, 0.5])
+    p.createMultiBody(0, box)
+    upper = p.createMultiBody(0 if len(masses) == 1 else 1, box, basePosition=[0, 0, 1.2])
+    p.setCollisionFilterGroupMask(upper, -1, 0, 0)
+    for mass in masses:
+        p.changeDynamics(upper, -1, mass=mass)
+    p.setGravity(0, 0, -10)
+    for _ in range(120):
+        p.stepSimulation()
+    assert p.getBasePositionAndOrientation(upper)[0][2] == pytest.approx(1.0, abs=1e-3)

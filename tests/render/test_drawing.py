@@ -187,14 +187,22 @@ def test_sizes_out_of_range_are_refused(size):
         renderer_of(world).draw(world, np.eye(4), np.eye(4), size[0], size[1], Light())
 
 
-@pytest.mark.parametrize(
-    "matrix", [np.zeros((4, 4)), np.full((4, 4), np.nan), np.diag([1.0, 1.0, np.inf, 1.0])]
-)
-def test_matrices_that_show_nothing_are_refused(matrix):
+@pytest.mark.parametrize("matrix", [np.full((4, 4), np.nan), np.diag([1.0, 1.0, np.inf, 1.0])])
+def test_matrices_that_are_not_finite_are_refused(matrix):
     world = World()
     for view, projection in ((matrix, np.eye(4)), (np.eye(4), matrix)):
         with pytest.raises(ValueError, match="matrix is"):
             renderer_of(world).draw(world, view, projection, 4, 4, Light())
+
+
+def test_matrices_that_squeeze_space_flat_show_nothing():
+    world = World()
+    add_shape(world, Box((1.0, 1.0, 1.0)))
+    flat = np.diag([1.0, 1.0, 0.0, 1.0])
+    seen = renderer_of(world).draw(world, np.eye(4), flat, 4, 4, Light())
+    assert seen.rgba.min() == 255
+    assert seen.depth.min() == 1.0
+    assert seen.label.max() == -1
 
 
 def test_an_image_of_one_pixel_and_one_of_an_empty_world():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from tools.assets.parts import Vector3
 from tools.assets.png import png_bytes
 from tools.assets.sdf_text import sdf_text
 from tools.assets.surface import mesh_of
+from tools.assets.textures import Colours
 from tools.assets.urdf_text import urdf_text
 
 TARGET = Path(__file__).resolve().parents[2] / "src" / "pybullet_data"
@@ -45,7 +47,18 @@ def mesh_files() -> dict[str, str]:
 
 def texture_files() -> dict[str, bytes]:
     """The bytes of every picture."""
-    return {path: png_bytes(colours()) for path, colours in TEXTURES.items()}
+    return {path: _picture(path, colours()) for path, colours in TEXTURES.items()}
+
+
+def _picture(path: str, colours: Colours) -> bytes:
+    if path.endswith(".png"):
+        return png_bytes(colours)
+    from PIL import Image
+
+    buffer = BytesIO()
+    picture = Image.fromarray(np.rint(255.0 * colours).astype(np.uint8))
+    picture.save(buffer, "JPEG" if path.endswith(".jpg") else "GIF")
+    return buffer.getvalue()
 
 
 def main(names: list[str]) -> None:

@@ -10,6 +10,7 @@ from tools.assets import (
     arms,
     cubes,
     floors,
+    grounds,
     gym_humanoids,
     gym_runners,
     kuka,
@@ -29,7 +30,7 @@ from tools.assets import (
 )
 from tools.assets.fields import Field
 from tools.assets.mjcf_text import Model
-from tools.assets.obj_mesh import ObjMesh
+from tools.assets.obj_mesh import ObjMesh, ObjParts
 from tools.assets.parts import Robot, Vector3
 
 ROBOTS: dict[str, Callable[[], Robot]] = {
@@ -189,11 +190,25 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
     "table_square/table.png": textures.wood,
     "tex256.png": partial(textures.chessboard, 8, np.array((0.9, 0.9, 0.9)), np.array((0.35, 0.4, 0.5)), 256),
     "uvmap.png": textures.colour_grid,
+    "checker_grid.jpg": partial(
+        textures.chessboard, 8, np.array((1.0, 1.0, 1.0)), np.array((0.0, 0.0, 0.0)), 512
+    ),
+    "checker_huge.gif": partial(
+        textures.chessboard, 2, np.array((1.0, 1.0, 1.0)), np.array((0.6, 0.7, 0.8)), 256
+    ),
+    "colors16.png": textures.colour_grid,
+    "heightmaps/gimp_overlay_out.png": grounds.hills_painted,
+    "heightmaps/wm_height_out.png": grounds.hills,
 }
 
 TRAY_FLOOR: simple_meshes.Rectangle = (-0.21, -0.21, 0.21, 0.21)
 
-MESHES: dict[str, Callable[[], ObjMesh]] = {
+MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
+    "bunny.obj": soft_shapes.bunny_mesh,
+    "duck_vhacd.obj": toys.duck_hulls,
+    "samurai_monastry.obj": grounds.courtyard,
+    "stone.obj": grounds.stone,
+    "terrain.obj": grounds.land,
     "plane.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
     "grass.obj": partial(simple_meshes.square, 50.0, 25.0, ("grass", "grass.mtl")),
     "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),

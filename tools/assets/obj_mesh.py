@@ -52,6 +52,28 @@ class ObjMesh:
         return f"{number}/{texture}/{number}" if self.normals is not None else f"{number}/{texture}"
 
 
+@dataclass(frozen=True)
+class ObjParts:
+    """Several bare meshes in one file, each an object of its own, which a compound touches with as a hull.
+
+    Attributes:
+        parts: The meshes, without normals and textures.
+    """
+
+    parts: Sequence[ObjMesh]
+
+    def text(self) -> str:
+        """The OBJ file."""
+        lines: list[str] = []
+        first = 1
+        for number, part in enumerate(self.parts):
+            lines.append(f"o convex_{number}")
+            lines += _rows("v", part.vertices, part.decimals)
+            lines += ["f " + " ".join(str(first + corner) for corner in face) for face in part.faces]
+            first += len(part.vertices)
+        return HEADER + "\n".join(lines) + "\n"
+
+
 def _rows(tag: str, values: NDArray[np.float64], decimals: int) -> list[str]:
     return [tag + " " + " ".join(_short(x, decimals) for x in row) for row in values]
 

@@ -46,6 +46,13 @@ def blocks(corners: Sequence[tuple[Corner, Corner]], decimals: int = 4) -> ObjMe
     return ObjMesh(vertices, faces, decimals=decimals)
 
 
+def stretched(mesh: ObjMesh, low: Corner, high: Corner) -> ObjMesh:
+    """A mesh without normals, moved and stretched along the axes until it spans the given bounds."""
+    least, most = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    share = (mesh.vertices - least) / (most - least)
+    return ObjMesh(low + share * np.subtract(high, low), mesh.faces, decimals=mesh.decimals)
+
+
 def globe(radius: float, meridians: int, parallels: int, material: tuple[str, str] | None = None) -> ObjMesh:
     """A ball cut along meridians and parallels, textured by longitude and latitude if at all."""
     u, v = np.meshgrid(np.linspace(0.0, 1.0, meridians + 1), np.linspace(0.0, 1.0, parallels + 1))

@@ -8,6 +8,7 @@ from tools.assets.fields import Field, ball, blend, rod
 from tools.assets.measured import Dress, dressed, fitted
 from tools.assets.obj_mesh import ObjMesh
 from tools.assets.parts import Paint, Robot, Shape
+from tools.assets.simple_meshes import stretched
 from tools.assets.surface import mesh_of
 
 FUR = Paint("fur", (0.62, 0.42, 0.24, 1.0))
@@ -20,6 +21,7 @@ COLOURS = (
     (0.56, 0.38, 0.66),
 )
 BLOBS = 10
+BUNNY_BOUNDS = ((-0.4595, -0.6665, -0.959), (0.4666, 0.7769, 1.0157))
 
 
 def spanning(mesh: ObjMesh) -> ObjMesh:
@@ -52,6 +54,22 @@ def teddy_mesh() -> ObjMesh:
         ball((0.0, 0.42, 0.3), 0.15),
     )
     return _meshed(blend(*trunk, *pairs, width=0.1), 1.1, 0.13)
+
+
+def bunny_mesh() -> ObjMesh:
+    """It sits, with y up, and looks along z."""
+    pairs = [
+        part
+        for side in (-1.0, 1.0)
+        for part in (
+            rod((side * 0.14, 0.75, 0.35), (side * 0.22, 1.3, 0.1), 0.1, 0.07),
+            ball((side * 0.3, -0.2, -0.15), 0.32),
+            rod((side * 0.2, -0.5, 0.2), (side * 0.2, -0.52, 0.65), 0.13),
+        )
+    ]
+    trunk = (ball((0.0, 0.0, -0.2), 0.5), ball((0.0, 0.55, 0.45), 0.32), ball((0.0, -0.25, -0.75), 0.16))
+    mesh = mesh_of(blend(*trunk, *pairs, width=0.12), np.full(3, -1.6), np.full(3, 1.6), 0.12)
+    return stretched(mesh, *BUNNY_BOUNDS)
 
 
 def teddy(file: str) -> Robot:

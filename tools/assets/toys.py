@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, rod
-from tools.assets.obj_mesh import ObjMesh
-from tools.assets.parts import Cylinder, Inertial, Link, Mesh, Paint, Robot, Shape
-from tools.assets.simple_meshes import globe, lathe
+from tools.assets.obj_mesh import ObjMesh, ObjParts
+from tools.assets.parts import Cylinder, Inertial, Link, Mesh, Paint, Robot, Shape, Vector3
+from tools.assets.simple_meshes import globe, lathe, stretched
 from tools.assets.surface import mesh_of
 from tools.assets.textures import Colours
 
@@ -104,6 +104,22 @@ def duck_mesh() -> ObjMesh:
     ]
     whole = _together(parts, ("duck", "duck.mtl"))
     return ObjMesh(DUCK_UNITS * whole.vertices, whole.faces, whole.normals, whole.texture, whole.material)
+
+
+def duck_hulls() -> ObjParts:
+    """What the duck touches with as hulls, in the units of its mesh: body, tail, head and beak."""
+    ellipsoids: tuple[tuple[Vector3, Vector3], ...] = (
+        ((-0.05, 0.62, 0.036), (0.6, 0.526, 0.58)),
+        ((0.45, 0.85, 0.036), (0.238, 0.25, 0.3)),
+        ((-0.42, 1.22, 0.036), (0.4, 0.421, 0.4)),
+        ((-0.82, 1.19, 0.036), (0.147, 0.12, 0.22)),
+    )
+    return ObjParts(
+        [
+            stretched(globe(1.0, 12, 8), *(tuple(np.add(c, np.multiply(s, r)).tolist()) for s in (-1.0, 1.0)))
+            for c, r in ellipsoids
+        ]
+    )
 
 
 def duck() -> Robot:

@@ -57,12 +57,13 @@ def inverse_kinematics(
     start: Numbers | None = None,
     in_base_frame: bool = False,
     iterations: int = DEFAULT_ITERATIONS,
+    further: int | None = None,
     threshold: float = DEFAULT_THRESHOLD,
 ) -> list[float]:
     """Joint positions at which links are where they ought to be.
 
     The search starts at the present pose and follows PyBullet's damped least squares, with the same
-    result where that arrives. Where it does not, or a limit is violated, as many steps more may be taken
+    result where that arrives. Where it does not, or a limit is violated, `further` steps may be taken
     by a method that converges quadratically, keeps within the limits, and starts again from nearby
     poses when it is stuck. The body itself does not move.
 
@@ -82,7 +83,8 @@ def inverse_kinematics(
         selective: Selectively damped least squares, without a pull to rest positions.
         start: Joint positions to start from, a quaternion for each spherical joint.
         in_base_frame: Targets are in the inertial frame of the base instead of the world's.
-        iterations: Most steps of either method.
+        iterations: Most steps of PyBullet's method.
+        further: Most steps of the other one; as many where not given.
         threshold: Distance [m] and angle [rad] that are close enough.
 
     Returns:
@@ -103,7 +105,8 @@ def inverse_kinematics(
     if bounded and ranges is not None and rest is not None:
         step = Step.NULL_SPACE
         solver.set_rest(ranges, rest)
-    return solver.solve(orientations is not None, step, bounded, iterations, threshold)
+    further = iterations if further is None else further
+    return solver.solve(orientations is not None, step, bounded, iterations, further, threshold)
 
 
 class _Solver:
@@ -147,7 +150,7 @@ class _Solver:
         self._launch = Launch(
             inverse_kinematics_kernel,
             1,
-            [sizes, chain.arrays.struct(_DEVICE), search.struct(_DEVICE), 0, 0, 0, 0, 0.0],
+            [sizes, chain.arrays.struct(_DEVICE), search.struct(_DEVICE), 0, 0, 0, 0, 0, 0.0],
             _DEVICE,
         )
 
@@ -196,9 +199,10 @@ class _Solver:
         self._rest[:] = rest
 
     def solve(
-        self, oriented: bool, step: Step, bounded: bool, iterations: int, threshold: float
+        self, oriented: bool, step: Step, bounded: bool, iterations: int, further: int, threshold: float
     ) -> list[float]:
-        options = (oriented, step, bounded, min(iterations, _MOST_ITERATIONS), threshold)
+        most = _MOST_ITERATIONS
+        options = (oriented, step, bounded, min(iterations, most), min(further, most), threshold)
         if options != self._options:
             for index, value in enumerate(options, start=_FIRST_OPTION):
                 self._launch.replace(index, value)

@@ -152,9 +152,7 @@ class ShapeArrays:
         numpy = self.table.numpy
         first = body.rows.first["link"]
         for j, link in enumerate(links):
-            fixed = j == 0 and spec.fixed_base
-            numpy["link_group"][first + j] = FIXED_GROUP if fixed else MOVING_GROUP
-            numpy["link_mask"][first + j] = FIXED_MASK if fixed else MOVING_MASK
+            self.set_default_group(first + j, fixed=j == 0 and spec.fixed_base)
             for collision in link.collisions:
                 if collision.group is not None:
                     numpy["link_group"][first + j] = _as_int32(collision.group)
@@ -257,6 +255,12 @@ class ShapeArrays:
         numpy["shape_ccd_radius"][shapes] = surface.ccd_swept_sphere_radius
         if body.own_margin[link]:
             numpy["shape_margin"][shapes] = surface.collision_margin
+
+    def set_default_group(self, link_row: int, *, fixed: bool) -> None:
+        """Put a link in the group of fixed bases, which do not touch each other, or of the rest."""
+        numpy = self.table.numpy
+        numpy["link_group"][link_row] = FIXED_GROUP if fixed else MOVING_GROUP
+        numpy["link_mask"][link_row] = FIXED_MASK if fixed else MOVING_MASK
 
     def set_group_and_mask(self, link_row: int, group: int, mask: int) -> None:
         """Set the collision groups a link is in, and those it collides with, as bits."""

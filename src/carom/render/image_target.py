@@ -38,6 +38,17 @@ class RawImage:
     distance: NDArray[np.float32]
     label: NDArray[np.int32]
 
+    @classmethod
+    def blank(cls, width: int, height: int) -> RawImage:
+        """An image of nothing."""
+        size = (height, width)
+        return cls(
+            np.full((*size, 4), 255, np.uint8),
+            np.ones(size, np.float32),
+            np.full(size, np.inf, np.float32),
+            np.full(size, -1, np.int32),
+        )
+
 
 @dataclass(slots=True, eq=False)
 class _Shadows:

@@ -55,7 +55,7 @@ class Renderer:
                 projector; None where they stick to the shapes.
 
         Raises:
-            ValueError: The size is out of range, or a matrix is not finite or singular.
+            ValueError: The size is out of range, or a matrix is not finite.
         """
         if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE and width * height <= MAX_PIXELS):
             raise ValueError(
@@ -65,8 +65,9 @@ class Renderer:
         for matrix, name in ((view, "view"), (projection, "projection")):
             if not np.isfinite(matrix).all():
                 raise ValueError(f"the {name} matrix is not finite")
-            if is_singular(matrix):
-                raise ValueError(f"the {name} matrix is singular")
+        if is_singular(view) or is_singular(projection):
+            # What squeezes space flat shows nothing: the matrices of a window that is not there, all zeros.
+            return RawImage.blank(width, height)
         scene = self._present_scene(world)
         target = self._target(scene, width, height)
         with world.present_poses():

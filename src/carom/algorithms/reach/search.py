@@ -1,7 +1,7 @@
 """The search for joint positions that bring the ends of a chain to their targets.
 
 It follows PyBullet's iteration first, so that where that arrives the result is the same. Where it does
-not arrive, where the angles are still off or a limit is violated, it goes on from there by the method of
+not arrive, where the angles are still off or a limit is violated, it may go on from there by the method of
 Levenberg and Marquardt within the limits, which converges quadratically; stuck in a local minimum it
 starts again from poses around the present one, ever farther away.
 """
@@ -183,6 +183,7 @@ def inverse_kinematics_kernel(
     step_kind: Int32,
     bounded: Int32,
     iterations: Int32,
+    further: Int32,
     threshold: real,
 ):
     """Leave in `coordinate_best` the joint positions found."""
@@ -217,7 +218,7 @@ def inverse_kinematics_kernel(
             search.column_weight[column] = search.column_weight[column] / mean
     for dof in range(sizes.dofs):
         search.dof_step[dof] = real(0.0)
-    left = iterations
+    left = further
     spread = _FIRST_SPREAD
     seed = Int32(1)
     while left > 0:

@@ -1,0 +1,28 @@
+"""Small functions of learning scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+
+def lerp(x: Any, y: Any, t: Any) -> Any:
+    """A share `t` of the way from x to y."""
+    return (1 - t) * x + t * y
+
+
+def log_lerp(x: Any, y: Any, t: Any) -> np.ndarray:
+    """A share `t` of the way from x to y, both > 0, where equal shares are equal factors."""
+    return np.exp(lerp(np.log(x), np.log(y), t))
+
+
+def flatten(arr_list: Sequence[Any]) -> np.ndarray:
+    """All numbers of several arrays, one after the other."""
+    return np.concatenate([np.reshape(array, [-1]) for array in arr_list], axis=0)
+
+
+def flip_coin(p: float) -> bool:
+    """True with probability p."""
+    return bool(np.random.binomial(1, p, 1)[0] == 1)
