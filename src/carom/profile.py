@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from carom.collision.stages import broad_phase_kernel, narrow_phase_kernel
-from carom.model.launch import Launch, argument_indices, launch
+from carom.model.launch import KernelStructs, Launch, argument_indices, launch
 from carom.physics.stages import constraints_kernel, free_motion_kernel, islands_kernel, motion_kernel
 from carom.stepper import BEGINS, ENDS, SUBSTEPS, Detection, Stepper
 from carom.touch_arrays import TouchArrays
@@ -39,7 +39,7 @@ class StageClock:
 class ProfiledDetection(Detection):
     """Collision detection, timed by stage."""
 
-    def __init__(self, structs: dict[str, Any], touch: TouchArrays, device: str, clock: StageClock) -> None:
+    def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str, clock: StageClock) -> None:
         super().__init__(structs, touch, device)
         self._clock = clock
         self._broad_phase = launch(broad_phase_kernel, structs, device)
@@ -54,7 +54,7 @@ class ProfiledDetection(Detection):
 class StagedStep:
     """The launches that make up that of a step; it is called and changed like one."""
 
-    def __init__(self, structs: dict[str, Any], device: str, clock: StageClock) -> None:
+    def __init__(self, structs: KernelStructs, device: str, clock: StageClock) -> None:
         self._clock = clock
         self._arguments = {SUBSTEPS: 1, BEGINS: 1, ENDS: 1}
         self._islands = launch(islands_kernel, structs, device, **{BEGINS: 1})
@@ -87,7 +87,7 @@ class ProfiledStepper(Stepper):
 
     def __init__(
         self,
-        structs: dict[str, Any],
+        structs: KernelStructs,
         touch: TouchArrays,
         fault: memoryview,
         substeps: int,

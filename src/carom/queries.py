@@ -13,7 +13,7 @@ import warp as wp
 from carom.collision.closest import closest_points_kernel, place_shapes_kernel
 from carom.collision.rays import prepare_rays_kernel, rays_kernel
 from carom.model.codes import PLANE
-from carom.model.launch import Launch, argument_indices, launch
+from carom.model.launch import KernelStructs, Launch, argument_indices, launch
 from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
 from carom.touch_arrays import TouchArrays
 
@@ -64,7 +64,7 @@ class Queries:
 
     def __init__(
         self,
-        structs: dict[str, Any],
+        structs: KernelStructs,
         present_poses: Callable[[], AbstractContextManager[None]],
         touch: TouchArrays,
         device: str,
@@ -170,7 +170,7 @@ class Queries:
 class RayCast:
     """A launch over a number of rays, and its memory."""
 
-    def __init__(self, structs: dict[str, Any], count: int, device: str) -> None:
+    def __init__(self, structs: KernelStructs, count: int, device: str) -> None:
         def zeros(dtype: Any) -> Any:
             return wp.zeros(count, dtype=dtype, device=device)
 

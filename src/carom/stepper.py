@@ -8,7 +8,7 @@ from typing import Any
 from carom.collision.collide import collide_kernel
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import WANTED
-from carom.model.launch import argument_indices, launch
+from carom.model.launch import KernelStructs, argument_indices, launch
 from carom.physics.coupled_step import coupled_step_kernel
 from carom.physics.kinematics import link_poses_kernel
 from carom.physics.quarantine import OVERFLOW
@@ -23,7 +23,7 @@ SUBSTEPS, BEGINS, ENDS = "substeps", "begins", "ends"
 class Detection:
     """Collision detection of a world, over arrays that grow until everything fits."""
 
-    def __init__(self, structs: dict[str, Any], touch: TouchArrays, device: str) -> None:
+    def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str) -> None:
         self._touch = touch
         self._poses = launch(link_poses_kernel, structs, device)
         self._collide = launch(collide_kernel, structs, device)
@@ -54,7 +54,7 @@ class Detection:
 class Slumber:
     """Who is asleep: looked at before and after each substep, in a world where bodies can be."""
 
-    def __init__(self, structs: dict[str, Any], device: str, *, touching: bool) -> None:
+    def __init__(self, structs: KernelStructs, device: str, *, touching: bool) -> None:
         self.settle = launch(settle_kernel, structs, device, touching=int(touching))
         self.watch = launch(watch_kernel, structs, device)
 
@@ -78,7 +78,7 @@ class Stepper:
 
     def __init__(
         self,
-        structs: dict[str, Any],
+        structs: KernelStructs,
         touch: TouchArrays,
         fault: memoryview,
         substeps: int,

@@ -21,7 +21,7 @@ from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.flags import LoadFlags
-from carom.model.launch import Launch, launch
+from carom.model.launch import KernelStructs, Launch, launch
 from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
@@ -99,6 +99,7 @@ class World:
     def _start_empty(self) -> None:
         self.bodies.clear()
         self.arrays = WorldArrays()
+        self._kernels = KernelStructs()
         self.touch = TouchArrays(self.arrays, _DEVICE)
         self.constraints = JointConstraints()
         self.user_constraints = UserConstraints()
@@ -107,6 +108,8 @@ class World:
         self.next_id = 0
         self.unspent_time = 0.0
         self._step: Callable[[], None] | None = None
+        # What the constraints in the arrays were grouped by; None if they are not those there are now.
+        self._island_size: int | None = None
         self._layout: Layout | None = None
         self._take_arrays()
 
@@ -359,6 +362,7 @@ class World:
 
     def constraints_changed(self) -> None:
         """Sort and number the constraints again before the next step."""
+        self._island_size = None
         self._step = None
         self._queries = None
         self._all_poses_launch = None
@@ -435,9 +439,11 @@ class World:
 
     def _make_stepper(self) -> Stepper:
         """Write constraints and settings to the arrays and make the launches of a step."""
-        user_rows = self.user_constraints.rows
-        if self.constraints.write(self.arrays, user_rows, self.parameters.minimum_island_size):
-            self._take_arrays()
+        island_size = self.parameters.minimum_island_size
+        if island_size != self._island_size:
+            if self.constraints.write(self.arrays, self.user_constraints.rows, island_size):
+                self._take_arrays()
+            self._island_size = island_size
         self.user_constraints.write(self.touch)
         self._queries = None
         self._stepper = self._stepper_type(
@@ -494,7 +500,9 @@ class World:
 
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
-        detection = self._make_stepper().detection
+        if self._step is None:
+            self._prepare_step()
+        detection = self._stepper.detection
         while detection is not None and not detection.run():
             detection = self._make_stepper().detection
 
@@ -504,11 +512,12 @@ class World:
             self._queries = Queries(self._kernel_structs(), self.present_poses, self.touch, _DEVICE)
         return self._queries
 
-    def _kernel_structs(self) -> dict[str, Any]:
+    def _kernel_structs(self) -> KernelStructs:
         """Structs over the present arrays, by the name kernels give them."""
         model, state, scratch = self._structs
-        own = {"settings": self._settings(), "model": model, "state": state, "scratch": scratch}
-        return own | self.touch.structs()
+        self._kernels.update(settings=self._settings(), model=model, state=state, scratch=scratch)
+        self._kernels.update(self.touch.structs())
+        return self._kernels
 
     def _settings(self) -> Any:
         p = self.parameters
@@ -585,9 +594,7 @@ class World:
         getters count on that.
         """
         if self._all_poses_launch is None:
-            model, state, _ = self._structs
-            structs = {"settings": self._settings(), "model": model, "state": state}
-            self._all_poses_launch = launch(link_poses_kernel, structs, _DEVICE)
+            self._all_poses_launch = launch(link_poses_kernel, self._kernel_structs(), _DEVICE)
         before = self.link_pose.copy()
         self._all_poses_launch()
         try:

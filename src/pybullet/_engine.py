@@ -388,7 +388,11 @@ def _set_time_step(client: Client, value: Any, name: str) -> None:
 
 
 def _change(client: Client, **changes: Any) -> None:
+    parameters = client.world.parameters
     with client.lock:
+        # Scripts that set gravity before every step need not pay for it.
+        if all(getattr(parameters, field) == value for field, value in changes.items()):
+            return
         for field, value in changes.items():
-            setattr(client.world.parameters, field, value)
+            setattr(parameters, field, value)
         client.world.apply_parameters()

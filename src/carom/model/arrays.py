@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,8 @@ class Field:
     scalar: np.dtype[Any]
 
 
-def fields_of(struct: Any) -> dict[str, Field]:
+@cache
+def fields_of(struct: Any) -> Mapping[str, Field]:
     """The array fields of a Warp struct; a field's axis is the first word of its name."""
     fields = {}
     for name, annotation in struct.cls.__annotations__.items():
@@ -76,6 +78,7 @@ class ArrayTable:
         self.capacity = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
+        self._made: dict[str, Any] = {}
         for name in self._fields:
             self._replace(name, self._allocate(name))
 
@@ -88,6 +91,7 @@ class ArrayTable:
 
     def _replace(self, name: str, array: np.ndarray) -> None:
         self._memory[name] = array
+        self._made.clear()
         if array.dtype.names is None:
             self.numpy[name] = array
         for part in array.dtype.names or ():
@@ -122,7 +126,12 @@ class ArrayTable:
                 rows[-count:] = np.zeros((), dtype=array.dtype)
 
     def struct(self, device: str) -> Any:
-        """A Warp struct whose fields are views of these arrays."""
+        """A Warp struct whose fields are views of these arrays: the same one until some are replaced."""
+        if device not in self._made:
+            self._made[device] = self._make_struct(device)
+        return self._made[device]
+
+    def _make_struct(self, device: str) -> Any:
         struct = self._struct()
         for name, field in self._fields.items():
             setattr(struct, name, wp.array(self._memory[name], dtype=field.dtype, device=device, copy=False))

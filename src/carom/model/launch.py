@@ -6,17 +6,20 @@ recorded launch is in the end one C call with two pointers, so that call is kept
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import warp as wp
 
 _NOTICE_AFTER_SECONDS = 1.5
+# Kernels that are compiled and loaded.
+_launched_before: set[Any] = set()
 
 
 class Launch:
@@ -37,11 +40,12 @@ class Launch:
             arguments: Its arguments.
             device: Warp device name.
         """
-        with CompilationNotice():
+        with contextlib.nullcontext() if kernel in _launched_before else CompilationNotice():
             self._command: Any = wp.launch(
                 kernel, dim=count, inputs=list(arguments), device=device, record_cmd=True
             )
-        self._keep_alive = arguments
+        _launched_before.add(kernel)
+        self._keep_alive = list(arguments)
         self._entry_point = None
         if self._command.device.is_cpu and self._command.block_dim <= 1:
             values = self._command.params[1:]
@@ -65,6 +69,14 @@ class Launch:
         else:
             setattr(self._packed, f"p{index}", value)
 
+    def replace_struct(self, index: int, struct: Any) -> None:
+        """Change a struct argument for all later runs."""
+        self._keep_alive[index] = struct
+        if self._entry_point is None:
+            self._command.set_param_at_index(index, struct)
+        else:
+            setattr(self._packed, f"p{index}", struct.__ctype__())
+
     @property
     def function(self) -> Callable[[], None]:
         """The run as a plain function with the least overhead."""
@@ -81,15 +93,46 @@ class Launch:
         return functools.partial(ctypes.PYFUNCTYPE(None)(address), self._bounds, self._pointer)
 
 
-def argument_indices(kernel: Any) -> dict[str, int]:
+@functools.cache
+def argument_indices(kernel: Any) -> Mapping[str, int]:
     """Place of each argument of a kernel, by name."""
     return {argument.label: index for index, argument in enumerate(kernel.adj.args)}
 
 
-def launch(kernel: Any, structs: dict[str, Any], device: str, **scalars: int) -> Launch:
+class KernelStructs(dict[str, Any]):
+    """Structs by the names kernels give them.
+
+    It remembers the last launch of each kernel over them. Making one takes a hundred times as long as
+    running it, and most of what a world's users do between two steps leaves its arrays where they are.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._launches: dict[Any, tuple[dict[str, Any], Launch]] = {}
+
+    def launch(self, kernel: Any, device: str, **scalars: int) -> Launch:
+        """A launch of a kernel with these structs and scalars.
+
+        Those made before of the same kernel become this one, or may keep arguments of the past.
+        """
+        indices = argument_indices(kernel)
+        arguments = {name: scalars[name] if name in scalars else self[name] for name in indices}
+        before, made = self._launches.get(kernel) or ({}, None)
+        if made is None:
+            made = Launch(kernel, 1, list(arguments.values()), device)
+        else:
+            for name, argument in arguments.items():
+                if name in scalars:
+                    made.replace(indices[name], argument)
+                elif argument is not before[name]:
+                    made.replace_struct(indices[name], argument)
+        self._launches[kernel] = arguments, made
+        return made
+
+
+def launch(kernel: Any, structs: KernelStructs, device: str, **scalars: int) -> Launch:
     """A launch of a kernel whose arguments are found by their names."""
-    values = {**structs, **scalars}
-    return Launch(kernel, 1, [values[name] for name in argument_indices(kernel)], device)
+    return structs.launch(kernel, device, **scalars)
 
 
 class CompilationNotice:

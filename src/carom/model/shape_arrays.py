@@ -269,6 +269,8 @@ class ShapeArrays:
 
     def set_breaking_fraction(self, fraction: float) -> None:
         """Set the distance at which contacts are given up, relative to the reach of a link's shapes."""
+        if fraction == self.breaking_fraction:
+            return
         self.breaking_fraction = fraction
         breaking = self.table.numpy["shape_breaking"]
         for body in self._bodies.values():
