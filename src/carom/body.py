@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
 from functools import cached_property
+from math import sqrt
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from carom.description.pose import Pose
 from carom.link_dynamics import LinkDynamics
@@ -18,12 +22,16 @@ from carom.model.codes import (
     POSITION_COUNT,
     Activity,
 )
+from carom.model.real import NUMPY_REAL
 
 if TYPE_CHECKING:
     from carom.joint import Joints
     from carom.link import Links
     from carom.world import World
 
+# Of the squared length of a unit quaternion.
+_ROUNDING = 1e-15
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
 _WHOLE_BODY = (
     "linear_damping",
     "angular_damping",
@@ -117,19 +125,19 @@ class Body:
             position: [m], world axes.
             orientation: Quaternion (x, y, z, w); normalised here.
         """
+        x, y, z, w = orientation
+        squared = x * x + y * y + z * z + w * w
+        # A pose that was read and is written back stays the same to the last digit.
+        scale = 1.0 if abs(squared - 1.0) < _ROUNDING else 1.0 / sqrt(squared)
+        pose = (*position, x * scale, y * scale, z * scale, w * scale)
         first = self.first_position
-        length = sum(component * component for component in orientation) ** 0.5
-        coordinates = self.world.position
-        coordinates[first : first + 3] = position
-        coordinates[first + 3 : first + 7] = [component / length for component in orientation]
+        self.world.position_memory[first : first + BASE_POSITIONS] = array(_TYPE_CODE, pose)
         self.update_link_poses()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s]."""
         first = self.first_velocity
-        velocities = self.world.velocity
-        velocities[first : first + 3] = angular
-        velocities[first + 3 : first + 6] = linear
+        self.world.velocity_memory[first : first + BASE_VELOCITIES] = array(_TYPE_CODE, (*angular, *linear))
 
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None

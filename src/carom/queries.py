@@ -12,6 +12,7 @@ import warp as wp
 
 from carom.collision.closest import closest_points_kernel, place_shapes_kernel
 from carom.collision.rays import prepare_rays_kernel, rays_kernel
+from carom.description.pose import Vector3 as Point
 from carom.model.codes import PLANE
 from carom.model.launch import KernelStructs, Launch, argument_indices, launch
 from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
@@ -46,9 +47,9 @@ class NearestPoints(NamedTuple):
         distance: Between them [m]; negative if they overlap.
     """
 
-    on_a: np.ndarray
-    on_b: np.ndarray
-    normal: np.ndarray
+    on_a: Point
+    on_b: Point
+    normal: Point
     distance: float
 
 
@@ -78,6 +79,7 @@ class Queries:
         self._prepare_rays = launch(prepare_rays_kernel, structs, device)
         self._place_shapes = launch(place_shapes_kernel, structs, device)
         self._casts: dict[int, RayCast] = {}
+        self._searches: dict[int, PairSearch] = {}
 
     def cast_rays(
         self,
@@ -118,16 +120,14 @@ class Queries:
         links, first, second = self._shape_pairs(pairs)
         if not links:
             return []
-        memory = np.zeros((1, len(links), 8), dtype=NUMPY_REAL)
-        found: Any = wp.array(memory, dtype=cast("Any", Vector8), device=self._device, copy=False)
-        rows = [wp.array(shapes, dtype=wp.int32, device=self._device) for shapes in (first, second)]
-        structs = [self._structs["shapes"], self._structs["pairs"]]
+        count = len(links)
+        search = self._searches.get(count)
+        if search is None:
+            self._searches.clear()
+            search = self._searches[count] = PairSearch(self._structs, count, self._device)
         self._place(self._place_shapes)
-        within = NUMPY_REAL(min(reach, _FAR))
-        Launch(closest_points_kernel, 1, [*structs, *rows, within, found], self._device)()
-        return [
-            (a, b, _points(terms)) for (a, b), terms in zip(links, memory[0], strict=True) if terms[_FOUND]
-        ]
+        found = search.run(first, second, min(reach, _FAR))
+        return [(a, b, _points(terms)) for (a, b), terms in zip(links, found, strict=True) if terms[_FOUND]]
 
     def _shape_pairs(
         self, pairs: Sequence[tuple[int, int]]
@@ -165,6 +165,26 @@ class Queries:
         meets = (self._pairs["shape_lower"][0, :count] <= np.asarray(upper)).all(axis=1)
         meets &= (self._pairs["shape_upper"][0, :count] >= np.asarray(lower)).all(axis=1)
         return np.unique(self._shapes["shape_link"][:count][meets | endless]).tolist()
+
+
+class PairSearch:
+    """A launch over a number of pairs of shapes, and its memory."""
+
+    def __init__(self, structs: KernelStructs, count: int, device: str) -> None:
+        self._pairs = np.zeros((2, count), dtype=np.int32)
+        self._found = np.zeros((1, count, 8), dtype=NUMPY_REAL)
+        rows = [wp.array(shapes, dtype=wp.int32, device=device, copy=False) for shapes in self._pairs]
+        found: Any = wp.array(self._found, dtype=cast("Any", Vector8), device=device, copy=False)
+        arguments = [structs["shapes"], structs["pairs"], *rows, NUMPY_REAL(0.0), found]
+        self._launch = Launch(closest_points_kernel, 1, arguments, device)
+        self._reach_at = argument_indices(closest_points_kernel)["reach"]
+
+    def run(self, first: Sequence[int], second: Sequence[int], reach: float) -> list[list[float]]:
+        """A row for each pair, as `closest_points_kernel` leaves it."""
+        self._pairs[:] = first, second
+        self._launch.replace(self._reach_at, reach)
+        self._launch()
+        return self._found[0].tolist()
 
 
 class RayCast:
@@ -213,6 +233,7 @@ class RayCast:
         return RayHits(link, self._fraction.numpy().copy(), self._normal.numpy().copy())
 
 
-def _points(terms: np.ndarray) -> NearestPoints:
-    on_b, normal, distance = terms[0:3], terms[3:6], float(terms[6])
-    return NearestPoints(on_b + distance * normal, on_b, normal, distance)
+def _points(terms: list[float]) -> NearestPoints:
+    bx, by, bz, nx, ny, nz, distance = terms[:_FOUND]
+    on_a = (bx + distance * nx, by + distance * ny, bz + distance * nz)
+    return NearestPoints(on_a, (bx, by, bz), (nx, ny, nz), distance)

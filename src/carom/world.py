@@ -21,7 +21,7 @@ from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.flags import LoadFlags
-from carom.model.launch import KernelStructs, Launch, launch
+from carom.model.launch import KernelStructs, Launch, TreeLaunch, launch
 from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
@@ -111,6 +111,7 @@ class World:
         # What the constraints in the arrays were grouped by; None if they are not those there are now.
         self._island_size: int | None = None
         self._layout: Layout | None = None
+        self._link_places: list[tuple[int, int]] | None = None
         self._take_arrays()
 
     def __enter__(self) -> World:
@@ -188,7 +189,7 @@ class World:
                 self._take_arrays()
             raise
         self.bodies[body_id] = body
-        self._layout = None
+        self._layout = self._link_places = None
         self.constraints.add_body(body)
         self.user_data.add_stated(body_id, spec)
         if grown:
@@ -236,7 +237,7 @@ class World:
             KeyError: There is no such body.
         """
         body = self.bodies.pop(body_id)
-        self._layout = None
+        self._layout = self._link_places = None
         self.constraints.remove_body(body)
         self.user_constraints.remove_body(body)
         self.user_data.remove_body(body_id)
@@ -293,6 +294,14 @@ class World:
         self.constraints_changed()
 
     # State
+
+    @property
+    def link_places(self) -> list[tuple[int, int]]:
+        """Body and link, -1 for the base, that each row of the link arrays stands for."""
+        if self._link_places is None:
+            bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
+            self._link_places = [(body.id, link) for body in bodies for link in range(-1, body.joint_count)]
+        return self._link_places
 
     def snapshot(self) -> Snapshot:
         """The present state, to come back to by `restore` as often as needed.
@@ -577,9 +586,9 @@ class World:
         self._structs = self.arrays.structs(_DEVICE)
         self._step = None
         self._queries: Queries | None = None
-        self._pose_launch: Launch | None = None
+        self._pose_launch: TreeLaunch | None = None
         self._all_poses_launch: Launch | None = None
-        self._twist_launch: Launch | None = None
+        self._twist_launch: TreeLaunch | None = None
         for name, field in _VIEWS.items():
             view = self.arrays.state.numpy[field][0]
             setattr(self, name, view)
@@ -605,14 +614,11 @@ class World:
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
         if self._pose_launch is None:
-            model, state, _ = self._structs
-            self._pose_launch = Launch(forward_kinematics_kernel, 1, [model, state, 0], _DEVICE)
-        self._pose_launch.replace(2, body.rows.tree)
-        self._pose_launch()
+            self._pose_launch = TreeLaunch(forward_kinematics_kernel, self._structs[:2], _DEVICE)
+        self._pose_launch(body.rows.tree)
 
     def update_link_velocities(self, body: Body) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
         if self._twist_launch is None:
-            self._twist_launch = Launch(link_twist_kernel, 1, [*self._structs, 0], _DEVICE)
-        self._twist_launch.replace(3, body.rows.tree)
-        self._twist_launch()
+            self._twist_launch = TreeLaunch(link_twist_kernel, self._structs, _DEVICE)
+        self._twist_launch(body.rows.tree)

@@ -29,6 +29,8 @@ def integer(value: Any, name: str) -> int:
         TypeError: It is not an integer.
         OverflowError: It does not fit.
     """
+    if type(value) is int and _LEAST_INT <= value <= _GREATEST_INT:
+        return value
     try:
         number = index(value)
     except TypeError as problem:
@@ -47,6 +49,11 @@ def real(value: Any, name: str) -> float:
         TypeError: It is not a number.
         pybullet.error: It is infinite or not a number (NaN).
     """
+    kind = type(value)
+    if kind is float and isfinite(value):
+        return value
+    if kind is int and -_GREATEST_INT <= value <= _GREATEST_INT:
+        return float(value)
     number = _as_float(value, name)
     if not isfinite(number):
         fail(f"{name} has to be a finite number, not {number}.")

@@ -130,7 +130,9 @@ def client_of(physics_client_id: Any) -> Client:
         pybullet.error: There is none.
         TypeError: The id is not an integer.
     """
-    client = living_client(physics_client_id)
+    client = clients.get(physics_client_id) if type(physics_client_id) is int else None
+    if client is None or not client.window.is_open():
+        client = living_client(physics_client_id)
     if client is None:
         fail(NOT_CONNECTED, f"There is no client {physics_client_id}.")
     return client

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
 from pybullet._arguments import integer
 from pybullet._builtin import exported
 from pybullet._clients import client_of
-from pybullet._link_rows import Place, places
 
 if TYPE_CHECKING:
     from carom.world import World
@@ -85,42 +84,45 @@ def getContactPoints(
         ([0, 0, 1], True)
     """
     world = client_of(physicsClientId).world
-    wanted_a = (integer(bodyA, "bodyA"), integer(linkIndexA, "linkIndexA"))
-    wanted_b = (integer(bodyB, "bodyB"), integer(linkIndexB, "linkIndexB"))
-    chosen = list(_chosen(_sides(world), wanted_a, wanted_b))
+    first = _rows(world, integer(bodyA, "bodyA"), integer(linkIndexA, "linkIndexA"))
+    second = _rows(world, integer(bodyB, "bodyB"), integer(linkIndexB, "linkIndexB"))
+    links = world.touch.contacts.numpy["contact_shapes"][0, : world.touch.contact_count, 2:].tolist()
+    chosen = list(_chosen(links, first, second, may_swap=bodyA >= 0))
     if not chosen:
         return ()
     return tuple(_points(world, chosen))
 
 
-def _sides(world: World) -> list[tuple[Place | None, Place | None]]:
-    """Body and link of both sides of each contact."""
-    links = world.touch.contacts.numpy["contact_shapes"][0, : world.touch.contact_count, 2:]
-    return list(zip(places(world, links[:, 0]), places(world, links[:, 1]), strict=True))
+def _rows(world: World, body_id: int, link: int) -> Container[int]:
+    """Rows of the link arrays that fit a body, negative for any, and a link of it, -2 and less for any."""
+    if body_id >= 0 and link < _BASE:
+        body = world.bodies.get(body_id)
+        return () if body is None else range(body.first_link, body.first_link + 1 + body.joint_count)
+    if body_id < 0 and link < _BASE:
+        return range(len(world.link_places))
+    return {
+        row
+        for row, place in enumerate(world.link_places)
+        if place[1] == link and (body_id < 0 or place[0] == body_id)
+    }
 
 
 def _chosen(
-    sides: list[tuple[Place | None, Place | None]], wanted_a: Place, wanted_b: Place
-) -> Iterator[tuple[int, Place, Place, bool]]:
-    """Row and sides of each contact that is asked for, and whether they change places.
+    links: list[list[int]], first: Container[int], second: Container[int], *, may_swap: bool
+) -> Iterator[tuple[int, int, int, bool]]:
+    """Row and links of each contact that is asked for, and whether they change places.
 
     They do to put `bodyA` first; without it they stay as they are.
     """
-    for row, (first, second) in enumerate(sides):
-        if first is None or second is None:
-            continue
-        if _fits(first, wanted_a) and _fits(second, wanted_b):
-            yield row, first, second, False
-        elif wanted_a[0] >= 0 and _fits(second, wanted_a) and _fits(first, wanted_b):
-            yield row, second, first, True
+    for row, (a, b) in enumerate(links):
+        if a in first and b in second:
+            yield row, a, b, False
+        elif may_swap and b in first and a in second:
+            yield row, b, a, True
 
 
-def _fits(place: Place, wanted: Place) -> bool:
-    """Whether a body and link are those asked for."""
-    return (wanted[0] < 0 or wanted[0] == place[0]) and (wanted[1] < _BASE or wanted[1] == place[1])
-
-
-def _points(world: World, chosen: list[tuple[int, Place, Place, bool]]) -> Iterator[ContactPoint]:
+def _points(world: World, chosen: list[tuple[int, int, int, bool]]) -> Iterator[ContactPoint]:
+    places = world.link_places
     rows = [row for row, _, _, _ in chosen]
     contacts = world.touch.contacts.numpy
 
@@ -141,5 +143,6 @@ def _points(world: World, chosen: list[tuple[int, Place, Place, bool]]) -> Itera
     for (_, first, second, swapped), on_a, on_b, normal, distance, force, along1, along2 in columns:
         if swapped:
             on_a, on_b, normal = on_b, on_a, (-normal[0], -normal[1], -normal[2])
-        sides = (first[0], second[0], first[1], second[1])
+        (body_a, link_a), (body_b, link_b) = places[first], places[second]
+        sides = (body_a, body_b, link_a, link_b)
         yield (0, *sides, on_a, on_b, normal, distance, force[0], force[1], along1, force[2], along2)

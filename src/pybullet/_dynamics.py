@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import inf
 from typing import Any
 
 from carom.description.pose import Quaternion, Vector3
@@ -22,6 +24,36 @@ DynamicsInfo = tuple[
 ]
 
 _MULTI_BODY = 2
+
+# What each number of `changeDynamics` sets, its keyword, and whether it belongs to the whole body; in the
+# order in which PyBullet looks at them.
+_NUMBERS = (
+    ("joint_limit_force", "jointLimitForce", False),
+    ("sleep_threshold", "sleepThreshold", True),
+    ("mass", "mass", False),
+    ("lateral_friction", "lateralFriction", False),
+    ("spinning_friction", "spinningFriction", False),
+    ("rolling_friction", "rollingFriction", False),
+    ("linear_damping", "linearDamping", True),
+    ("angular_damping", "angularDamping", True),
+    ("joint_damping", "jointDamping", False),
+    ("restitution", "restitution", False),
+    ("contact_stiffness", "contactStiffness", False),
+    ("contact_damping", "contactDamping", False),
+    ("friction_anchor", "frictionAnchor", False),
+    ("ccd_swept_sphere_radius", "ccdSweptSphereRadius", False),
+    ("activation_state", "activationState", True),
+    ("contact_processing_threshold", "contactProcessingThreshold", False),
+    ("max_joint_velocity", "maxJointVelocity", True),
+    ("collision_margin", "collisionMargin", True),
+    ("joint_lower_limit", "jointLowerLimit", False),
+    ("joint_upper_limit", "jointUpperLimit", False),
+)
+_INTEGERS = tuple(
+    place for place, (_, name, _) in enumerate(_NUMBERS) if name in ("frictionAnchor", "activationState")
+)
+# What `BodyAccess` was made with.
+_KEPT_BY_ACCESS = {"mass", "inertia", "joint_lower_limit", "joint_upper_limit"}
 
 
 @exported
@@ -154,39 +186,49 @@ def changeDynamics(
     """
     client = client_of(physicsClientId)
     named_link = integer(linkIndex, "linkIndex")
-    stiffness, damping = real(contactStiffness, "contactStiffness"), real(contactDamping, "contactDamping")
-    if (stiffness >= 0.0) != (damping >= 0.0):
-        fail("Both contactStiffness and contactDamping needs to be set together.")
-    lower, upper = real(jointLowerLimit, "jointLowerLimit"), real(jointUpperLimit, "jointUpperLimit")
-    inertia = _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")
-    anisotropic = _optional_vector(anisotropicFriction, "anisotropicFriction")
-
-    changes = _Changes(named_link)
-    changes.of_link("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
-    changes.of_body("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
-    if lower <= upper:
-        changes.include("joint_lower_limit", lower)
-        changes.include("joint_upper_limit", upper)
-    changes.of_link("mass", real(mass, "mass"))
-    changes.include("anisotropic_friction", anisotropic)
-    changes.include("inertia", inertia)
-    changes.of_link("lateral_friction", real(lateralFriction, "lateralFriction"))
-    changes.of_link("spinning_friction", real(spinningFriction, "spinningFriction"))
-    changes.of_link("rolling_friction", real(rollingFriction, "rollingFriction"))
-    changes.of_body("linear_damping", real(linearDamping, "linearDamping"))
-    changes.of_body("angular_damping", real(angularDamping, "angularDamping"))
-    changes.of_link("joint_damping", real(jointDamping, "jointDamping"))
-    changes.of_link("restitution", real(restitution, "restitution"))
-    changes.of_link("contact_stiffness", stiffness)
-    changes.of_link("contact_damping", damping)
-    changes.of_link("friction_anchor", integer(frictionAnchor, "frictionAnchor"))
-    changes.of_link("ccd_swept_sphere_radius", real(ccdSweptSphereRadius, "ccdSweptSphereRadius"))
-    changes.of_body("activation_state", integer(activationState, "activationState"))
-    changes.of_link(
-        "contact_processing_threshold", real(contactProcessingThreshold, "contactProcessingThreshold")
+    values = _checked(
+        (
+            jointLimitForce,
+            sleepThreshold,
+            mass,
+            lateralFriction,
+            spinningFriction,
+            rollingFriction,
+            linearDamping,
+            angularDamping,
+            jointDamping,
+            restitution,
+            contactStiffness,
+            contactDamping,
+            frictionAnchor,
+            ccdSweptSphereRadius,
+            activationState,
+            contactProcessingThreshold,
+            maxJointVelocity,
+            collisionMargin,
+            jointLowerLimit,
+            jointUpperLimit,
+        )
     )
-    changes.of_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
-    changes.of_body("collision_margin", real(collisionMargin, "collisionMargin"))
+    *values, lower, upper = values
+    if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
+        fail("Both contactStiffness and contactDamping needs to be set together.")
+    lists = (
+        ("anisotropic_friction", _optional_vector(anisotropicFriction, "anisotropicFriction")),
+        ("inertia", _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")),
+    )
+    changes = _Changes(named_link)
+    for (name, _, of_body), value in zip(_NUMBERS, values, strict=False):
+        if value >= 0:
+            changes.take(name, value, of_body=of_body)
+        if name == "sleep_threshold":
+            # The limits and lists have their place among the numbers, see the docstring.
+            if lower <= upper:
+                changes.take("joint_lower_limit", lower)
+                changes.take("joint_upper_limit", upper)
+            for field, vector in lists:
+                if vector is not None:
+                    changes.take(field, vector)
 
     found = link_or_warning(client, bodyUniqueId, changes.link, "changeDynamics")
     if found is None:
@@ -201,7 +243,8 @@ def changeDynamics(
         )
     with client.lock:
         body.change_dynamics(link, **changes.values)
-        client.bodies.pop(body.id, None)
+        if not _KEPT_BY_ACCESS.isdisjoint(changes.values):
+            client.bodies.pop(body.id, None)
 
 
 @exported
@@ -251,22 +294,28 @@ class _Changes:
         self.values: dict[str, Any] = {}
         self.misdirected: list[str] = []
 
-    def include(self, name: str, value: Any) -> None:
-        """Takes a value for the named link, unless there is none."""
-        if value is not None:
-            self.values[name] = value
+    def take(self, name: str, value: Any, *, of_body: bool = False) -> None:
+        """Takes a value for the named link or for the whole body."""
+        self.values[name] = value
+        if of_body:
+            self.link = BASE
+        else:
             self.link = self._named_link
             self.misdirected.append(name)
 
-    def of_link(self, name: str, value: float) -> None:
-        """Takes a value for the named link, unless it is negative."""
-        self.include(name, value if value >= 0 else None)
 
-    def of_body(self, name: str, value: float) -> None:
-        """Takes a value for the whole body, unless it is negative."""
-        if value >= 0:
-            self.values[name] = value
-            self.link = BASE
+def _checked(values: tuple[Any, ...]) -> Sequence[Any]:
+    """The numbers of a call in the order of `_NUMBERS`, each checked, or all at once if that will do."""
+    try:
+        integers = [values[place] for place in _INTEGERS]
+        if -inf < sum(values) < inf and all(type(value) is int for value in integers):
+            return values
+    except TypeError:
+        pass
+    return [
+        integer(value, name) if place in _INTEGERS else real(value, name)
+        for place, ((_, name, _), value) in enumerate(zip(_NUMBERS, values, strict=True))
+    ]
 
 
 def _optional_vector(values: Vector | None, name: str) -> Vector3 | None:

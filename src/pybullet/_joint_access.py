@@ -121,6 +121,9 @@ class JointAccess:
         """The same with a tuple for each of position, velocity and torque."""
         return ((), (), self._reaction(), ())
 
+    def reset(self, position: float, velocity: float) -> None:
+        """Puts a joint of one freedom somewhere, without any physics; others stay where they are."""
+
     def command(
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
     ) -> None:
@@ -195,6 +198,12 @@ class AxisJoint(JointAccess):
             _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH,
             self.impulses[u] / self.client.time_step,
         )
+
+    def reset(self, position: float, velocity: float) -> None:
+        with self.client.lock:
+            self.positions[self.q] = position
+            self.velocities[self.u] = velocity
+            self.body.update_link_poses()
 
     def multi_dof_state(self) -> MultiDofState:
         position, velocity, reaction, torque = self.state()

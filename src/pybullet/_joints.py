@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import Indices, Vector, Vectors, indices, integer, numbers, real, sequence
 from pybullet._builtin import exported
 from pybullet._clients import client_of, clients
-from pybullet._constants import JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
+from pybullet._constants import JOINT_SPHERICAL
 from pybullet._errors import fail
 from pybullet._lookup import OUT_OF_RANGE, body_access, joint_access, no_joint, raise_state_error
 
@@ -220,11 +221,15 @@ def resetJointState(
         >>> p.getJointState(arm, 3)[:2]
         (0.5, 0.1)
     """
+    try:
+        joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
+        if -inf < targetValue + targetVelocity < inf:
+            joint.reset(targetValue, targetVelocity)
+            return
+    except (KeyError, TypeError):
+        pass
     joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
-    position, velocity = real(targetValue, "targetValue"), real(targetVelocity, "targetVelocity")
-    if joint.body.joint_types[joint.index] in (JOINT_REVOLUTE, JOINT_PRISMATIC):
-        with joint.client.lock:
-            joint.body.set_joint_state(joint.index, (position,), (velocity,))
+    joint.reset(real(targetValue, "targetValue"), real(targetVelocity, "targetVelocity"))
 
 
 @exported

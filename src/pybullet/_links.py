@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import Indices, indices, integer
 from pybullet._builtin import exported
+from pybullet._clients import clients
 from pybullet._errors import fail
 from pybullet._lookup import body_access
 
@@ -57,6 +58,18 @@ def getLinkState(
         >>> [round(x, 3) for x in state[4]]
         [0.0, 0.0, 1.261]
     """
+    try:
+        access = clients[physicsClientId].bodies[bodyUniqueId]
+        link = access.links[linkIndex]
+        if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
+            if computeForwardKinematics:
+                access.body.update_link_poses()
+            if not computeLinkVelocity:
+                return link.state()
+            access.body.update_link_velocities()
+            return link.state() + link.velocity()
+    except (KeyError, TypeError):
+        pass
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     index = integer(linkIndex, "linkIndex")
     if index < 0:

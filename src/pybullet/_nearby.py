@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
-from carom.description.pose import Vector3
 from pybullet._arguments import bound, integer, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
@@ -14,8 +13,6 @@ from pybullet._contacts import ContactPoint
 from pybullet._link_rows import Place, places
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from carom.queries import NearestPoints
     from carom.world import World
 
@@ -113,13 +110,7 @@ def _rows(world: World, body_id: int, link: int) -> range:
 
 
 def _contact_point(a: Place, b: Place, points: NearestPoints) -> ContactPoint:
-    on_a, on_b, normal = (_vector(part) for part in (points.on_a, points.on_b, points.normal))
-    return 0, a[0], b[0], a[1], b[1], on_a, on_b, normal, points.distance, 0.0, 0.0, _NONE, 0.0, _NONE
-
-
-def _vector(values: np.ndarray) -> Vector3:
-    x, y, z = values.tolist()
-    return x, y, z
+    return 0, a[0], b[0], a[1], b[1], *points, 0.0, 0.0, _NONE, 0.0, _NONE
 
 
 @exported
