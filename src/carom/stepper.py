@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from carom.collision.collide import collide_kernel
@@ -90,7 +90,7 @@ class Stepper:
         self._coupled = touching or sleeping or touch.user_count > 0
         kernel = coupled_step_kernel if self._coupled else step_kernel
         self._launch: Any = launch(kernel, structs, device, **{SUBSTEPS: 1, BEGINS: 1, ENDS: 1})
-        self._index: dict[str, Any] = argument_indices(kernel)
+        self._index: Mapping[str, Any] = argument_indices(kernel)
         self._touch = touch
         self._fault = fault
         self.detection = Detection(structs, touch, device) if touching else None

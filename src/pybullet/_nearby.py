@@ -110,7 +110,8 @@ def _rows(world: World, body_id: int, link: int) -> range:
 
 
 def _contact_point(a: Place, b: Place, points: NearestPoints) -> ContactPoint:
-    return 0, a[0], b[0], a[1], b[1], *points, 0.0, 0.0, _NONE, 0.0, _NONE
+    on_a, on_b, normal, distance = points
+    return 0, a[0], b[0], a[1], b[1], on_a, on_b, normal, distance, 0.0, 0.0, _NONE, 0.0, _NONE
 
 
 @exported
