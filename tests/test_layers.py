@@ -23,6 +23,7 @@ MAY_IMPORT = {
     "carom.model": {*DESCRIPTION, "carom.formats", "carom.geometry"},
     "carom.physics": {"carom.errors", "carom.model", "carom.collision"},
     "carom.collision": {"carom.errors", "carom.geometry", "carom.model"},
+    "carom.remote": {"carom.errors"},
     "carom.control": {"carom.checks"},
     "carom.saved": MODEL,
     # World, bodies, joints, links: the modules directly under carom that are not named here.
@@ -44,17 +45,20 @@ MAY_IMPORT = {
     "carom": {"carom.world", "carom.camera", "carom.recorder", "carom.control", "carom.version"},
     "carom.cli": {
         *MODEL,
+        "carom.serve",
         "carom.world",
         "carom.viewer",
         "carom.version",
         "carom.warmup",
         "pybullet_data",
     },
+    "carom.serve": {"carom.errors", "carom.warmup", "pybullet"},
     "carom.__main__": {"carom.cli"},
     "pybullet": {
         *MODEL,
         "carom.world",
         "carom.algorithms",
+        "carom.remote",
         "carom.render",
         "carom.camera",
         "carom.video",

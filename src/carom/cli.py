@@ -1,4 +1,4 @@
-"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert`, `warmup`."""
+"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert`, `serve`, `warmup`."""
 
 from __future__ import annotations
 
@@ -75,6 +75,27 @@ def _parser() -> argparse.ArgumentParser:
     convert.add_argument("--model", help="the one to take from a file with several, by name or number from 0")
     convert.set_defaults(command=_convert)
 
+    serve = commands.add_parser("serve", help="serve a world that scripts in other processes can join")
+    serve.add_argument(
+        "--key", type=int, default=12347, help="of shared memory, as in connect (default 12347)"
+    )
+    for transport, port in (("tcp", 6667), ("udp", 1234)):
+        serve.add_argument(
+            f"--{transport}",
+            type=int,
+            nargs="?",
+            const=port,
+            metavar="PORT",
+            help=f"be found by connect(p.{transport.upper()}) as well (port {port} if none is stated)",
+        )
+    serve.add_argument("--bind", default="127.0.0.1", help="address of these ports (default 127.0.0.1)")
+    serve.add_argument(
+        "--key-file", type=Path, help="file with the key clients have to know; written if there is none"
+    )
+    serve.add_argument("--gui", action="store_true", help="show the world in the browser")
+    serve.add_argument("--gui-port", type=int, help="port to serve the page at")
+    serve.set_defaults(command=_serve)
+
     warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
     warmup.set_defaults(command=_warmup)
     return parser
@@ -119,6 +140,14 @@ def _convert(options: argparse.Namespace) -> None:
     from carom.formats.convert import convert
 
     convert(options.input, options.output, options.model)
+
+
+def _serve(options: argparse.Namespace) -> None:
+    from carom.serve import Service, serve
+
+    stated = {"tcp": options.tcp, "udp": options.udp, "port": options.gui_port, "key-file": options.key_file}
+    words = [f'--{name}="{value}"' for name, value in stated.items() if value is not None]
+    serve(Service(options.key, options.gui, [f"--bind={options.bind}", *words]))
 
 
 def _warmup(_options: argparse.Namespace) -> None:

@@ -16,7 +16,7 @@ import ctypes
 import inspect
 import sys
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -41,6 +41,27 @@ _new_builtin.argtypes = (ctypes.POINTER(_MethodDefinition), ctypes.py_object, ct
 _VECTORCALL = "PyObject_Vectorcall" if sys.version_info >= (3, 11) else "_PyFunction_Vectorcall"
 _vectorcall = ctypes.cast(getattr(ctypes.pythonapi, _VECTORCALL), ctypes.c_void_p).value
 
+UsualForm = Callable[[tuple[Any, ...], dict[str, Any]], tuple[tuple[Any, ...], dict[str, Any]]]
+"""Turns arguments by position and by name into others that mean the same and fit the signature."""
+
+
+class Export(NamedTuple):
+    """A function of the public interface.
+
+    Attributes:
+        function: The Python function.
+        builtin: The builtin that calls it.
+        usual_form: For a function that is also called in other ways than its signature shows.
+    """
+
+    function: Callable[..., Any]
+    builtin: Callable[..., Any]
+    usual_form: UsualForm | None
+
+
+exports: dict[str, Export] = {}
+"""All functions of the public interface, by name."""
+
 # A builtin points to its definition for as long as it lives, and builtins of a module live for ever.
 _definitions: list[_MethodDefinition] = []
 
@@ -50,11 +71,12 @@ def exported(function: F) -> F:
     return exported_as(_plain_signature(function))(function)
 
 
-def exported_as(signature: str) -> Callable[[F], F]:
+def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable[[F], F]:
     """As `exported`, for a function whose Python signature is not the one to show.
 
     Args:
         signature: What `help` and `inspect.signature` show, parentheses included.
+        usual_form: For a function that is also called in other ways.
     """
 
     def export(function: F) -> F:
@@ -67,7 +89,9 @@ def exported_as(signature: str) -> Callable[[F], F]:
             documentation.encode(),
         )
         _definitions.append(definition)
-        return _new_builtin(ctypes.byref(definition), function, "pybullet")
+        builtin = _new_builtin(ctypes.byref(definition), function, "pybullet")
+        exports[function.__name__] = Export(function, builtin, usual_form)
+        return builtin
 
     return export
 

@@ -6,6 +6,7 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import integer
+from pybullet._detours import remove_detour
 from pybullet._errors import fail
 from pybullet._log_registry import Logs
 from pybullet._plugin_registry import Plugins
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from pybullet._body_access import BodyTable
     from pybullet._origins import Origin
     from pybullet._real_time import RealTimeClock
+    from pybullet._remote import RemoteClient
+    from pybullet._served import Served
     from pybullet._window import Window
 
 MAX_CLIENTS = 1024
@@ -41,6 +44,7 @@ class Client:
         plugins: Plugins the script has loaded.
         real_time: `useRealTimeSimulation` as the script set it.
         report_analytics: `stepSimulation` returns the statistics of the solver.
+        server: What lets other processes drive the world, if anything does.
         search_path: Directory that is searched for files besides the usual ones.
         shapes: Shapes the script has created.
         states: States the script has saved, by id.
@@ -61,6 +65,7 @@ class Client:
         "real_time",
         "report_analytics",
         "search_path",
+        "server",
         "shapes",
         "states",
         "time_step",
@@ -83,6 +88,7 @@ class Client:
         self.origins: dict[int, Origin] = {}
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
+        self.server: Served | None = None
         self.lock = RLock()
         bodies.client = self
 
@@ -94,8 +100,14 @@ class Client:
         """Where files that the script names are looked for."""
         return self.plugins.search(self.search_path)
 
+    def set_timeout(self, seconds: float) -> None:
+        """A world in the same process answers at once."""
+
     def close(self) -> None:
         """Stops what runs in the background, and finishes what is being written."""
+        if self.server is not None:
+            self.server.close()
+            self.server = None
         if self.clock is not None:
             self.clock.stop()
             self.clock = None
@@ -105,7 +117,10 @@ class Client:
 
 
 clients: dict[int, Client] = {}
-"""Every connected client by its id."""
+"""Every client with a world in this process, by its id."""
+
+remote_clients: dict[int, RemoteClient] = {}
+"""Every client with a world in another process, by its id."""
 
 
 def living_client(physics_client_id: Any) -> Client | None:
@@ -117,8 +132,7 @@ def living_client(physics_client_id: Any) -> Client | None:
     number = integer(physics_client_id, "physicsClientId")
     client = clients.get(number)
     if client is not None and not client.window.is_open():
-        del clients[number]
-        client.close()
+        forget(number)
         return None
     return client
 
@@ -138,6 +152,30 @@ def client_of(physics_client_id: Any) -> Client:
     return client
 
 
+def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
+    """The client of an id, wherever its world is, unless there is none or it has lost its server or window.
+
+    Raises:
+        TypeError: The id is not an integer.
+    """
+    number = integer(physics_client_id, "physicsClientId")
+    client = remote_clients.get(number)
+    if client is not None and not client.is_open():
+        forget(number)
+        return None
+    return client or living_client(number)
+
+
+def forget(number: int) -> None:
+    """Closes a client, which frees its id."""
+    remove_detour(number)
+    client = clients.pop(number, None) or remote_clients.pop(number, None)
+    if client is not None:
+        client.close()
+
+
 def free_slot() -> int | None:
     """The least id that no client has."""
-    return next((slot for slot in range(MAX_CLIENTS) if slot not in clients), None)
+    return next(
+        (slot for slot in range(MAX_CLIENTS) if slot not in clients and slot not in remote_clients), None
+    )

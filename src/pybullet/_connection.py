@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 import atexit
-from typing import overload
+from operator import index
+from typing import Any, overload
 
 from pybullet._arguments import by_name, integer, real, text
 from pybullet._builtin import exported, exported_as
-from pybullet._clients import MAX_CLIENTS, Client, client_of, clients, free_slot, living_client
+from pybullet._clients import (
+    MAX_CLIENTS,
+    NOT_CONNECTED,
+    Client,
+    client_of,
+    clients,
+    connection_of,
+    forget,
+    free_slot,
+    living_client,
+    remote_clients,
+)
 from pybullet._constants import (
     DIRECT,
     GRAPHICS_CLIENT,
@@ -23,7 +35,9 @@ from pybullet._constants import (
     TCP,
     UDP,
 )
-from pybullet._errors import fail, logger
+from pybullet._detours import add_detour
+from pybullet._errors import fail
+from pybullet._target import Target
 from pybullet._window import NoWindow
 
 __all__ = [
@@ -38,15 +52,12 @@ __all__ = [
 ]
 
 _API_VERSION = 202010061
-_WITH_WINDOW = (GUI, GUI_SERVER, GUI_MAIN_THREAD)
+_WITH_WINDOW = (GUI, GUI_SERVER, GUI_MAIN_THREAD, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
+_SERVERS = (SHARED_MEMORY_SERVER, GUI_SERVER, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _TO_A_SERVER = (SHARED_MEMORY, UDP, TCP)
-_AS_A_SERVER = (
-    SHARED_MEMORY_SERVER,
-    GRAPHICS_CLIENT,
-    GRAPHICS_SERVER,
-    GRAPHICS_SERVER_TCP,
-    GRAPHICS_SERVER_MAIN_THREAD,
-)
+# Without a server these have a world of their own that nobody sees.
+_TO_GRAPHICS = (GRAPHICS_CLIENT, GRAPHICS_SERVER_TCP)
+_METHODS = {DIRECT, *_WITH_WINDOW, *_SERVERS, *_TO_A_SERVER, *_TO_GRAPHICS}
 _NO_SERVER = -1
 _ONE_WINDOW = (
     "Only one local in-process GUI/GUI_SERVER connection allowed. Use DIRECT connection mode or start a "
@@ -69,25 +80,36 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         *arguments: `key` and `options`, or `hostName`, `port` and `options`.
         **keywords: The same by name.
         method: `DIRECT` for a world without a window; any number of them, up to 1024 connections. `GUI`
-            for one with a window; `GUI_SERVER` and `GUI_MAIN_THREAD` are the same here. The window is a
-            page in the browser: its address is printed, and it opens where there is a display and `CI`
-            is not set.
-        key: Of shared memory; checked, but there are no servers in this version of Carom.
-        options: Of the window, separated by spaces: `--width=1024 --height=768`, the size of its image
-            until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
-            `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1`
-            and `--port=8400`, where the page is. Others are ignored.
+            for one with a window; `GUI_MAIN_THREAD` is the same here. The window is a page in the browser:
+            its address is printed, and it opens where there is a display and `CI` is not set.
+
+            `SHARED_MEMORY_SERVER` for a world that other processes can join, `GUI_SERVER` for one with a
+            window. `SHARED_MEMORY` joins such a world, or that of `python -m carom serve`, on the same
+            machine; `TCP` and `UDP` join one on any machine.
+
+            `GRAPHICS_SERVER` (and `..._MAIN_THREAD`) opens a window for the world of another process,
+            which connects by `GRAPHICS_CLIENT` (also called `SHARED_MEMORY_GUI`) or, over TCP, by
+            `GRAPHICS_SERVER_TCP`; without such a server these two have a world that nobody sees.
+        key: Of shared memory: servers and clients with the same key meet.
+        options: Separated by spaces; unknown ones are ignored. Of the window: `--width=1024 --height=768`,
+            the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
+            `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
+            `--port=8400`, where the page is. Of servers: `--tcp=6667` and
+            `--udp=1234`, ports to listen at as well; `--bind=127.0.0.1`, the address of these ports. Of
+            servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the key that both sides have
+            to know; otherwise it is the environment variable `CAROM_SERVER_KEY`, and between processes
+            of one user on one machine none has to be stated.
         hostName: Of a server.
-        port: Of a server.
+        port: Of a server; 6667 for TCP and 1234 for UDP if it is negative.
 
     Returns:
         The id of the connection, from 0; it is the `physicsClientId` of the other functions. -1 when no
-        server can be reached by `SHARED_MEMORY`, `UDP` or `TCP`, which is always so in this version.
+        server can be reached by `SHARED_MEMORY`, `UDP` or `TCP`, or it does not accept the key.
 
     Raises:
         pybullet.error: There is a window already, there are 1024 connections, the page cannot be served at
-            the address asked for, or the method does not exist or is a kind of server that this version of
-            Carom does not have.
+            the address asked for, there is a server with this key already or it cannot listen at its
+            ports, a key cannot be read, or the method does not exist.
 
     Examples:
         >>> other = p.connect(p.DIRECT)
@@ -96,23 +118,46 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         >>> p.disconnect(other)
     """
     method = integer(method, "method")
-    options = _connect_options(arguments, keywords)
+    target = _target(arguments, keywords)
     slot = free_slot()
     if slot is None:
         fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
-    if method in _TO_A_SERVER:
-        logger.info("No physics server can be reached: Carom has none in this version.")
-        return _NO_SERVER
-    if method in _AS_A_SERVER:
-        fail(
-            f"The connection method {method} is not available in this version of Carom.", "Use DIRECT or GUI."
-        )
-    if method in _WITH_WINDOW:
-        if any(living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)):
-            fail(_ONE_WINDOW)
-    elif method != DIRECT:
+    if method not in _METHODS:
         fail("connectPhysicsServer unexpected argument", f"There is no connection method {method}.")
+    if method in _TO_A_SERVER or method in _TO_GRAPHICS:
+        if _join(slot, method, target):
+            return slot
+        if method in _TO_A_SERVER:
+            return _NO_SERVER
+    if method in _WITH_WINDOW and any(
+        living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)
+    ):
+        fail(_ONE_WINDOW)
+    clients[slot] = _new_client(method, target)
+    if method in _SERVERS:
+        try:
+            _serve(slot, target)
+        except BaseException:
+            forget(slot)
+            raise
+    return slot
 
+
+def _join(slot: int, method: int, target: Target) -> bool:
+    """Connects to a server in another process; returns whether there is one."""
+    from pybullet._remote import join_server
+    from pybullet._server_options import address_of
+
+    client = join_server(method, address_of(method, target))
+    if client is None:
+        return False
+    remote_clients[slot] = client
+    add_detour(slot, client)
+    return True
+
+
+def _new_client(method: int, target: Target) -> Client:
+    """A client with a new world in this process."""
     # The engine is imported when it is needed, so that importing the module stays quick.
     from carom.world import World
     from pybullet._body_access import BodyTable
@@ -121,9 +166,18 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     if method in _WITH_WINDOW:
         from pybullet._page_window import open_window
 
-        client.window = open_window(client, options)
-    clients[slot] = client
-    return slot
+        client.window = open_window(client, target.options)
+    return client
+
+
+def _serve(slot: int, target: Target) -> None:
+    """Lets other processes drive the world of a client."""
+    from pybullet._served import Served
+    from pybullet._server_options import server_options
+
+    client = clients[slot]
+    client.server = Served(slot, client, server_options(client.method, target))
+    add_detour(slot, client.server)
 
 
 @exported
@@ -141,9 +195,9 @@ def disconnect(physicsClientId: int = 0) -> None:
         >>> p.isConnected()
         0
     """
-    client = client_of(physicsClientId)
-    del clients[physicsClientId]
-    client.close()
+    if connection_of(physicsClientId) is None:
+        fail(NOT_CONNECTED, f"There is no client {physicsClientId}.")
+    forget(index(physicsClientId))
 
 
 @exported
@@ -160,7 +214,7 @@ def isConnected(physicsClientId: int = 0) -> int:
         >>> p.isConnected(), p.isConnected(99)
         (1, 0)
     """
-    return int(living_client(physicsClientId) is not None)
+    return int(connection_of(physicsClientId) is not None)
 
 
 @exported
@@ -177,7 +231,7 @@ def getConnectionInfo(physicsClientId: int = 0) -> dict[str, int]:
         >>> p.getConnectionInfo()
         {'isConnected': 1, 'connectionMethod': 2}
     """
-    client = living_client(physicsClientId)
+    client = connection_of(physicsClientId)
     if client is None:
         return {"isConnected": 0, "connectionMethod": 0}
     return {"isConnected": 1, "connectionMethod": client.method}
@@ -219,7 +273,10 @@ def isNumpyEnabled(physicsClientId: int = 0) -> int:
 
 @exported
 def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
-    """How long to wait for a server. Worlds in the same process answer at once, so nothing changes.
+    """How long to wait for a server's answers: 60 s at first with `TCP` and `UDP`, for ever otherwise.
+
+    A call that is not answered in time raises `pybullet.error`, and the connection is closed. Worlds in the
+    same process answer at once.
 
     Args:
         timeOutInSeconds: Time [s].
@@ -231,13 +288,15 @@ def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
     Examples:
         >>> p.setTimeOut(5)
     """
-    client_of(physicsClientId)
-    real(timeOutInSeconds, "timeOutInSeconds")
+    client = connection_of(physicsClientId)
+    if client is None:
+        fail(NOT_CONNECTED, f"There is no client {physicsClientId}.")
+    client.set_timeout(real(timeOutInSeconds, "timeOutInSeconds"))
 
 
 @exported
 def syncBodyInfo(physicsClientId: int = 0) -> None:
-    """Reads the list of bodies from the server again. A world in the same process is always up to date.
+    """Reads the list of bodies from the server again. Here, every client always sees all bodies.
 
     Args:
         physicsClientId: The connection.
@@ -251,23 +310,22 @@ def syncBodyInfo(physicsClientId: int = 0) -> None:
     client_of(physicsClientId)
 
 
-def _connect_options(arguments: tuple[int | str, ...], keywords: dict[str, int | str]) -> str:
-    """Checks what follows the method, in either of the two forms; returns the options."""
+def _target(arguments: tuple[int | str, ...], keywords: dict[str, int | str]) -> Target:
+    """Checks what follows the method, in either of the two forms."""
     server_named = (bool(arguments) and isinstance(arguments[0], str)) or bool(
         {"hostName", "port"} & set(keywords)
     )
     names = ("hostName", "port", "options") if server_named else ("key", "options")
     given = by_name("connect", names, arguments, keywords)
+    checked: dict[str, Any] = {}
     for name, value in given.items():
-        if name in ("hostName", "options"):
-            text(value, name)
-        else:
-            integer(value, name)
-    return str(given.get("options", ""))
+        checked[name] = text(value, name) if name in ("hostName", "options") else integer(value, name)
+    if "hostName" in checked:
+        checked["host"] = checked.pop("hostName")
+    return Target(**checked)
 
 
 @atexit.register
 def _disconnect_all() -> None:
-    for client in clients.values():
-        client.close()
-    clients.clear()
+    for number in (*clients, *remote_clients):
+        forget(number)

@@ -9,7 +9,7 @@ from carom.errors import SimulationError
 from pybullet._arguments import integer, real
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of, clients
-from pybullet._constants import GUI, GUI_MAIN_THREAD, GUI_SERVER
+from pybullet._constants import DIRECT
 from pybullet._errors import fail
 from pybullet._shape_registry import ShapeRegistry
 
@@ -160,7 +160,7 @@ def setDefaultContactERP(defaultContactERP: float, physicsClientId: int = 0) -> 
 def setRealTimeSimulation(enableRealTimeSimulation: int, physicsClientId: int = 0) -> None:
     """Lets the simulation follow the wall clock, in the background.
 
-    Only with a window: in `DIRECT` the setting is kept but nothing moves by itself.
+    With a window and in servers; in `DIRECT` the setting is kept but nothing moves by itself.
 
     Args:
         enableRealTimeSimulation: 1 to start, 0 to stop.
@@ -174,7 +174,7 @@ def setRealTimeSimulation(enableRealTimeSimulation: int, physicsClientId: int = 
     """
     client = client_of(physicsClientId)
     client.real_time = int(integer(enableRealTimeSimulation, "enableRealTimeSimulation") != 0)
-    if client.method not in (GUI, GUI_SERVER, GUI_MAIN_THREAD):
+    if client.method == DIRECT:
         return
     if client.real_time and client.clock is None:
         from pybullet._real_time import RealTimeClock

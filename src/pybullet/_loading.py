@@ -40,6 +40,14 @@ def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
     client_of(physicsClientId).search_path = Path(text(path, "path"))
 
 
+def _in_usual_form(
+    arguments: tuple[Any, ...], keywords: dict[str, Any]
+) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """A call with numbers for the pose as one with vectors; any other call as it is."""
+    options = _legacy_pose(arguments[1:], keywords)
+    return (arguments[:1], options) if arguments and options else (arguments, keywords)
+
+
 @overload
 def loadURDF(
     fileName: str,
@@ -64,7 +72,8 @@ def loadURDF(
 ) -> int: ...
 @exported_as(
     "(fileName, basePosition=(0.0, 0.0, 0.0), baseOrientation=(0.0, 0.0, 0.0, 1.0), "
-    "useMaximalCoordinates=-1, useFixedBase=0, flags=0, globalScaling=-1, physicsClientId=0)"
+    "useMaximalCoordinates=-1, useFixedBase=0, flags=0, globalScaling=-1, physicsClientId=0)",
+    _in_usual_form,
 )
 def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     """Loads a robot from a URDF file.

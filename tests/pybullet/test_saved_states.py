@@ -147,6 +147,7 @@ def test_files_that_are_none(scene, tmp_path: Path) -> None:
     assert p.getNumBodies() == 3
 
 
+@pytest.mark.insides
 def test_saving_and_removing_states_does_not_pile_up(scene) -> None:
     from pybullet._clients import clients
 

@@ -208,6 +208,7 @@ def test_a_landscape_gets_other_heights_wherever_it_is_used(client: int) -> None
         landscape([0] * 6, replaced=p.createCollisionShape(p.GEOM_SPHERE))
 
 
+@pytest.mark.insides
 def test_heights_come_from_text_the_way_pybullet_turns_it(client: int, tmp_path: Path) -> None:
     file = tmp_path / "field.txt"
     file.write_text("0, 1, 2,\n3, 4, 5,\n6, 7, 8,\n")
@@ -227,6 +228,7 @@ def test_text_that_is_no_landscape_is_refused(client: int, tmp_path: Path, text:
         p.createCollisionShape(p.GEOM_HEIGHTFIELD, fileName=str(file))
 
 
+@pytest.mark.insides
 def test_heights_come_from_the_red_of_images(client: int, tmp_path: Path) -> None:
     from PIL import Image
 
@@ -240,6 +242,7 @@ def test_heights_come_from_the_red_of_images(client: int, tmp_path: Path) -> Non
     np.testing.assert_allclose(heights + 0.5, [1.0, 0.2, 0.0, 0.0, 0.0, 0.0], atol=1e-7)
 
 
+@pytest.mark.insides
 def test_filters_reach_the_shapes(client: int) -> None:
     body = p.createMultiBody(1.0, **one_link())
     other = p.createMultiBody(0)

@@ -181,6 +181,7 @@ def test_forces_act_at_points_and_for_one_step(floating_arm: int) -> None:
     assert p.getBaseVelocity(floating_arm)[0][2] == pytest.approx(velocity, rel=0.01)
 
 
+@pytest.mark.insides
 def test_a_force_beside_the_centre_is_a_force_and_a_torque(floating_arm: int) -> None:
     world = clients[0].world
     row = world.bodies[floating_arm].first_link

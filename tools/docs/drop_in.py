@@ -69,7 +69,6 @@ cube = p.loadURDF("cube_small.urdf", [0.5, 0, 0.025])
 """
 
 LIMITED = {
-    "connect": "there are no physics servers",
     "configureDebugVisualizer": "the flags of virtual reality are recorded and have no effect",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",

@@ -1,0 +1,162 @@
+"""Frames on a socket: a message, the contents of its arrays, and the number of the call they belong to.
+
+A frame is a header of 16 bytes (number of the call, size of the message, size of the contents; unsigned,
+little endian), the message, and the contents; message and contents are each padded to a multiple of 16 bytes.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Sequence
+from dataclasses import dataclass
+from struct import Struct
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.remote.errors import Malformed
+from carom.remote.values import ALIGNMENT, padded
+
+GREATEST_NUMBER = 2**32 - 1
+"""Of a call."""
+
+_HEADER = Struct("<IIQ")
+# Reading this much at once takes most frames whole.
+_CHUNK = 65536
+# Smaller contents are copied into one message to the system, which is faster than two.
+_SMALL = 16384
+# Memory that is taken at once for a longer frame, on the word of its header.
+_TRUSTED = 16 << 20
+_NOTHING = memoryview(b"")
+_ZEROS = bytes(ALIGNMENT)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The greatest sizes one side takes from the other [bytes].
+
+    Attributes:
+        message: Of a message.
+        contents: Of all arrays in it.
+    """
+
+    message: int
+    contents: int
+
+
+OF_CALLS = Limits(message=64 << 20, contents=256 << 20)
+"""What servers take: a height field of 1,024 x 1,024, a texture of 8,192 x 8,192."""
+OF_RESULTS = Limits(message=512 << 20, contents=2048 << 20)
+"""What clients take."""
+
+
+class Frame(NamedTuple):
+    """One frame, as it came.
+
+    Attributes:
+        number: Of the call.
+        message: The message.
+        contents: Of the arrays in it.
+    """
+
+    number: int
+    message: memoryview
+    contents: memoryview
+
+
+def check_size(message: bytes, arrays: Sequence[memoryview], limits: Limits) -> None:
+    """Raises `Malformed` if the other side would not take a message and the contents of its arrays."""
+    size = _size(arrays)
+    if len(message) > limits.message or size > limits.contents:
+        raise Malformed(f"{len(message) + size:,} bytes are too much for one message.")
+
+
+def send(peer: socket.socket, number: int, message: bytes, arrays: Sequence[memoryview]) -> None:
+    """Sends one frame.
+
+    Args:
+        peer: The socket.
+        number: Of the call.
+        message: The message.
+        arrays: Contents of the arrays in it.
+
+    Raises:
+        OSError: The socket is closed, or does not take it in time.
+    """
+    head = _HEADER.pack(number, len(message), _size(arrays)) + message + _ZEROS[: -len(message) % ALIGNMENT]
+    pieces: list[bytes | memoryview] = [head]
+    for array in arrays:
+        pieces += [array, _ZEROS[: -len(array) % ALIGNMENT]]
+    if arrays and sum(map(len, pieces)) <= _SMALL:
+        pieces = [b"".join(pieces)]
+    for piece in pieces:
+        if len(piece):
+            peer.sendall(piece)
+
+
+def _size(arrays: Sequence[memoryview]) -> int:
+    return sum(padded(len(array)) for array in arrays)
+
+
+class Reader:
+    """Reads frames from a socket. What was read of a frame is kept when waiting for the rest is interrupted.
+
+    Args:
+        peer: The socket.
+        limits: Of the frames. Memory is taken as content arrives, not as a header promises it.
+    """
+
+    def __init__(self, peer: socket.socket, limits: Limits) -> None:
+        self._peer = peer
+        self._limits = limits
+        # Most frames fit into this one and are copied from it; a longer one gets memory of its own.
+        self._usual = memoryview(bytearray(_CHUNK))
+        self._filled = 0
+        self._long = _NOTHING
+
+    def frame(self) -> Frame:
+        """The next frame.
+
+        Raises:
+            Malformed: The frame is larger than the limits.
+            EOFError: The other side has closed the socket.
+            OSError: The socket is closed, or its time is over.
+        """
+        usual = self._usual
+        while self._filled < _HEADER.size:
+            self._filled += self._read(usual[self._filled :])
+        number, message, contents = _HEADER.unpack_from(usual)
+        if message > self._limits.message or contents > self._limits.contents:
+            raise Malformed(f"A message of {message + contents:,} bytes is more than is taken.")
+        begin = _HEADER.size + padded(message)
+        size = begin + contents
+        if size > _CHUNK:
+            whole = self._long_frame(size)
+        else:
+            while self._filled < size:
+                self._filled += self._read(usual[self._filled :])
+            whole = memoryview(bytearray(usual[:size]))
+            rest = self._filled - size
+            if rest:
+                usual[:rest] = bytes(usual[size : self._filled])
+            self._filled = rest
+        return Frame(number, whole[_HEADER.size : _HEADER.size + message], whole[begin:])
+
+    def _long_frame(self, size: int) -> memoryview:
+        """The rest of a frame that is longer than the usual ones, whose beginning has been read."""
+        while self._filled < _CHUNK:
+            self._filled += self._read(self._usual[self._filled :])
+        while self._filled < size:
+            if self._filled >= len(self._long):
+                longer = memoryview(np.empty(min(size, max(_TRUSTED, 2 * self._filled)), np.uint8))
+                longer[: self._filled] = (self._long or self._usual)[: self._filled]
+                self._long = longer
+            self._filled += self._read(self._long[self._filled :])
+        whole, self._long, self._filled = self._long, _NOTHING, 0
+        return whole
+
+    def _read(self, free: memoryview) -> int:
+        count = self._peer.recv_into(free)
+        if count == 0:
+            raise EOFError("The other side has closed the connection.")
+        return count

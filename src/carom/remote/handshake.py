@@ -1,0 +1,93 @@
+"""Both sides show that they know the key, without sending it.
+
+The client sends a greeting and a random number. The server answers with its greeting, a random number of its
+own, and a digest (HMAC-SHA256) of both under the key; the client then sends a digest of its own, and the
+server a last byte when that is right. So nobody without the key can talk to a server, nor pose as one.
+"""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+import socket
+from time import monotonic
+
+from carom.remote.errors import NoServer
+
+TIMEOUT = 5.0
+"""How long either side has for all of it [s]."""
+
+_GREETING = b"carom 1\n"
+_NONCE = 32
+_DIGEST = 32
+_WELCOME = b"+"
+
+
+def new_key() -> bytes:
+    """A key nobody can guess."""
+    return secrets.token_hex(32).encode()
+
+
+def enter(peer: socket.socket, key: bytes) -> None:
+    """The client's side.
+
+    Raises:
+        NoServer: The other side is no server of this version, or one with another key.
+    """
+    mine = secrets.token_bytes(_NONCE)
+    talk = _Talk(peer)
+    try:
+        peer.sendall(_GREETING + mine)
+        if talk.receive(len(_GREETING)) != _GREETING:
+            raise NoServer("What answers there is no physics server of this version of Carom.")
+        theirs = talk.receive(_NONCE)
+        if not hmac.compare_digest(talk.receive(_DIGEST), _digest(key, b"server", mine, theirs)):
+            raise NoServer("The server has another key.")
+        peer.sendall(_digest(key, b"client", mine, theirs))
+        talk.receive(len(_WELCOME))
+    except (OSError, EOFError) as problem:
+        raise NoServer(f"The server turns away: {problem}") from problem
+
+
+def admit(peer: socket.socket, key: bytes) -> bool:
+    """The server's side.
+
+    Returns:
+        Whether the client knows the key.
+
+    Raises:
+        OSError: The socket is closed, or its time is over.
+        EOFError: The client has closed it.
+    """
+    talk = _Talk(peer)
+    if talk.receive(len(_GREETING)) != _GREETING:
+        return False
+    theirs = talk.receive(_NONCE)
+    mine = secrets.token_bytes(_NONCE)
+    peer.sendall(_GREETING + mine + _digest(key, b"server", theirs, mine))
+    if not hmac.compare_digest(talk.receive(_DIGEST), _digest(key, b"client", theirs, mine)):
+        return False
+    peer.sendall(_WELCOME)
+    return True
+
+
+def _digest(key: bytes, side: bytes, of_client: bytes, of_server: bytes) -> bytes:
+    return hmac.digest(key, side + of_client + of_server, "sha256")
+
+
+class _Talk:
+    """What the other side says within the time it has, however slowly it says it."""
+
+    def __init__(self, peer: socket.socket) -> None:
+        self._peer = peer
+        self._deadline = monotonic() + TIMEOUT
+
+    def receive(self, size: int) -> bytes:
+        content = b""
+        while len(content) < size:
+            self._peer.settimeout(max(self._deadline - monotonic(), 0.001))
+            piece = self._peer.recv(size - len(content))
+            if not piece:
+                raise EOFError("the connection was closed")
+            content += piece
+        return content

@@ -1,0 +1,171 @@
+"""A server: sockets that listen, and a thread for each client."""
+
+from __future__ import annotations
+
+import logging
+import socket
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from threading import BoundedSemaphore, Event, Lock, Thread, current_thread
+
+from carom.remote.errors import Malformed
+from carom.remote.frames import OF_CALLS, Frame, Reader, send
+from carom.remote.handshake import admit
+
+MAX_CLIENTS = 64
+"""Connections at the same time."""
+
+# Connections that have not shown the key yet do not count as clients, but there are bounds for them, too.
+_MAX_STRANGERS = 32
+# How long to wait for the calls in progress when a server closes [s].
+_PATIENCE = 5.0
+# How often a thread that waits for somebody to come looks whether the server is closing: nothing wakes it up
+# on every system [s].
+_LOOK = 0.5
+
+_log = logging.getLogger("carom")
+
+Answer = Callable[[Frame], tuple[bytes, list[memoryview]]]
+"""Makes the message of a reply, and the contents of the arrays in it; raises `Malformed` for nonsense."""
+
+
+class Listener:
+    """Listens, admits clients that know the key, and has their calls answered, each client's one by one.
+
+    A client that sends what is no call loses its connection; one that hangs keeps its own thread waiting.
+
+    Args:
+        addresses: Hosts and ports to listen at; port 0 for any that is free.
+        key: What clients have to know.
+        answer: Called with each frame, by several threads at once.
+
+    Attributes:
+        addresses: Where it listens, in the order of the argument.
+
+    Raises:
+        OSError: An address cannot be listened at.
+    """
+
+    def __init__(self, addresses: Sequence[tuple[str, int]], key: bytes, answer: Answer) -> None:
+        self._key = key
+        self._answer = answer
+        self._closing = Event()
+        self._lock = Lock()
+        self._places = BoundedSemaphore(MAX_CLIENTS)
+        self._waiting_room = BoundedSemaphore(_MAX_STRANGERS)
+        self._talks: dict[Thread, socket.socket] = {}
+        self._sockets: list[socket.socket] = []
+        try:
+            for host, port in addresses:
+                self._sockets.append(_listening(host, port))
+        except OSError:
+            self._close_sockets()
+            raise
+        self.addresses: list[tuple[str, int]] = [one.getsockname()[:2] for one in self._sockets]
+        self._threads = [
+            Thread(target=self._accept, args=(listening,), name="carom server", daemon=True)
+            for listening in self._sockets
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    @property
+    def client_count(self) -> int:
+        """How many connections there are, admitted or not."""
+        return len(self._talks)
+
+    def close(self) -> None:
+        """Ends all connections; calls in progress are completed, but nobody hears the answer."""
+        self._closing.set()
+        self._close_sockets()
+        with self._lock:
+            talks = dict(self._talks)
+        for peer in talks.values():
+            _hang_up(peer)
+        for thread in (*self._threads, *talks):
+            if thread is not current_thread():
+                thread.join(_PATIENCE)
+
+    def abandon(self) -> None:
+        """Closes what a forked process has inherited, of which its parent sees nothing; it has no threads."""
+        for inherited in (*self._sockets, *self._talks.values()):
+            inherited.close()
+
+    def _close_sockets(self) -> None:
+        for listening in self._sockets:
+            # Wakes up the thread that waits for somebody to come, on some systems.
+            with suppress(OSError):
+                listening.shutdown(socket.SHUT_RDWR)
+            listening.close()
+
+    def _accept(self, listening: socket.socket) -> None:
+        while not self._closing.is_set():
+            try:
+                peer, _ = listening.accept()
+            except TimeoutError:
+                continue
+            except OSError:
+                # Either it is closing, the connection has gone before it came, or there are no more files.
+                self._closing.wait(0.05)
+                continue
+            if not self._waiting_room.acquire(blocking=False):
+                peer.close()
+                continue
+            thread = Thread(target=self._talk, args=(peer,), name="carom client", daemon=True)
+            with self._lock:
+                self._talks[thread] = peer
+            thread.start()
+
+    def _talk(self, peer: socket.socket) -> None:
+        try:
+            with peer:
+                if self._admitted(peer) and not self._closing.is_set():
+                    try:
+                        self._converse(peer)
+                    finally:
+                        self._places.release()
+        except (OSError, EOFError):
+            pass
+        except Malformed as problem:
+            _log.warning("A client has lost its connection: %s", problem)
+        except Exception:
+            _log.exception("A client has lost its connection.")
+        finally:
+            with self._lock:
+                del self._talks[current_thread()]
+
+    def _admitted(self, peer: socket.socket) -> bool:
+        """Whether it knows the key, and there is room: then it has a place, to be released."""
+        try:
+            if not admit(peer, self._key):
+                _log.warning("A client with a wrong key was refused.")
+                return False
+        finally:
+            self._waiting_room.release()
+        if not self._places.acquire(blocking=False):
+            _log.warning("A client was refused: there are %s already.", MAX_CLIENTS)
+            return False
+        return True
+
+    def _converse(self, peer: socket.socket) -> None:
+        peer.settimeout(None)
+        peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        # A machine that vanishes says no goodbye.
+        peer.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        reader = Reader(peer, OF_CALLS)
+        while not self._closing.is_set():
+            frame = reader.frame()
+            message, arrays = self._answer(frame)
+            send(peer, frame.number, message, arrays)
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    listening = socket.create_server(address[:2], family=family)
+    listening.settimeout(_LOOK)
+    return listening
+
+
+def _hang_up(peer: socket.socket) -> None:
+    with suppress(OSError):
+        peer.shutdown(socket.SHUT_RDWR)

@@ -1,0 +1,101 @@
+r"""Where clients on the same machine find a server, and its key, by nothing but a name.
+
+A server leaves a note in a folder that belongs to the user: address and key. Only that user can read it. The
+folder is `$XDG_RUNTIME_DIR/carom`, or `carom-<user number>` in the system's folder for temporary files, on
+Windows `%LOCALAPPDATA%\carom\servers`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from carom.remote.errors import RemoteError
+
+# Of a note [bytes].
+_GREATEST_SIZE = 4096
+
+
+@dataclass(frozen=True)
+class Note:
+    """How to reach a server.
+
+    Attributes:
+        host: Where it listens.
+        port: Its port.
+        key: What both sides have to know.
+    """
+
+    host: str
+    port: int
+    key: bytes
+
+    def leave(self, name: str) -> None:
+        """Leaves the note under a name, in place of an older one.
+
+        Raises:
+            RemoteError: The folder belongs to somebody else.
+            OSError: It cannot be written to.
+        """
+        folder = _folder()
+        _make_private(folder)
+        handle, draft = tempfile.mkstemp(dir=folder)
+        try:
+            with os.fdopen(handle, "w", encoding="ascii") as file:
+                json.dump({"host": self.host, "port": self.port, "key": self.key.hex()}, file)
+            os.replace(draft, _path(name))
+        except OSError:
+            Path(draft).unlink(missing_ok=True)
+            raise
+
+    def take_away(self, name: str) -> None:
+        """Takes the note away, unless another server has put its own there."""
+        if find(name) == self:
+            with suppress(OSError):
+                _path(name).unlink()
+
+
+def find(name: str) -> Note | None:
+    """The note of a name; None when there is none, or none that this user has left."""
+    try:
+        with _path(name).open("rb") as file:
+            if not _is_private(os.fstat(file.fileno())):
+                return None
+            content = json.loads(file.read(_GREATEST_SIZE))
+        host, port, key = content["host"], content["port"], bytes.fromhex(content["key"])
+    # It is not there, it is no JSON, or not what a server writes.
+    except (OSError, ValueError, RecursionError, KeyError, TypeError):
+        return None
+    return Note(host, port, key) if isinstance(host, str) and isinstance(port, int) else None
+
+
+def _path(name: str) -> Path:
+    return _folder() / f"{name}.json"
+
+
+def _folder() -> Path:
+    if os.name == "nt":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "carom" / "servers"
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    if runtime and os.path.isabs(runtime) and os.access(runtime, os.W_OK):
+        return Path(runtime) / "carom"
+    return Path(tempfile.gettempdir()) / f"carom-{os.getuid()}"
+
+
+def _make_private(folder: Path) -> None:
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode) or not _is_private(status):
+        raise RemoteError(f"{folder} is not a folder that only you can use; remove it.")
+
+
+def _is_private(status: os.stat_result) -> bool:
+    # On Windows what lies in the user's own folder is private by its access list.
+    if os.name == "nt":
+        return True
+    return status.st_uid == os.getuid() and not status.st_mode & 0o077
