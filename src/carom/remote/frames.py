@@ -148,7 +148,7 @@ class Reader:
             self._filled += self._read(self._usual[self._filled :])
         while self._filled < size:
             if self._filled >= len(self._long):
-                longer = memoryview(np.empty(min(size, max(_TRUSTED, 2 * self._filled)), np.uint8))
+                longer = np.empty(min(size, max(_TRUSTED, 2 * self._filled)), np.uint8).data
                 longer[: self._filled] = (self._long or self._usual)[: self._filled]
                 self._long = longer
             self._filled += self._read(self._long[self._filled :])
