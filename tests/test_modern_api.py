@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 import carom
 from carom import World
 from carom.description import JointType
+from carom.errors import DescriptionError
 
 # The solver stops when no row changes its velocity by more than 3e-4 in a sweep; about this much is left.
 SOLVED = 1e-3
@@ -396,3 +397,39 @@ def test_wrong_shapes_and_frames_are_refused(load):
         body.links[0].apply_force([1.0, 0.0, 0.0], frame="body")  # pyright: ignore[reportArgumentType]
     with pytest.raises(ValueError, match="not spherical"):
         body.joints[0].set_orientation_target([0.0, 0.0, 0.0, 1.0])
+
+
+ASSETS = Path(__file__).parents[1] / "src" / "pybullet_data"
+
+
+def test_worlds_load_sdf_and_mjcf_files():
+    with World() as world:
+        (arm,) = world.load_sdf(ASSETS / "kuka_iiwa" / "model.sdf")
+        assert arm.joint_count == 7
+        bodies = world.load_mjcf(ASSETS / "mjcf" / "inverted_pendulum.xml")
+        assert [body.name for body in bodies][-1] == "inverted pendulum"
+        world.gravity = (0.0, 0.0, -9.8)
+        world.step(10)
+        assert np.isfinite(world.position).all()
+
+
+def test_scaled_models_stand_closer(tmp_path):
+    text = '<sdf version="1.5"><model name="m"><pose>1 2 3 0 0 0</pose><link name="l"/></model></sdf>'
+    (tmp_path / "m.sdf").write_text(text)
+    with World() as world:
+        (body,) = world.load_sdf(tmp_path / "m.sdf", scale=0.5)
+        first = body.first_position
+        assert_allclose(world.position[first : first + 3], (0.5, 1.0, 1.5))
+
+
+def test_of_a_broken_scene_nothing_is_loaded(tmp_path):
+    mesh = "<collision name='c'><geometry><mesh><uri>missing.obj</uri></mesh></geometry></collision>"
+    models = "".join(
+        f'<model name="{name}"><link name="l">{inside}</link></model>'
+        for name, inside in (("a", ""), ("b", mesh))
+    )
+    (tmp_path / "m.sdf").write_text(f'<sdf version="1.5"><world name="w">{models}</world></sdf>')
+    with World() as world:
+        with pytest.raises(DescriptionError):
+            world.load_sdf(tmp_path / "m.sdf")
+        assert not world.bodies

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, overload
+from typing import overload
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from carom.body import Body
 from carom.constraints import JointConstraints, moving_links
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
+from carom.engine_settings import engine_settings
 from carom.errors import SimulationError
 from carom.log import Log, Observer
 from carom.model.body_spec import BodySpec
@@ -22,33 +23,21 @@ from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.flags import LoadFlags
 from carom.model.launch import KernelStructs, Launch, TreeLaunch, launch
-from carom.model.structs import Settings
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.queries import Queries
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
+from carom.solver_report import solver_report
+from carom.state_views import VIEWS, StateViews
 from carom.stepper import Stepper
 from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
 from carom.user_data import UserData
 
 _DEVICE = "cpu"
-# Flat arrays of the state that users read or write: attribute of `World`, field of `State`.
-_VIEWS = {
-    "position": "position",
-    "velocity": "dof_velocity",
-    "motor": "dof_motor",
-    "pd": "dof_pd",
-    "joint_torque": "dof_torque",
-    "motor_impulse": "dof_motor_impulse",
-    "link_pose": "link_pose",
-    "link_velocity": "link_twist",
-    "link_force": "link_wrench",
-    "joint_reaction": "link_reaction",
-}
 
 
-class World:
+class World(StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
@@ -65,27 +54,6 @@ class World:
     Args:
         time_step: Duration of one step [s].
     """
-
-    position: np.ndarray
-    velocity: np.ndarray
-    motor: np.ndarray
-    pd: np.ndarray
-    joint_torque: np.ndarray
-    motor_impulse: np.ndarray
-    link_pose: np.ndarray
-    link_velocity: np.ndarray
-    link_force: np.ndarray
-    joint_reaction: np.ndarray
-    position_memory: memoryview[float]
-    velocity_memory: memoryview[float]
-    motor_memory: memoryview[float]
-    pd_memory: memoryview[float]
-    joint_torque_memory: memoryview[float]
-    motor_impulse_memory: memoryview[float]
-    link_pose_memory: memoryview[float]
-    link_velocity_memory: memoryview[float]
-    link_force_memory: memoryview[float]
-    joint_reaction_memory: memoryview[float]
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters = EngineParameters(time_step=time_step)
@@ -222,13 +190,60 @@ class World:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
         from carom.formats.search import AssetSearch
-        from carom.formats.urdf import read_urdf
-        from carom.model.assemble import assemble
+        from carom.loading import urdf_body
 
-        robot = read_urdf(Path(path), scale=scale, search=AssetSearch())
-        return self.load(
-            assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base), position, orientation
-        )
+        spec = urdf_body(Path(path), AssetSearch(), scale=scale, flags=flags, fixed_base=fixed_base)
+        return self.load(spec, position, orientation)
+
+    def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
+        """Add the models an SDF file describes, where it puts them.
+
+        Args:
+            path: The file.
+            scale: Factor on lengths.
+
+        Returns:
+            Their bodies, in the order of the file.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.formats.search import AssetSearch
+        from carom.loading import sdf_bodies
+
+        return self.load_all(sdf_bodies(Path(path), AssetSearch(), scale=scale))
+
+    def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
+        """Add the bodies an MJCF file describes, where it puts them.
+
+        Args:
+            path: The file.
+            flags: Loading flags, see `carom.model.flags.LoadFlags`.
+
+        Returns:
+            The bodies, in the order of the file.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.formats.search import AssetSearch
+        from carom.loading import mjcf_bodies
+
+        return self.load_all(mjcf_bodies(Path(path), AssetSearch(), flags=flags))
+
+    def load_all(self, bodies: Sequence[tuple[BodySpec, Pose]]) -> list[Body]:
+        """Add bodies at rest, all or none.
+
+        Args:
+            bodies: What they are, and the world pose of the link frame of their base.
+
+        Raises:
+            carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
+        """
+        from carom.loading import make_shapes
+
+        make_shapes(bodies)
+        return [self._add(spec, pose.position, pose.orientation) for spec, pose in bodies]
 
     def remove(self, body_id: int) -> None:
         """Take a body out of the world.
@@ -345,7 +360,7 @@ class World:
         Raises:
             ValueError: There is no such array, or `every` is less than 1.
         """
-        unknown = [name for name in names if name not in _VIEWS]
+        unknown = [name for name in names if name not in VIEWS]
         if unknown or every < 1:
             raise ValueError(f"there is no array {unknown[0]!r}" if unknown else f"every is {every}")
         return Log(self, names, every)
@@ -524,37 +539,14 @@ class World:
     def _kernel_structs(self) -> KernelStructs:
         """Structs over the present arrays, by the name kernels give them."""
         model, state, scratch = self._structs
-        self._kernels.update(settings=self._settings(), model=model, state=state, scratch=scratch)
+        self._kernels.update(
+            settings=engine_settings(self.parameters, self.arrays, self.touch),
+            model=model,
+            state=state,
+            scratch=scratch,
+        )
         self._kernels.update(self.touch.structs())
         return self._kernels
-
-    def _settings(self) -> Any:
-        p = self.parameters
-        settings = Settings()
-        settings.time_step = p.substep_time
-        settings.gravity = p.gravity
-        settings.iterations = p.solver_iterations
-        settings.inner_iterations = p.noncontact_inner_iterations
-        settings.residual_threshold = p.solver_residual_threshold
-        settings.joint_erp = p.erp
-        settings.split_impulse = int(p.split_impulse)
-        settings.split_threshold = p.split_impulse_penetration_threshold
-        settings.feedback_in_world = p.joint_feedback_mode & 1
-        settings.feedback_in_joint = p.joint_feedback_mode >> 1 & 1
-        settings.tree_count = self.arrays.used["tree"]
-        settings.user_count = self.touch.user_count
-        settings.constraint_count = self.arrays.used["constraint"]
-        settings.contact_erp = p.contact_erp
-        settings.friction_erp = p.friction_erp
-        settings.contact_softness = p.global_cfm / p.substep_time
-        settings.contact_slop = p.contact_slop
-        settings.contact_warm_starting = p.contact_warm_starting
-        settings.restitution_threshold = p.restitution_velocity_threshold
-        settings.cone_friction = int(p.cone_friction)
-        settings.shape_count = self.touch.shapes.shape_count
-        settings.filter_count = self.touch.shapes.filter_count
-        settings.filter_both = int(p.collision_filter_mode == 0)
-        return settings
 
     def analytics(self) -> list[dict[str, float]]:
         """What the solver did in the last substep, for each group of bodies solved together.
@@ -563,21 +555,7 @@ class World:
             Dictionaries with `islandId`, `numBodies` (links), `numIterationsUsed` and
             `remainingResidual` (greatest squared change of a row's velocity in the last sweep).
         """
-        state = self.arrays.state.numpy
-        bodies: dict[int, list[Body]] = {}
-        for body in self.bodies.values():
-            if body.rows.tree < self.arrays.used["tree"]:
-                bodies.setdefault(int(state["tree_island"][0, body.rows.tree]), []).append(body)
-        return [
-            {
-                "islandId": root,
-                "numBodies": sum(sum(moving_links(body)) for body in members if not body.is_asleep),
-                "numIterationsUsed": int(state["tree_iterations"][0, root]),
-                "remainingResidual": float(state["tree_residual"][0, root]),
-            }
-            for root, members in sorted(bodies.items())
-            if state["tree_iterations"][0, root]
-        ]
+        return solver_report(self)
 
     # Memory
 
@@ -589,10 +567,7 @@ class World:
         self._pose_launch: TreeLaunch | None = None
         self._all_poses_launch: Launch | None = None
         self._twist_launch: TreeLaunch | None = None
-        for name, field in _VIEWS.items():
-            view = self.arrays.state.numpy[field][0]
-            setattr(self, name, view)
-            setattr(self, f"{name}_memory", memoryview(view.reshape(-1)))
+        self.view(self.arrays.state)
         self._fault = memoryview(self.arrays.state.numpy["fault_tree"][0])
 
     @contextmanager

@@ -120,14 +120,11 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     warn_of_coordinates("loadURDF", maximal)
 
     from carom.errors import CaromError
-    from carom.formats.urdf import read_urdf
-    from carom.model.assemble import assemble
-    from carom.model.flags import LoadFlags
+    from carom.loading import urdf_body
 
-    search = client.search()
+    scale = scaling if scaling > 0.0 else 1.0
     try:
-        robot = read_urdf(Path(name), scale=scaling if scaling > 0.0 else 1.0, search=search)
-        spec = assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
+        spec = urdf_body(Path(name), client.search(), scale=scale, flags=flags, fixed_base=fixed_base)
     except CaromError as problem:
         fail(_CANNOT_LOAD, str(problem))
     load = FileLoad(

@@ -10,29 +10,19 @@ from typing import TYPE_CHECKING
 from pybullet._arguments import integer, real, text
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
-from pybullet._constants import (
-    MJCF_COLORS_FROM_FILE,
-    URDF_IGNORE_COLLISION_SHAPES,
-    URDF_IGNORE_VISUAL_SHAPES,
-    URDF_MERGE_FIXED_LINKS,
-    URDF_USE_IMPLICIT_CYLINDER,
-)
 from pybullet._errors import fail, logger
 from pybullet._new_bodies import add_bodies, warn_of_coordinates
 from pybullet._origins import FileLoad
 
 if TYPE_CHECKING:
-    from carom.formats.placed import PlacedRobot
     from carom.formats.search import AssetSearch
-    from carom.model.body_spec import BodySpec
+    from carom.loading import PlacedBody
 
 __all__ = ["loadMJCF", "loadSDF"]
 
 _CANNOT_LOAD_SDF = "Cannot load SDF file."
 _CANNOT_LOAD_MJCF = "Couldn't load .mjcf file."
 _MOST_BODIES = 512
-# What PyBullet does not do with MJCF files.
-_NOT_FOR_MJCF = URDF_MERGE_FIXED_LINKS | URDF_IGNORE_VISUAL_SHAPES | URDF_IGNORE_COLLISION_SHAPES
 
 
 @exported
@@ -71,18 +61,13 @@ def loadSDF(
     client = client_of(physicsClientId)
     warn_of_coordinates("loadSDF", maximal)
 
-    def read(search: AssetSearch) -> list[PlacedRobot]:
-        from carom.formats.sdf import read_sdf
+    def read(search: AssetSearch) -> list[PlacedBody]:
+        from carom.loading import sdf_bodies
 
-        return read_sdf(Path(name), scale=scaling if scaling > 0.0 else 1.0, search=search)
-
-    def build(placed: PlacedRobot) -> BodySpec:
-        from carom.model.assemble import assemble
-
-        return assemble(placed.robot, fixed_base=placed.fixed_base)
+        return sdf_bodies(Path(name), search, scale=scaling if scaling > 0.0 else 1.0)
 
     load = FileLoad("loadSDF", {"globalScaling": scaling})
-    return _load(client, read, build, _CANNOT_LOAD_SDF, load)
+    return _load(client, read, _CANNOT_LOAD_SDF, load)
 
 
 @exported
@@ -121,45 +106,24 @@ def loadMJCF(
     if integer(useMultiBody, "useMultiBody") == 0:
         logger.warning("loadMJCF: useMultiBody=0 has no effect; bodies have reduced coordinates.")
 
-    def read(search: AssetSearch) -> list[PlacedRobot]:
-        from carom.formats.mjcf import read_mjcf
+    def read(search: AssetSearch) -> list[PlacedBody]:
+        from carom.loading import mjcf_bodies
 
-        return read_mjcf(
-            Path(name),
-            colours=bits & MJCF_COLORS_FROM_FILE != 0,
-            implicit=bits & URDF_USE_IMPLICIT_CYLINDER != 0,
-            search=search,
-        )
+        return mjcf_bodies(Path(name), search, flags=bits)
 
-    def build(placed: PlacedRobot) -> BodySpec:
-        from carom.model.assemble import assemble
-        from carom.model.flags import LoadFlags
-        from carom.model.mjcf_inertia import set_mjcf_inertias
-
-        loading = LoadFlags(bits & ~_NOT_FOR_MJCF | URDF_USE_IMPLICIT_CYLINDER)
-        spec = assemble(placed.robot, flags=loading, compound_margin=0.0)
-        set_mjcf_inertias(spec)
-        return spec
-
-    return _load(client, read, build, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
+    return _load(client, read, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
 
 
 def _load(
-    client: Client,
-    read: Callable[[AssetSearch], list[PlacedRobot]],
-    build: Callable[[PlacedRobot], BodySpec],
-    problem: str,
-    load: FileLoad,
+    client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
 ) -> tuple[int, ...]:
     """Brings all robots of a file into the world of a client, or none."""
     from carom.errors import CaromError
 
     try:
-        placed = read(client.search())
-        if len(placed) > _MOST_BODIES:
-            fail(f"SDF exceeds body capacity: {len(placed)} > {_MOST_BODIES}")
-        specs = [build(robot) for robot in placed]
+        bodies = read(client.search())
     except CaromError as error:
         fail(problem, str(error))
-    bodies = [(spec, robot.pose) for spec, robot in zip(specs, placed, strict=True)]
+    if len(bodies) > _MOST_BODIES:
+        fail(f"SDF exceeds body capacity: {len(bodies)} > {_MOST_BODIES}")
     return add_bodies(client, bodies, problem, replace(load, count=len(bodies)))

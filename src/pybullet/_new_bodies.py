@@ -45,25 +45,11 @@ def add_bodies(
     from carom.errors import CaromError
 
     try:
-        if len(bodies) > 1:
-            _make_shapes([spec for spec, _ in bodies])
         with client.lock:
             client.bodies.clear()
-            ids = tuple(client.world.load(spec, pose.position, pose.orientation).id for spec, pose in bodies)
+            ids = tuple(body.id for body in client.world.load_all(bodies))
             if load is not None:
                 client.origins.update({number: Origin(load, index) for index, number in enumerate(ids)})
             return ids
     except CaromError as reason:
         fail(problem, str(reason))
-
-
-def _make_shapes(specs: Sequence[BodySpec]) -> None:
-    """Makes what collision detection needs, and keeps for later, so that what is wrong comes out now."""
-    from carom.model.flags import LoadFlags
-    from carom.model.shape_pieces import shape_pieces
-
-    for spec in specs:
-        implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-        for link in (spec.base, *spec.links):
-            for collision in link.collisions:
-                shape_pieces(collision.geometry, implicit_cylinder=implicit)

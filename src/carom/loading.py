@@ -1,0 +1,71 @@
+"""From a file to what a world takes: bodies and where they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from carom.description.pose import Pose
+from carom.formats.search import AssetSearch
+from carom.model.assemble import assemble
+from carom.model.body_spec import BodySpec
+from carom.model.flags import LoadFlags
+from carom.model.mjcf_inertia import set_mjcf_inertias
+from carom.model.shape_pieces import shape_pieces
+
+# What PyBullet does not do with MJCF files, and what it always does.
+_NOT_FOR_MJCF = (
+    LoadFlags.MERGE_FIXED_LINKS | LoadFlags.IGNORE_VISUAL_SHAPES | LoadFlags.IGNORE_COLLISION_SHAPES
+)
+_ALWAYS_FOR_MJCF = LoadFlags.USE_IMPLICIT_CYLINDER
+
+PlacedBody = tuple[BodySpec, Pose]
+"""A body, and the world pose of the link frame of its base."""
+
+
+def urdf_body(path: Path, search: AssetSearch, *, scale: float, flags: int, fixed_base: bool) -> BodySpec:
+    """The body of a URDF file; raises `DescriptionError`."""
+    from carom.formats.urdf import read_urdf
+
+    robot = read_urdf(path, scale=scale, search=search)
+    return assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
+
+
+def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedBody]:
+    """The bodies of an SDF file, in its order; raises `DescriptionError`."""
+    from carom.formats.sdf import read_sdf
+
+    robots = read_sdf(path, scale=scale, search=search)
+    return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
+
+
+def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int) -> list[PlacedBody]:
+    """The bodies of an MJCF file, in its order; raises `DescriptionError`."""
+    from carom.formats.mjcf import read_mjcf
+
+    robots = read_mjcf(
+        path,
+        colours=bool(flags & LoadFlags.MJCF_COLORS_FROM_FILE),
+        implicit=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
+        search=search,
+    )
+    loading = LoadFlags(flags & ~_NOT_FOR_MJCF | _ALWAYS_FOR_MJCF)
+    bodies = []
+    for placed in robots:
+        spec = assemble(placed.robot, flags=loading, compound_margin=0.0)
+        set_mjcf_inertias(spec)
+        bodies.append((spec, placed.pose))
+    return bodies
+
+
+def make_shapes(bodies: Sequence[PlacedBody]) -> None:
+    """Make what collision detection needs, and keeps for later, so that what is wrong comes out now.
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    for spec, _ in bodies:
+        implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        for link in (spec.base, *spec.links):
+            for collision in link.collisions:
+                shape_pieces(collision.geometry, implicit_cylinder=implicit)

@@ -1,0 +1,56 @@
+"""The state of a world as users read and write it: views of the engine's arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.model.arrays import ArrayTable
+
+# Flat arrays of the state that users read or write: attribute of `StateViews`, field of `State`.
+VIEWS = {
+    "position": "position",
+    "velocity": "dof_velocity",
+    "motor": "dof_motor",
+    "pd": "dof_pd",
+    "joint_torque": "dof_torque",
+    "motor_impulse": "dof_motor_impulse",
+    "link_pose": "link_pose",
+    "link_velocity": "link_twist",
+    "link_force": "link_wrench",
+    "joint_reaction": "link_reaction",
+}
+
+
+class StateViews:
+    """The flat arrays of `VIEWS` as NumPy views, and the same memory as flat `memoryview` of numbers.
+
+    They may be replaced when bodies are added or removed.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    motor: np.ndarray
+    pd: np.ndarray
+    joint_torque: np.ndarray
+    motor_impulse: np.ndarray
+    link_pose: np.ndarray
+    link_velocity: np.ndarray
+    link_force: np.ndarray
+    joint_reaction: np.ndarray
+    position_memory: memoryview[float]
+    velocity_memory: memoryview[float]
+    motor_memory: memoryview[float]
+    pd_memory: memoryview[float]
+    joint_torque_memory: memoryview[float]
+    motor_impulse_memory: memoryview[float]
+    link_pose_memory: memoryview[float]
+    link_velocity_memory: memoryview[float]
+    link_force_memory: memoryview[float]
+    joint_reaction_memory: memoryview[float]
+
+    def view(self, state: ArrayTable) -> None:
+        """Make the views of the present arrays."""
+        for name, field in VIEWS.items():
+            array = state.numpy[field][0]
+            setattr(self, name, array)
+            setattr(self, f"{name}_memory", memoryview(array.reshape(-1)))
