@@ -67,7 +67,8 @@ MAY_IMPORT = {
         "carom.version",
     },
     "pybullet_data": set(),
-    "pybullet_utils": {"pybullet"},
+    # The URDF editor writes files of its own.
+    "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
 }
 
 
