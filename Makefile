@@ -13,6 +13,7 @@
 #   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
 #   make watching     what it costs to be watched, in a browser; needs Chromium
+#   make clients      other people's tests and scripts on PyBullet and on Carom; needs git and GitHub
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
@@ -31,7 +32,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench growth watching clean
+.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench clients growth watching clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -71,6 +72,23 @@ oracle: .oracle/pybullet
 	.mujoco/bin/python -m pip --quiet --disable-pip-version-check install 'mujoco>=3.2,<5'
 	@touch $@
 
+# What the tests of the clients need beside the simulator. panda-gym asks for the distribution `pybullet`, which
+# is not to come here: `--no-deps`.
+CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
+
+.clients/carom/clients: pyproject.toml
+	$(PYTHON) -m venv .clients/carom
+	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --editable . $(CLIENT_NEEDS)
+	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --no-deps panda-gym
+	@touch $@
+
+.clients/oracle/clients:
+	@test -n "$(ORACLE_PYTHON)" || { echo "PyBullet needs Python <= 3.11; name one: make ORACLE_PYTHON=..." >&2; exit 1; }
+	$(ORACLE_PYTHON) -m venv .clients/oracle
+	.clients/oracle/bin/python -m pip --quiet --disable-pip-version-check install pybullet==3.2.7 $(CLIENT_NEEDS)
+	.clients/oracle/bin/python -m pip --quiet --disable-pip-version-check install --no-deps panda-gym
+	@touch $@
+
 # --- what users run ------------------------------------------------------------------------------
 
 # Builds only the kernels it needs; `make test` builds them all.
@@ -106,6 +124,12 @@ conformance: oracle $(VENV)/dev
 report: $(VENV)/dev
 	$(RUN) -m tests.conformance.report
 
+CLIENT_SOURCES ?= .clients/sources
+
+clients: .clients/carom/clients .clients/oracle/clients
+	$(PYTHON) -m tests.clients.run --carom .clients/carom/bin/python --oracle .clients/oracle/bin/python \
+		--work .clients --sources $(CLIENT_SOURCES) $(CLIENTS)
+
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak
 
@@ -128,5 +152,5 @@ figures: $(VENV)/dev
 	$(RUN) tools/docs/viewer_picture.py
 
 clean:
-	rm -rf $(VENV) .oracle .mujoco .bench build dist site demo-output .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .oracle .mujoco .bench .clients build dist site demo-output .pytest_cache .ruff_cache .hypothesis
 	find src tests examples benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +

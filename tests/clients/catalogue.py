@@ -1,0 +1,84 @@
+"""Other people's code that runs on PyBullet, and is run on Carom too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Suite:
+    """Tests of a project.
+
+    Attributes:
+        repository: Owner and name of its repository on GitHub.
+        tests: Folder or files of the tests in it.
+        options: Arguments of pytest.
+        path: Folder of the repository that is put on Python's path, where the project is not installed.
+    """
+
+    repository: str
+    tests: tuple[str, ...]
+    options: tuple[str, ...] = ()
+    path: str | None = None
+
+
+@dataclass(frozen=True)
+class Scripts:
+    """Scripts that are watched for a while.
+
+    Attributes:
+        module: The package of PyBullet's that has them, or none.
+        repository: Owner and name of the repository that has them, or none.
+        folder: Where in it they are.
+        left_out: Names of scripts that need what is not there: a headset, a second process, a person.
+    """
+
+    module: str | None = None
+    repository: str | None = None
+    folder: str = ""
+    left_out: tuple[str, ...] = ()
+
+
+# Those that wait for a server, drive a headset or a real robot, or dump logs named on the command line.
+_NO_HARDWARE = (
+    "dumpLog",
+    "dumpVrLog",
+    "graphicsClient",
+    "graphicsServer",
+    "grpcClient",
+    "grpcServer",
+    "hand",
+    "logMinitaur",
+    "minitaur_evaluate",
+    "vrEvent",
+    "vr_kitchen_setup_vrSyncPython",
+    "vr_kuka_control",
+    "vr_kuka_pr2_move",
+    "vr_kuka_setup",
+    "vr_kuka_setup_vrSyncPlugin",
+    "vr_kuka_setup_vrSyncPython",
+    "vr_racecar_differential",
+    "vrhand",
+    "vrhand_vive_tracker",
+    "vrminitaur",
+    "vrtracker",
+)
+
+SUITES = {
+    "panda-gym": Suite(
+        "qgallouedec/panda-gym",
+        tuple(
+            f"test/{name}_test.py"
+            for name in ("envs", "import", "pybullet", "render", "save_and_restore", "seed")
+        ),
+    ),
+    # Learning takes torch and many minutes: `learn` is left to those who have them.
+    "gym-pybullet-drones": Suite("utiasDSL/gym-pybullet-drones", ("tests",), ("-k", "not learn"), path="."),
+}
+
+SCRIPTS = {
+    "examples in the wheel": Scripts(module="pybullet_examples", left_out=_NO_HARDWARE),
+    "examples in the repository": Scripts(
+        repository="bulletphysics/bullet3", folder="examples/pybullet/examples", left_out=_NO_HARDWARE
+    ),
+}

@@ -1,0 +1,147 @@
+"""Runs other people's tests and scripts on PyBullet and on Carom, and says where the outcome differs.
+
+    python -m tests.clients.run --carom PYTHON --oracle PYTHON --work FOLDER [--sources FOLDER] [NAME ...]
+
+`make clients` makes the two environments and calls this. Repositories are cloned from GitHub into the folder
+of sources, unless they lie there already; nothing of them becomes part of this project.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.clients.catalogue import SCRIPTS, SUITES, Scripts, Suite
+from tests.clients.outcome import Run, Verdict, compare_runs, compare_tests, read_tests
+
+WATCH = Path(__file__).with_name("watch.py")
+STEPS = 240
+"""Of each script so many steps are watched: a second of the simulation."""
+SECONDS = 60
+"""And for no longer than this."""
+SUITE_SECONDS = 1800
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Where everything is: the two interpreters, scratch and the sources."""
+
+    interpreters: dict[str, Path]
+    work: Path
+    sources: Path
+
+    def source(self, repository: str) -> Path:
+        """The folder of a repository, cloned if it is not there."""
+        folder = self.sources / repository.partition("/")[2]
+        if not folder.exists():
+            address = f"https://github.com/{repository}"
+            subprocess.run(["git", "clone", "--quiet", "--depth", "1", address, str(folder)], check=True)
+        return folder
+
+    def folder_of(self, module: str) -> Path:
+        """The folder of a package of PyBullet's."""
+        command = [str(self.interpreters["oracle"]), "-c", f"import {module}; print({module}.__path__[0])"]
+        return Path(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split("\n")[0])
+
+    def scratch(self, *parts: str) -> Path:
+        """An empty folder for one run."""
+        folder = self.work.joinpath(*parts)
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+
+def run_suite(bench: Bench, name: str, suite: Suite) -> Verdict:
+    """Runs the tests of a project with both."""
+    source = bench.source(suite.repository)
+    outcomes = {}
+    for which, python in bench.interpreters.items():
+        folder = bench.scratch(name, which)
+        report = folder / "report.xml"
+        report.unlink(missing_ok=True)
+        tests = [str(source / test) for test in suite.tests]
+        command = [str(python), "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}"]
+        environment = _clean() | ({"PYTHONPATH": str(source / suite.path)} if suite.path else {})
+        _run([*command, *suite.options, *tests], folder, environment, SUITE_SECONDS)
+        outcomes[which] = read_tests(report)
+    return compare_tests(outcomes["oracle"], outcomes["carom"])
+
+
+def run_scripts(bench: Bench, name: str, scripts: Scripts, wanted: list[str]) -> list[tuple[str, Verdict]]:
+    """Watches each script with both, on PyBullet's own assets."""
+    root = bench.source(scripts.repository) if scripts.repository else bench.folder_of(str(scripts.module))
+    data = str(bench.folder_of("pybullet_data"))
+    verdicts = []
+    for script in sorted((root / scripts.folder).glob("*.py")):
+        if script.stem in (*scripts.left_out, "__init__") or (wanted and script.stem not in wanted):
+            continue
+        runs = {}
+        for which, python in bench.interpreters.items():
+            folder = bench.scratch(name, which, script.stem)
+            record = folder / "record.json"
+            record.unlink(missing_ok=True)
+            environment = _clean() | {"WATCH_DATA": data, "WATCH_WITHOUT_WINDOWS": "1"}
+            command = [str(python), str(WATCH), str(record), str(STEPS), str(SECONDS), str(script)]
+            _run(command, folder, environment, 2 * SECONDS)
+            runs[which] = Run.read(record)
+        verdicts.append((script.stem, compare_runs(runs["oracle"], runs["carom"])))
+        _say(script.stem, verdicts[-1][1])
+    return verdicts
+
+
+def _clean() -> dict[str, str]:
+    """The environment without what would mix up the two modules of one name."""
+    return {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+
+
+def _run(command: list[str], folder: Path, environment: dict[str, str], seconds: float) -> None:
+    with (folder / "output.txt").open("w") as output:
+        try:
+            subprocess.run(
+                command,
+                cwd=folder,
+                env=environment,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                timeout=seconds,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            output.write(f"\nended after {seconds} s\n")
+
+
+def _say(name: str, verdict: Verdict) -> None:
+    print(f"{'same' if verdict.good else 'DIFFERS':8s} {name:40s} {verdict.text}", flush=True)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--carom", type=Path, required=True, help="a Python with Carom")
+    parser.add_argument("--oracle", type=Path, required=True, help="a Python with PyBullet")
+    parser.add_argument("--work", type=Path, required=True, help="folder for what the runs write")
+    parser.add_argument("--sources", type=Path, help="folder of the repositories")
+    parser.add_argument("names", nargs="*", help="of suites and scripts; all where none are given")
+    options = parser.parse_args()
+    work = options.work.absolute()
+    interpreters = {"oracle": options.oracle.absolute(), "carom": options.carom.absolute()}
+    bench = Bench(interpreters, work, (options.sources or work / "sources").absolute())
+    bench.sources.mkdir(parents=True, exist_ok=True)
+    good = True
+    for name, suite in SUITES.items():
+        if not options.names or name in options.names:
+            verdict = run_suite(bench, name, suite)
+            _say(name, verdict)
+            good &= verdict.good
+    wanted = [name for name in options.names if name not in SUITES]
+    if wanted or not options.names:
+        for name, scripts in SCRIPTS.items():
+            print(f"\n{name}:")
+            good &= all(verdict.good for _, verdict in run_scripts(bench, name, scripts, wanted))
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

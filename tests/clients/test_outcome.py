@@ -1,0 +1,96 @@
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.clients import watch
+from tests.clients.outcome import Run, compare_runs, compare_tests, drift, read_tests
+
+FALLING = [(1, [[0.0, 0.0, 1.0]]), (20, [[0.0, 0.0, 0.5]]), (30, [[0.0, 0.0, 0.0]])]
+
+
+def shifted(by: float, since: int) -> list[tuple[int, list[list[float]]]]:
+    return [(step, [[x + by * (step >= since) for x in row] for row in state]) for step, state in FALLING]
+
+
+def test_runs_that_move_alike_are_the_same() -> None:
+    real = Run("steps", steps=30, states=FALLING)
+    assert compare_runs(real, Run("steps", steps=30, states=shifted(1e-4, 1))).good
+    assert compare_runs(real, Run("steps", steps=30, states=shifted(0.5, 30))).good
+    assert not compare_runs(real, Run("steps", steps=30, states=shifted(0.5, 20))).good
+    assert drift(FALLING, shifted(0.5, 30)) == (0.0, 0.5)
+
+
+def test_runs_with_other_bodies_differ() -> None:
+    real = Run("steps", states=FALLING)
+    assert not compare_runs(real, Run("steps", states=[(1, [[0.0]])])).good
+
+
+def test_errors_are_the_same_where_they_begin_alike() -> None:
+    real = Run("error", "error: Failed to read parameter.")
+    assert compare_runs(real, Run("error", "error: Failed to read parameter. There is no slider 3.")).good
+    assert compare_runs(real, Run("steps")).good
+    assert not compare_runs(real, Run("error", "error: something else")).good
+    assert not compare_runs(Run("steps"), Run("error", "error: something else")).good
+    assert compare_runs(Run("steps"), Run("error", "error: x is not available in this version of Carom")).good
+    assert not compare_runs(Run("steps"), Run("crash")).good
+
+
+def test_tests_that_pass_with_pybullet_are_to_pass() -> None:
+    real = {"a": "passed", "b": "failed", "c": "skipped"}
+    assert compare_tests(real, {"a": "passed", "b": "passed", "c": "skipped"}).good
+    lost = compare_tests(real, {"a": "failed", "b": "passed"})
+    assert not lost.good
+    assert "lost: a" in lost.text
+    assert not compare_tests({}, {}).good
+
+
+def test_reports_are_read(tmp_path: Path) -> None:
+    report = tmp_path / "report.xml"
+    assert read_tests(report) == {}
+    report.write_text(
+        '<testsuites><testsuite><testcase classname="m" name="a"/><testcase classname="m" name="b"><failure/>'
+        '</testcase><testcase classname="m" name="c"><skipped/></testcase></testsuite></testsuites>'
+    )
+    assert read_tests(report) == {"m::a": "passed", "m::b": "failed", "m::c": "skipped"}
+
+
+def watched(tmp_path: Path, script: str, steps: int = 30) -> Run:
+    path, record = tmp_path / "script.py", tmp_path / "record.json"
+    path.write_text(script)
+    command = [sys.executable, watch.__file__, str(record), str(steps), "60", str(path)]
+    subprocess.run(command, check=True, cwd=tmp_path)
+    assert json.loads(record.read_text())["module"].endswith("__init__.py")
+    return Run.read(record)
+
+
+def test_a_script_that_runs_for_ever_in_real_time_is_watched_for_its_steps(tmp_path: Path) -> None:
+    script = """
+import time
+import pybullet as p
+from pybullet_utils.bullet_client import BulletClient
+
+client = BulletClient(p.DIRECT)
+other = BulletClient(p.DIRECT)
+shape = client.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+ball = client.createMultiBody(1, shape, basePosition=[0, 0, 1])
+client.setGravity(0, 0, -10)
+client.setRealTimeSimulation(1)
+assert other.getNumBodies() == 0
+while True:
+    time.sleep(0.1)
+"""
+    run = watched(tmp_path, script)
+    assert (run.end, run.steps) == ("steps", 30)
+    (fallen,) = run.states[-1][1]
+    assert abs(fallen[2] - (1.0 - 0.5 * 10.0 * 30 * 31 / 240**2)) < 1e-3
+
+
+def test_a_script_that_ends_or_fails_says_so(tmp_path: Path) -> None:
+    assert watched(tmp_path, "print('done')").end == "last line"
+    failed = watched(tmp_path, "import pybullet as p\np.loadURDF('none.urdf')")
+    assert failed.end == "error"
+    assert failed.error.startswith("error: ")
+    assert Run.read(tmp_path / "missing.json").end == "crash"
