@@ -49,6 +49,8 @@ IN_PROCESS = (
     Case("stable_pd", "STABLE_PD_CONTROL, floating tree of 20 links"),
     Case("inverse_kinematics", "calculateInverseKinematics, KUKA, to a point", speedup=3.0),
     Case("inverse_kinematics_oriented", "calculateInverseKinematics, Panda, to a pose", speedup=3.0),
+    Case("save_1000", "saveState and removeState, 1,000 bodies", seconds=1e-3),
+    Case("restore_1000", "restoreState, 1,000 bodies", seconds=1e-3),
     Case("image_84", "getCameraImage, 84 x 84, Panda on the plane", speedup=4.0),
     Case("image_320", "getCameraImage, 320 x 240", speedup=4.0),
     Case("image_640", "getCameraImage, 640 x 480", speedup=4.0),

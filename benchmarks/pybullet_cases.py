@@ -115,6 +115,21 @@ step_2000_apart = partial(_step_apart, 2000)
 step_5000_apart = partial(_step_apart, 5000)
 
 
+def save_1000(original_data: str) -> Prepared:
+    _world()
+    crowds.scattered(1000)
+    p.stepSimulation()
+    return lambda: p.removeState(p.saveState())
+
+
+def restore_1000(original_data: str) -> Prepared:
+    _world()
+    crowds.scattered(1000)
+    p.stepSimulation()
+    state = p.saveState()
+    return lambda: p.restoreState(state)
+
+
 def rays(original_data: str) -> Prepared:
     _world()
     crowds.pile(200)

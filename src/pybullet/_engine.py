@@ -287,18 +287,21 @@ def setPhysicsEngineParameter(
         enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each by
             itself.
         deterministicOverlappingPairs: Sort pairs; Carom's order is always the same.
-        allowedCcdPenetration: Penetration that continuous collision detection allows [m].
+        allowedCcdPenetration: Penetration that continuous collision detection allows [m]; nothing here:
+            bodies stop where they touch.
         jointFeedbackMode: `JOINT_FEEDBACK_IN_WORLD_SPACE`, `JOINT_FEEDBACK_IN_JOINT_FRAME`, or both;
             0: in the link's inertial frame.
         solverResidualThreshold: The solver stops when no constraint's speed changes by more than the
             square root of this.
         contactSlop: Penetration that is left alone [m].
-        enableSAT: Use the separating axis test between convex shapes.
-        constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`.
-        globalCFM: Softness of all constraints.
+        enableSAT: Use the separating axis test between hulls; nothing here: faces that touch are always
+            found.
+        constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`; nothing here: all are solved as the first.
+        globalCFM: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
         minimumSolverIslandSize: Solve groups of fewer bodies together.
         reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
-        warmStartingFactor: Fraction of the last step's impulses to start from.
+        warmStartingFactor: Fraction of the last step's impulses to start from, of rigid bodies that are no
+            multibodies; nothing here.
         sparseSdfVoxelSize: Of deformable bodies; nothing here.
         numNonContactInnerIterations: Passes over motors, limits and constraints for each one over
             contacts; at least 1.

@@ -56,4 +56,6 @@ def test_dynamics_control(tmp_path: Path) -> None:
 
 
 def test_modern_world(tmp_path: Path) -> None:
-    assert abs(modern_world.main(tmp_path)) <= 0.5
+    swung, held = modern_world.main(tmp_path)
+    assert abs(swung) <= 0.51
+    assert held == pytest.approx(0.2, abs=0.01)

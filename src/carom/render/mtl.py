@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 from carom.description.link import Rgba
@@ -45,17 +46,24 @@ def read_materials(path: Path) -> dict[str, ObjMaterial]:
             if keyword == "newmtl":
                 material = materials.setdefault(rest, ObjMaterial())
             elif keyword == "Kd":
-                red, green, blue = map(float, rest.split())
+                red, green, blue = map(_finite, rest.split())
                 material.rgba = (red, green, blue, material.rgba[3])
             elif keyword == "d":
-                material.rgba = (*material.rgba[:3], float(rest))
+                material.rgba = (*material.rgba[:3], _finite(rest))
             elif keyword == "Tr":
-                material.rgba = (*material.rgba[:3], 1.0 - float(rest))
+                material.rgba = (*material.rgba[:3], 1.0 - _finite(rest))
             elif keyword == "map_Kd" and rest:
                 material.texture = _texture(path, rest)
         except ValueError:
             _log.warning("%s:%d: %s needs other numbers than %r; ignored", path, number, keyword, rest)
     return materials
+
+
+def _finite(word: str) -> float:
+    number = float(word)
+    if not isfinite(number):
+        raise ValueError(f"{word} is not finite")
+    return number
 
 
 def _texture(path: Path, words: str) -> Path:
