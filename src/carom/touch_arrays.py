@@ -48,7 +48,7 @@ class TouchArrays:
         """Double the room for rows over two trees; the step will be repeated, its detection as well."""
         self.contacts.numpy["count_contacts"][:, REPEATED] = 1
         capacity = self.couplings.capacity
-        self.couplings.reserve({"coupling": 2 * capacity["coupling"], "jacobian": 2 * capacity["jacobian"]})
+        self.couplings.reserve({axis: 2 * capacity[axis] for axis in ("coupling", "jacobian", "run")})
 
     def reserve(self) -> None:
         """Bring arrays that go with others to the length of those."""

@@ -187,10 +187,12 @@ class Patch:
     """
 
     place: Index4  # as `coupling_place`
+    run: Int32  # where in `run_block` the matrices of trees that are not small are, or -1
     first_contact: Int32
     count: Int32
     friction: Vector4  # coefficients
 
+    # Of small trees.
     normal_weighted_a: Matrix84
     normal_weighted_b: Matrix84
     normal_response_a: Matrix48
@@ -245,6 +247,8 @@ class Couplings:
     unit_code: IntRows  # what an island's sweep relaxes, in order: a contact, or -1 - patch
 
     patch: Patches
+    run_block: Vector4Rows  # see `physics.long_patches`
+    entry_run: RealRows
 
     user_impulse: Vector6Rows  # of the last substep, by row of the constraint
     user_first_row: IntRows
@@ -252,4 +256,8 @@ class Couplings:
 
 
 # Couplings that show another array's blocks entry by entry.
-COUPLING_ENTRY_VIEWS = {"entry_row": "jacobian_row", "entry_response": "jacobian_response"}
+COUPLING_ENTRY_VIEWS = {
+    "entry_row": "jacobian_row",
+    "entry_response": "jacobian_response",
+    "entry_run": "run_block",
+}

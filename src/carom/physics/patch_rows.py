@@ -1,10 +1,9 @@
-"""Writing the rows of patches; see `patches`."""
+"""Writing the rows of patches of small trees; see `patches`."""
 
 import warp as wp
 
-from carom.model.contact_structs import Contacts, Couplings, Patch, Shapes
+from carom.model.contact_structs import Couplings, Shapes
 from carom.model.real import (
-    Index4,
     Int32,
     Vector3,
     Vector4,
@@ -15,9 +14,7 @@ from carom.model.real import (
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_terms import (
     ContactTerms,
-    contact_terms,
     friction_change,
-    keep_contact_impulse,
     normal_change,
 )
 from carom.physics.couplings import tree_blocks
@@ -89,61 +86,105 @@ def small_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vec
 
 
 @func
-def write_normal(
+def row_direction(terms: ContactTerms, row: Int32) -> Vector3:
+    """Direction of a row of a contact: 0 is the normal, 1 and 2 are those of friction."""
+    direction = terms.normal
+    if row == 1:
+        direction = terms.lateral1
+    elif row == 2:
+        direction = terms.lateral2
+    return direction
+
+
+@func
+def write_row_numbers(
+    settings: Settings,
+    shapes: Shapes,
+    couplings: Couplings,
+    terms: ContactTerms,
+    world: Int32,
+    patch: Int32,
+    contact: Int32,
+    row: Int32,
+    velocity: real,
+    inverse_mass: real,
+) -> Vector3:
+    """Write everything about a row of a contact but its matrices.
+
+    Args:
+        settings: Softness, error reduction and more.
+        shapes: Restitution of the links.
+        couplings: The patch.
+        terms: The contact.
+        world: The world.
+        patch: The patch.
+        contact: Which of its contacts.
+        row: Which of the rows of the contact: 0 is the normal, 1 and 2 are those of friction.
+        velocity: Present velocity of the row.
+        inverse_mass: Velocity that a unit impulse gives it.
+
+    Returns:
+        Effective mass of the row, the impulse it starts from, 0.
+    """
+    if terms.ignored != 0:
+        inverse_mass = real(0.0)
+    change = friction_change(settings, velocity, terms.drift, row_direction(terms, row))
+    if row == 0:
+        inverse_mass += terms.softness
+        change = normal_change(
+            settings, shapes, velocity, terms.distance, terms.erp, terms.ends[1], terms.ends[3]
+        )
+    mass = inverse_or_off(inverse_mass)
+    if mass == 0.0:
+        inverse_mass = real(0.0)
+    impulse = real(0.0)
+    if mass > 0.0 and terms.start[0] > 0.0:
+        impulse = terms.start[row]
+    if row == 0:
+        couplings.patch[world, patch].friction[contact] = terms.friction[0]
+        couplings.patch[world, patch].normal_share[contact] = change * mass
+        couplings.patch[world, patch].normal_softness[contact] = terms.softness * mass
+        couplings.patch[world, patch].normal_inverse_mass[contact] = inverse_mass
+        couplings.patch[world, patch].normal_impulse[contact] = impulse
+    else:
+        i = 2 * contact + row - 1
+        couplings.patch[world, patch].friction_share[i] = change * mass
+        couplings.patch[world, patch].friction_inverse_mass[i] = inverse_mass
+        couplings.patch[world, patch].friction_impulse[i] = impulse
+    return Vector3(mass, impulse, 0.0)
+
+
+@func
+def write_small_matrices(
     couplings: Couplings,
     world: Int32,
     patch: Int32,
-    i: Int32,
+    contact: Int32,
+    row: Int32,
+    mass: real,
     jacobian_a: Vector8,
     jacobian_b: Vector8,
     response_a: Vector8,
     response_b: Vector8,
-    inverse_mass: real,
-    mass: real,
-    change: real,
-    softness: real,
-    impulse: real,
 ):
-    """Write normal row `i`; `mass` is its effective mass, `change` the change of velocity it asks for."""
-    couplings.patch[world, patch].normal_response_a[i] = response_a
-    couplings.patch[world, patch].normal_response_b[i] = response_b
-    for dof in range(8):
-        couplings.patch[world, patch].normal_weighted_a[dof, i] = mass * jacobian_a[dof]
-        couplings.patch[world, patch].normal_weighted_b[dof, i] = mass * jacobian_b[dof]
-    couplings.patch[world, patch].normal_share[i] = change * mass
-    couplings.patch[world, patch].normal_softness[i] = softness * mass
-    couplings.patch[world, patch].normal_inverse_mass[i] = inverse_mass
-    couplings.patch[world, patch].normal_impulse[i] = impulse
+    """Write the weighted Jacobian and the response of a row of effective mass `mass`."""
+    if row == 0:
+        couplings.patch[world, patch].normal_response_a[contact] = response_a
+        couplings.patch[world, patch].normal_response_b[contact] = response_b
+        for dof in range(8):
+            couplings.patch[world, patch].normal_weighted_a[dof, contact] = mass * jacobian_a[dof]
+            couplings.patch[world, patch].normal_weighted_b[dof, contact] = mass * jacobian_b[dof]
+    else:
+        i = 2 * contact + row - 1
+        couplings.patch[world, patch].friction_response_a[i] = response_a
+        couplings.patch[world, patch].friction_response_b[i] = response_b
+        for dof in range(8):
+            couplings.patch[world, patch].friction_weighted_a[dof, i] = mass * jacobian_a[dof]
+            couplings.patch[world, patch].friction_weighted_b[dof, i] = mass * jacobian_b[dof]
 
 
 @func
-def write_friction(
-    couplings: Couplings,
-    world: Int32,
-    patch: Int32,
-    i: Int32,
-    jacobian_a: Vector8,
-    jacobian_b: Vector8,
-    response_a: Vector8,
-    response_b: Vector8,
-    inverse_mass: real,
-    mass: real,
-    change: real,
-    impulse: real,
-):
-    """Write friction row `i`, as `write_normal`."""
-    couplings.patch[world, patch].friction_response_a[i] = response_a
-    couplings.patch[world, patch].friction_response_b[i] = response_b
-    for dof in range(8):
-        couplings.patch[world, patch].friction_weighted_a[dof, i] = mass * jacobian_a[dof]
-        couplings.patch[world, patch].friction_weighted_b[dof, i] = mass * jacobian_b[dof]
-    couplings.patch[world, patch].friction_share[i] = change * mass
-    couplings.patch[world, patch].friction_inverse_mass[i] = inverse_mass
-    couplings.patch[world, patch].friction_impulse[i] = impulse
-
-
-@func
-def write_patch_contact(
+def write_small_contact(
     settings: Settings,
     model: Model,
     state: State,
@@ -154,19 +195,14 @@ def write_patch_contact(
     world: Int32,
     patch: Int32,
     contact: Int32,
-    velocity_a: Vector8,
-    velocity_b: Vector8,
 ):
-    """Write the three rows of a contact of a patch."""
+    """Write the three rows of a contact between small trees."""
     place = couplings.patch[world, patch].place
-    couplings.patch[world, patch].friction[contact] = terms.friction[0]
+    velocity_a = small_velocity(model, state, world, terms.ends[0])
+    velocity_b = small_velocity(model, state, world, terms.ends[2])
     row = Int32(0)
     while row < 3:
-        direction = terms.normal
-        if row == 1:
-            direction = terms.lateral1
-        elif row == 2:
-            direction = terms.lateral2
+        direction = row_direction(terms, row)
         jacobian_a = small_jacobian(
             model, state, scratch, world, terms.ends[0], terms.ends[1], terms.point_a, direction
         )
@@ -177,39 +213,22 @@ def write_patch_contact(
         response_b = small_response(model, scratch, world, terms.ends[2], jacobian_b)
         velocity = wp.dot(jacobian_a, velocity_a) + wp.dot(jacobian_b, velocity_b)
         inverse_mass = wp.dot(jacobian_a, response_a) + wp.dot(jacobian_b, response_b)
-        if terms.ignored != 0:
-            inverse_mass = real(0.0)
-        change = friction_change(settings, velocity, terms.drift, direction)
-        if row == 0:
-            inverse_mass += terms.softness
-            change = normal_change(
-                settings, shapes, velocity, terms.distance, terms.erp, terms.ends[1], terms.ends[3]
-            )
-        mass = inverse_or_off(inverse_mass)
-        if mass == 0.0:
-            inverse_mass = real(0.0)
-        impulse = real(0.0)
-        if mass > 0.0 and terms.start[0] > 0.0:
-            impulse = terms.start[row]
+        numbers = write_row_numbers(
+            settings, shapes, couplings, terms, world, patch, contact, row, velocity, inverse_mass
+        )
+        write_small_matrices(
+            couplings, world, patch, contact, row, numbers[0], jacobian_a, jacobian_b, response_a, response_b
+        )
+        if numbers[1] != 0.0:
             if place[1] > 0:
-                add_change(scratch, world, place[0], impulse * response_a)
+                add_change(scratch, world, place[0], numbers[1] * response_a)
             if place[3] > 0:
-                add_change(scratch, world, place[2], impulse * response_b)
-        if row == 0:
-            write_normal(
-                couplings, world, patch, contact, jacobian_a, jacobian_b, response_a, response_b,
-                inverse_mass, mass, change, terms.softness, impulse,
-            )  # fmt: skip
-        else:
-            write_friction(
-                couplings, world, patch, 2 * contact + row - 1, jacobian_a, jacobian_b,
-                response_a, response_b, inverse_mass, mass, change, impulse,
-            )  # fmt: skip
+                add_change(scratch, world, place[2], numbers[1] * response_b)
         row += 1
 
 
 @func
-def write_gains(couplings: Couplings, world: Int32, patch: Int32):
+def write_small_gains(couplings: Couplings, world: Int32, patch: Int32):
     """Write by how much each impulse of a patch lowers those wanted along the rows after it."""
     for i in range(4):
         couplings.patch[world, patch].normal_gain[i] = lowered_normals(
@@ -229,61 +248,3 @@ def write_gains(couplings: Couplings, world: Int32, patch: Int32):
             couplings.patch[world, patch].friction_response_b[row],
         )
         row += 1
-
-
-@func
-def tree_place(model: Model, tree: Int32) -> Int32:
-    """First block of a tree in `delta_velocity`; 0 for the world, -1."""
-    if tree < 0:
-        return Int32(0)
-    return model.tree[tree].first_delta
-
-
-@func
-def write_patch(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    shapes: Shapes,
-    contacts: Contacts,
-    couplings: Couplings,
-    world: Int32,
-    patch: Int32,
-    first_contact: Int32,
-    count: Int32,
-):
-    """Write the rows of `count` contacts of the same two shapes of small trees."""
-    pair = contacts.contact_shapes[world, first_contact]
-    a = shapes.shape_tree[pair[0]]
-    b = shapes.shape_tree[pair[1]]
-    velocity_a = small_velocity(model, state, world, a)
-    velocity_b = small_velocity(model, state, world, b)
-    couplings.patch[world, patch] = Patch()
-    couplings.patch[world, patch].place = Index4(
-        tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
-    )
-    couplings.patch[world, patch].first_contact = first_contact
-    couplings.patch[world, patch].count = count
-    contact = Int32(0)
-    while contact < count:
-        terms = contact_terms(settings, state, shapes, contacts, world, first_contact + contact)
-        write_patch_contact(
-            settings, model, state, scratch, shapes, couplings, terms, world, patch, contact,
-            velocity_a, velocity_b,
-        )  # fmt: skip
-        contact += 1
-    write_gains(couplings, world, patch)
-
-
-@func
-def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, patch: Int32):
-    """Report the impulses of the contacts of a patch."""
-    normal = couplings.patch[world, patch].normal_impulse
-    lateral = couplings.patch[world, patch].friction_impulse
-    friction = couplings.patch[world, patch].friction
-    first = couplings.patch[world, patch].first_contact
-    for i in range(couplings.patch[world, patch].count):
-        keep_contact_impulse(
-            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i]
-        )

@@ -1,10 +1,11 @@
-"""Patches: the up to four contacts of two small trees, most often free bodies, relaxed together.
+"""Patches: the up to four contacts of two shapes, relaxed together.
 
 What a row of a patch does to the velocities of those after it is known beforehand. So all velocities
 are computed at once, from then on only the impulses depend on each other, and the trees' velocities
 are brought up to date once per patch: the same steps of Gauss-Seidel, without waiting for memory.
 
-Places beyond the last contact of a patch have no effective mass.
+Places beyond the last contact of a patch have no effective mass. Those of small trees, most often free
+bodies, are here; `long_patches` does the same for trees of any size.
 """
 
 import warp as wp
@@ -95,25 +96,9 @@ def greatest_square(change: Vector4) -> real:
 
 
 @func
-def relax_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32) -> real:
-    """Relax the normal rows of a patch; returns the greatest change of velocity squared."""
-    place = couplings.patch[world, patch].place
+def bounded_normals(couplings: Couplings, world: Int32, patch: Int32) -> Vector4:
+    """Change the normal impulses of a patch by what is wanted as far as they stay pushes."""
     before = couplings.patch[world, patch].normal_impulse
-    couplings.patch[world, patch].normal_wanted = couplings.patch[world, patch].normal_share - wp.cw_mul(
-        couplings.patch[world, patch].normal_softness, before
-    )
-    if place[1] > 0:
-        couplings.patch[world, patch].normal_wanted = couplings.patch[
-            world, patch
-        ].normal_wanted - lowered_normals(
-            couplings.patch[world, patch].normal_weighted_a, tree_change(scratch, world, place[0])
-        )
-    if place[3] > 0:
-        couplings.patch[world, patch].normal_wanted = couplings.patch[
-            world, patch
-        ].normal_wanted - lowered_normals(
-            couplings.patch[world, patch].normal_weighted_b, tree_change(scratch, world, place[2])
-        )
     wanted = couplings.patch[world, patch].normal_wanted
     gain = couplings.patch[world, patch].normal_gain
     change = Vector4(0.0, 0.0, 0.0, 0.0)
@@ -123,12 +108,12 @@ def relax_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: I
             change[i] = -before[i]
         wanted -= change[i] * gain[i]
     couplings.patch[world, patch].normal_impulse = before + change
-    if place[1] > 0:
-        moved = push_of_normals(couplings.patch[world, patch].normal_response_a, change)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_normals(couplings.patch[world, patch].normal_response_b, change)
-        add_change(scratch, world, place[2], moved)
+    return change
+
+
+@func
+def normal_residual(couplings: Couplings, world: Int32, patch: Int32, change: Vector4) -> real:
+    """The greatest change of velocity squared that goes with a change of normal impulses."""
     return greatest_square(wp.cw_mul(change, couplings.patch[world, patch].normal_inverse_mass))
 
 
@@ -138,28 +123,14 @@ def scale_to_circle(square: real, bound: real) -> real:
 
     Being called keeps root and quotient off the way of impulses within the circle, which most are.
     """
+    if bound == 0.0:
+        return 0.0
     return bound / wp.sqrt(square)
 
 
 @func
-def relax_friction(
-    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32
-) -> real:
-    """Relax the friction rows of a patch within its normal impulses; returns as `relax_normals`."""
-    place = couplings.patch[world, patch].place
-    couplings.patch[world, patch].friction_wanted = couplings.patch[world, patch].friction_share
-    if place[1] > 0:
-        couplings.patch[world, patch].friction_wanted = couplings.patch[
-            world, patch
-        ].friction_wanted - lowered_friction(
-            couplings.patch[world, patch].friction_weighted_a, tree_change(scratch, world, place[0])
-        )
-    if place[3] > 0:
-        couplings.patch[world, patch].friction_wanted = couplings.patch[
-            world, patch
-        ].friction_wanted - lowered_friction(
-            couplings.patch[world, patch].friction_weighted_b, tree_change(scratch, world, place[2])
-        )
+def bounded_friction(settings: Settings, couplings: Couplings, world: Int32, patch: Int32) -> Vector8:
+    """Change the friction of a patch by what is wanted, within its normal impulses."""
     wanted = couplings.patch[world, patch].friction_wanted
     before = couplings.patch[world, patch].friction_impulse
     bounds = wp.cw_mul(couplings.patch[world, patch].friction, couplings.patch[world, patch].normal_impulse)
@@ -188,12 +159,12 @@ def relax_friction(
         change[2 * i + 1] = change2
         wanted -= change1 * gain[2 * i] + change2 * gain[2 * i + 1]
     couplings.patch[world, patch].friction_impulse = before + change
-    if place[1] > 0:
-        moved = push_of_friction(couplings.patch[world, patch].friction_response_a, change)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_friction(couplings.patch[world, patch].friction_response_b, change)
-        add_change(scratch, world, place[2], moved)
+    return change
+
+
+@func
+def friction_residual(couplings: Couplings, world: Int32, patch: Int32, change: Vector8) -> real:
+    """The greatest change of velocity squared that goes with a change of friction."""
     velocity = wp.cw_mul(change, couplings.patch[world, patch].friction_inverse_mass)
     return greatest_square(
         Vector4(
@@ -203,3 +174,61 @@ def relax_friction(
             velocity[6] + velocity[7],
         )
     )
+
+
+@func
+def relax_small_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32) -> real:
+    """Relax the normal rows of a patch of small trees; returns the greatest change of velocity squared."""
+    place = couplings.patch[world, patch].place
+    couplings.patch[world, patch].normal_wanted = couplings.patch[world, patch].normal_share - wp.cw_mul(
+        couplings.patch[world, patch].normal_softness, couplings.patch[world, patch].normal_impulse
+    )
+    if place[1] > 0:
+        couplings.patch[world, patch].normal_wanted = couplings.patch[
+            world, patch
+        ].normal_wanted - lowered_normals(
+            couplings.patch[world, patch].normal_weighted_a, tree_change(scratch, world, place[0])
+        )
+    if place[3] > 0:
+        couplings.patch[world, patch].normal_wanted = couplings.patch[
+            world, patch
+        ].normal_wanted - lowered_normals(
+            couplings.patch[world, patch].normal_weighted_b, tree_change(scratch, world, place[2])
+        )
+    change = bounded_normals(couplings, world, patch)
+    if place[1] > 0:
+        moved = push_of_normals(couplings.patch[world, patch].normal_response_a, change)
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = push_of_normals(couplings.patch[world, patch].normal_response_b, change)
+        add_change(scratch, world, place[2], moved)
+    return normal_residual(couplings, world, patch, change)
+
+
+@func
+def relax_small_friction(
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32
+) -> real:
+    """Relax the friction rows of a patch of small trees; returns as `relax_small_normals`."""
+    place = couplings.patch[world, patch].place
+    couplings.patch[world, patch].friction_wanted = couplings.patch[world, patch].friction_share
+    if place[1] > 0:
+        couplings.patch[world, patch].friction_wanted = couplings.patch[
+            world, patch
+        ].friction_wanted - lowered_friction(
+            couplings.patch[world, patch].friction_weighted_a, tree_change(scratch, world, place[0])
+        )
+    if place[3] > 0:
+        couplings.patch[world, patch].friction_wanted = couplings.patch[
+            world, patch
+        ].friction_wanted - lowered_friction(
+            couplings.patch[world, patch].friction_weighted_b, tree_change(scratch, world, place[2])
+        )
+    change = bounded_friction(settings, couplings, world, patch)
+    if place[1] > 0:
+        moved = push_of_friction(couplings.patch[world, patch].friction_response_a, change)
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = push_of_friction(couplings.patch[world, patch].friction_response_b, change)
+        add_change(scratch, world, place[2], moved)
+    return friction_residual(couplings, world, patch, change)

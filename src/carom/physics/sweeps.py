@@ -14,7 +14,8 @@ from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Scratch, Settings
 from carom.physics.couplings import relax_coupling, relax_in_circle, relax_within
 from carom.physics.joint_solver import relax_row
-from carom.physics.patches import relax_friction, relax_normals
+from carom.physics.long_patches import relax_long_friction, relax_long_normals
+from carom.physics.patches import relax_small_friction, relax_small_normals
 
 
 @func
@@ -41,6 +42,24 @@ def visit_sweep(
             if change * change > residual:
                 residual = change * change
     return residual
+
+
+@func
+def relax_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32) -> real:
+    """Relax the normal rows of a patch; returns the greatest change of velocity squared."""
+    if couplings.patch[world, patch].run < 0:
+        return relax_small_normals(scratch, couplings, world, patch)
+    return relax_long_normals(scratch, couplings, world, patch)
+
+
+@func
+def relax_friction(
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32
+) -> real:
+    """Relax the friction rows of a patch; returns as `relax_normals`."""
+    if couplings.patch[world, patch].run < 0:
+        return relax_small_friction(settings, scratch, couplings, world, patch)
+    return relax_long_friction(settings, scratch, couplings, world, patch)
 
 
 @func

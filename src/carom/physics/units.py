@@ -6,7 +6,8 @@ from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.physics.contact_terms import contact_friction, contact_terms
 from carom.physics.couplings import has_room, tree_blocks
-from carom.physics.patch_rows import keep_patch_impulses, write_patch
+from carom.physics.long_patches import RUN_PER_BLOCK
+from carom.physics.patch_writing import keep_patch_impulses, write_patch
 from carom.physics.patches import SMALL
 
 
@@ -34,7 +35,7 @@ def write_units(
 ) -> Index4:
     """Write the rows of an island's contacts, from the free place on.
 
-    Several contacts of two small trees that neither roll nor spin against friction make a patch.
+    Several contacts of two shapes that neither roll nor spin against friction make a patch.
 
     Returns:
         Number of units, negative if some did not fit; number of patches; 1 if there is rolling or
@@ -43,6 +44,7 @@ def write_units(
     units = Int32(0)
     patches = Int32(0)
     torsion = Int32(0)
+    next_run = Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
@@ -57,10 +59,18 @@ def write_units(
         twists = friction[1] > 0.0 or friction[2] > 0.0
         if twists:
             torsion = Int32(1)
-        if count > 1 and not twists and tree_blocks(model, a) <= SMALL and tree_blocks(model, b) <= SMALL:
+        if count > 1 and not twists:
+            blocks = tree_blocks(model, a) + tree_blocks(model, b)
+            run = Int32(-1)
+            if tree_blocks(model, a) > SMALL or tree_blocks(model, b) > SMALL:
+                run = next_run + 0
+                next_run += RUN_PER_BLOCK * blocks
+                if next_run > couplings.run_block.shape[1] or not has_room(model, couplings, place, a, b):
+                    return Index4(-1, patches, torsion, 0)
             write_patch(
-                settings, model, state, scratch, shapes, contacts, couplings, world, patches, contact, count
-            )
+                settings, model, state, scratch, shapes, contacts, couplings, world, patches, contact, count,
+                run, place[1],
+            )  # fmt: skip
             couplings.unit_code[world, units] = -1 - patches
             patches += 1
             units += 1

@@ -1,0 +1,79 @@
+"""Making patches of contacts, and reporting what they did; see `patches`."""
+
+from carom.model.contact_structs import Contacts, Couplings, Patch, Shapes
+from carom.model.real import Index4, Int32, func
+from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.contact_terms import contact_terms, keep_contact_impulse
+from carom.physics.couplings import tree_blocks
+from carom.physics.long_patch_rows import clear_run, write_long_contact
+from carom.physics.patch_rows import write_small_contact, write_small_gains
+
+
+@func
+def tree_place(model: Model, tree: Int32) -> Int32:
+    """First block of a tree in `delta_velocity`; 0 for the world, -1."""
+    if tree < 0:
+        return Int32(0)
+    return model.tree[tree].first_delta
+
+
+@func
+def write_patch(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    couplings: Couplings,
+    world: Int32,
+    patch: Int32,
+    first_contact: Int32,
+    count: Int32,
+    run: Int32,
+    temporary: Int32,
+):
+    """Write the rows of `count` contacts of the same two shapes.
+
+    `run` is where in `Couplings.run_block` their matrices go, -1 if their trees are small; the blocks
+    from `temporary` on of a row over two trees are free.
+    """
+    pair = contacts.contact_shapes[world, first_contact]
+    a = shapes.shape_tree[pair[0]]
+    b = shapes.shape_tree[pair[1]]
+    couplings.patch[world, patch] = Patch()
+    couplings.patch[world, patch].place = Index4(
+        tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
+    )
+    couplings.patch[world, patch].run = run
+    couplings.patch[world, patch].first_contact = first_contact
+    couplings.patch[world, patch].count = count
+    if run >= 0:
+        clear_run(couplings, world, patch)
+    contact = Int32(0)
+    while contact < count:
+        terms = contact_terms(settings, state, shapes, contacts, world, first_contact + contact)
+        if run >= 0:
+            write_long_contact(
+                settings, model, state, scratch, shapes, couplings, terms, world, patch, contact, temporary
+            )
+        else:
+            write_small_contact(
+                settings, model, state, scratch, shapes, couplings, terms, world, patch, contact
+            )
+        contact += 1
+    if run < 0:
+        write_small_gains(couplings, world, patch)
+
+
+@func
+def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, patch: Int32):
+    """Report the impulses of the contacts of a patch."""
+    normal = couplings.patch[world, patch].normal_impulse
+    lateral = couplings.patch[world, patch].friction_impulse
+    friction = couplings.patch[world, patch].friction
+    first = couplings.patch[world, patch].first_contact
+    for i in range(couplings.patch[world, patch].count):
+        keep_contact_impulse(
+            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i]
+        )
