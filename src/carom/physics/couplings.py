@@ -253,6 +253,44 @@ def relax_in_circle(scratch: Scratch, couplings: Couplings, world: Int32, row: I
 
 
 @func
+def write_jacobians(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    ends: Index4,
+    point_a: Vector3,
+    point_b: Vector3,
+    linear: Vector3,
+    angular: Vector3,
+    start: Int32,
+) -> Vector3:
+    """Write the velocity of a point of a against one of b, along or about an axis, as a row.
+
+    `ends` are tree and link of a, then of b; tree -1 is the world. The row goes to block `start`.
+
+    Returns:
+        Inverse mass, relative velocity, 0.
+    """
+    result = Vector3(0.0, 0.0, 0.0)
+    side = Int32(0)
+    while side < 2:
+        point = point_a
+        sign = real(1.0)
+        if side == 1:
+            point = point_b
+            sign = real(-1.0)
+            start += tree_blocks(model, ends[0])
+        result += write_jacobian(
+            model, state, scratch, couplings, world, ends[2 * side], ends[2 * side + 1], point,
+            sign * linear, sign * angular, start,
+        )  # fmt: skip
+        side += 1
+    return result
+
+
+@func
 def write_pair_jacobian(
     model: Model,
     state: State,
@@ -267,28 +305,13 @@ def write_pair_jacobian(
     linear: Vector3,
     angular: Vector3,
 ) -> Vector4:
-    """Write a row that is the velocity of a point of a against one of b, along or about an axis.
-
-    `ends` are tree and link of a, then of b; tree -1 is the world. `block` is the first free one.
+    """As `write_jacobians`, at the first free block, and note where the row is.
 
     Returns:
         Inverse mass, relative velocity, next free block, 0.
     """
     after = place_row(model, couplings, world, row, ends[0], ends[2], block)
-    inverse_mass = real(0.0)
-    velocity = real(0.0)
-    start = block + 0
-    for side in range(2):
-        point = point_a
-        sign = real(1.0)
-        if side == 1:
-            point = point_b
-            sign = real(-1.0)
-        found = write_jacobian(
-            model, state, scratch, couplings, world, ends[2 * side], ends[2 * side + 1], point,
-            sign * linear, sign * angular, start,
-        )  # fmt: skip
-        inverse_mass += found[0]
-        velocity += found[1]
-        start += couplings.coupling_place[world, row][1]
-    return Vector4(inverse_mass, velocity, real(after), 0.0)
+    found = write_jacobians(
+        model, state, scratch, couplings, world, ends, point_a, point_b, linear, angular, block
+    )
+    return Vector4(found[0], found[1], real(after), 0.0)

@@ -5,7 +5,7 @@ from carom.model.contact_structs import Couplings, Shapes
 from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_terms import ContactTerms
-from carom.physics.couplings import write_jacobian
+from carom.physics.couplings import write_jacobians
 from carom.physics.long_patches import RUN_PER_BLOCK, run_parts
 from carom.physics.patch_rows import row_direction, write_row_numbers
 
@@ -116,13 +116,9 @@ def write_long_contact(
     row = Int32(0)
     while row < 3:
         direction = row_direction(terms, row)
-        moved = write_jacobian(
-            model, state, scratch, couplings, world, terms.ends[0], terms.ends[1], terms.point_a, direction,
+        moved = write_jacobians(
+            model, state, scratch, couplings, world, terms.ends, terms.point_a, terms.point_b, direction,
             0.0 * direction, start,
-        )  # fmt: skip
-        moved += write_jacobian(
-            model, state, scratch, couplings, world, terms.ends[2], terms.ends[3], terms.point_b, -direction,
-            0.0 * direction, start_b,
         )  # fmt: skip
         numbers = write_row_numbers(
             settings, shapes, couplings, terms, world, patch, contact, row, moved[1], moved[0]
