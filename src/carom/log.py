@@ -27,6 +27,18 @@ class Observer(Protocol):
         ...
 
 
+class SubstepObserver(Protocol):
+    """What `World.watch_substeps` takes: something that is told of every substep."""
+
+    def after_substep(self) -> None:
+        """A substep has been made, or a step that has no substeps."""
+        ...
+
+    def step_repeated(self) -> None:
+        """The step is made again from its beginning, since something did not fit into its arrays."""
+        ...
+
+
 class Log:
     """What a world was like after each step; get one from `World.log`.
 

@@ -95,9 +95,19 @@ class ProfiledStepper(Stepper):
         *,
         touching: bool,
         sleeping: bool,
+        watched: bool,
         clock: StageClock,
     ) -> None:
-        super().__init__(structs, touch, fault, substeps, device, touching=touching, sleeping=sleeping)
+        super().__init__(
+            structs,
+            touch,
+            fault,
+            substeps,
+            device,
+            touching=touching,
+            sleeping=sleeping,
+            watched=watched,
+        )
         self._launch = StagedStep(structs, device, clock)
         self._index = {name: name for name in (SUBSTEPS, BEGINS, ENDS)}
         if touching:

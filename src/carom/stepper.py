@@ -74,6 +74,7 @@ class Stepper:
         device: Warp device name.
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
+        watched: Somebody wants to know of every substep.
     """
 
     def __init__(
@@ -86,8 +87,9 @@ class Stepper:
         *,
         touching: bool,
         sleeping: bool,
+        watched: bool,
     ) -> None:
-        self._coupled = touching or sleeping or touch.user_count > 0
+        self._coupled = touching or sleeping or watched or touch.user_count > 0
         kernel = coupled_step_kernel if self._coupled else step_kernel
         self._launch: Any = launch(kernel, structs, device, **{SUBSTEPS: 1, BEGINS: 1, ENDS: 1})
         self._index: Mapping[str, Any] = argument_indices(kernel)
@@ -104,19 +106,20 @@ class Stepper:
         """A step of one substep as one launch, where nothing can fail to fit."""
         return None if self._coupled or self._substeps > 1 else self._launch.function
 
-    def step(self, substeps: int, done: int = 0) -> int:
+    def step(self, substeps: int, done: int = 0, between: Callable[[], None] | None = None) -> int:
         """Perform a step of `substeps` substeps, or the rest of one.
 
         Args:
             substeps: How many there are.
             done: How many have been performed already.
+            between: Called after each substep but the last.
 
         Returns:
             How many have now been performed: all, at least 1, or fewer if rows or contacts did not
             fit. Then the arrays have been replaced by longer ones, and another stepper can go on.
         """
         rounds = max(1, substeps)
-        if self.detection is None and self.slumber is None:
+        if self.detection is None and self.slumber is None and between is None:
             self._launch.replace(self._index[SUBSTEPS], substeps)
             self._launch()
             return rounds if self._fits() else 0
@@ -134,6 +137,8 @@ class Stepper:
                 return rounds if self._fits() else 0
             if self.slumber is not None:
                 self.slumber.watch()
+            if between is not None and substep < rounds - 1:
+                between()
         return rounds
 
     def _fits(self) -> bool:

@@ -17,7 +17,7 @@ from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
 from carom.engine_settings import engine_settings
 from carom.errors import SimulationError
-from carom.log import Log, Observer
+from carom.log import Log, Observer, SubstepObserver
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
@@ -60,6 +60,7 @@ class World(StateViews):
         self.bodies: dict[int, Body] = {}
         self.time = 0.0
         self.observers: list[Observer] = []
+        self._substep_observers: list[SubstepObserver] = []
         self._stepper_type: Callable[..., Stepper] = Stepper
         self.unspent_time = 0.0
         self._start_empty()
@@ -408,10 +409,23 @@ class World(StateViews):
             (self._step or self._prepare_step())()
             if self._fault[0]:
                 self._raise_fault()
+            if self._substep_observers:
+                self._tell_of_substep()
             self.time += self.parameters.time_step
             if self.observers:
                 for observer in self.observers.copy():
                     observer.after_step()
+
+    def watch_substeps(self, observer: SubstepObserver) -> None:
+        """From now on tell an observer of every substep."""
+        self._substep_observers.append(observer)
+        self._step = None
+
+    def unwatch_substeps(self, observer: SubstepObserver) -> None:
+        """Tell an observer no more, if it is told of substeps."""
+        if observer in self._substep_observers:
+            self._substep_observers.remove(observer)
+            self._step = None
 
     def profile(self, count: int = 100) -> dict[str, float]:
         """Advance the world by `count` time steps, as `step` does, and say where the time goes.
@@ -478,6 +492,7 @@ class World(StateViews):
             _DEVICE,
             touching=self._can_touch(),
             sleeping=self._can_sleep(),
+            watched=bool(self._substep_observers) and self.parameters.substeps > 1,
         )
         return self._stepper
 
@@ -504,9 +519,17 @@ class World(StateViews):
     def _step_with_care(self) -> None:
         """One step in substeps, and again with longer arrays as long as something does not fit."""
         substeps = self._substeps_due()
-        done = self._stepper.step(substeps)
+        between = self._tell_of_substep if self._substep_observers else None
+        done = self._stepper.step(substeps, between=between)
         while done < max(1, substeps):
-            done = self._make_stepper().step(substeps, done)
+            if done == 0:
+                for observer in self._substep_observers:
+                    observer.step_repeated()
+            done = self._make_stepper().step(substeps, done, between)
+
+    def _tell_of_substep(self) -> None:
+        for observer in self._substep_observers:
+            observer.after_substep()
 
     def _substeps_due(self) -> int:
         """Substeps of the next step.

@@ -49,19 +49,33 @@ class BinaryLog:
         self._pack = Struct(f"<{types}").pack
         self._steps = 0
         self._time = 0.0
+        self._start_of_step = (0, 0, 0.0)
 
     def before_step(self) -> None:
-        """Nothing, unless something would be gone after the step."""
+        """Notes where the records of the step begin."""
+        self._start_of_step = (self._file.tell(), self._steps, self._time)
 
     def after_step(self) -> None:
-        """Writes the records of a step."""
+        """Nothing: the substeps have been written."""
+
+    def after_substep(self) -> None:
+        """Writes the records of a substep."""
+
+    def step_repeated(self) -> None:
+        """Takes the records of the step back."""
+        start, self._steps, self._time = self._start_of_step
+        self._file.seek(start)
+        self._file.truncate()
 
     def close(self) -> None:
         """Finishes the file."""
         self._file.close()
 
     def _record(self, *values: Any) -> None:
-        self._file.write(_MARKER + self._pack(self._steps, self._time, *values))
+        self._write(self._steps, self._time, *values)
+
+    def _write(self, *values: Any) -> None:
+        self._file.write(_MARKER + self._pack(*values))
 
     def _next(self, time_step: float) -> None:
         self._steps += 1
@@ -97,23 +111,29 @@ class RobotLog(BinaryLog):
         self._world = world
         self._bodies = bodies
         self._room = room
-        self._applied = world.joint_torque[:0].copy()
+        self._torque = self._applied = world.joint_torque.copy()
 
     def before_step(self) -> None:
-        """Keeps the torques that scripts apply, damping included: the step takes them away."""
-        if self._flags & STATE_LOG_JOINT_USER_TORQUES:
-            torque, velocity = self._world.joint_torque, self._world.velocity
-            damping = self._world.arrays.model.numpy["dof_damping"][: len(torque)]
-            self._applied = torque - damping * velocity
+        """Keeps the torques that scripts apply: the step takes them away."""
+        super().before_step()
+        self._torque = self._world.joint_torque.copy()
+        self._keep_torques()
 
-    def after_step(self) -> None:
+    def _keep_torques(self) -> None:
+        """Keeps the torques of the next substep, damping included."""
+        if self._flags & STATE_LOG_JOINT_USER_TORQUES:
+            damping = self._world.arrays.model.numpy["dof_damping"][: len(self._torque)]
+            self._applied = self._torque - damping * self._world.velocity
+
+    def after_substep(self) -> None:
         """Writes a record for each body."""
         for body in self._world.bodies.values():
             if not self._bodies or body.id in self._bodies:
-                self._write(body)
-        self._next(self._world.parameters.time_step)
+                self._write_body(body)
+        self._keep_torques()
+        self._next(self._world.parameters.substep_time)
 
-    def _write(self, body: Body) -> None:
+    def _write_body(self, body: Body) -> None:
         joints = [index for index, kind in enumerate(body.joint_types) if kind in _LINKS_THAT_SHIFT]
         if len(joints) > self._room or any(kind not in _LINKS_THAT_FIT for kind in body.joint_types):
             self._file.write(_MARKER)
@@ -160,7 +180,7 @@ class ContactLog(BinaryLog):
         self._world = world
         self._sides = sides
 
-    def after_step(self) -> None:
+    def after_substep(self) -> None:
         """Writes a record for each contact."""
         from pybullet._contacts import getContactPoints
 
@@ -168,7 +188,7 @@ class ContactLog(BinaryLog):
             flag, a, b, link_a, link_b, on_a, on_b, normal, distance, force = contact[:10]
             if self._asked_for((a, link_a), (b, link_b)):
                 self._record(flag, a, b, link_a, link_b, *on_a, *on_b, *normal, distance, force)
-        self._next(self._world.parameters.time_step)
+        self._next(self._world.parameters.substep_time)
 
     def _asked_for(self, a: tuple[int, int], b: tuple[int, int]) -> bool:
         first, second = self._sides

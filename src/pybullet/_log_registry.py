@@ -47,15 +47,23 @@ class Logs:
         number = self.next_id
         self.next_id += 1
         if log is not None:
+            from pybullet._log_files import BinaryLog
+
             self.by_id[number] = log
             client.world.observers.append(log)
+            if isinstance(log, BinaryLog):
+                client.world.watch_substeps(log)
         return number
 
     def stop(self, client: Client, number: int) -> None:
         """Ends a log and finishes its file; nothing if there is none."""
         log = self.by_id.pop(number, None)
         if log is not None:
+            from pybullet._log_files import BinaryLog
+
             client.world.observers.remove(log)
+            if isinstance(log, BinaryLog):
+                client.world.unwatch_substeps(log)
             log.close()
 
     def stop_all(self, client: Client) -> None:

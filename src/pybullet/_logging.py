@@ -13,6 +13,7 @@ from pybullet._constants import (
     STATE_LOGGING_ALL_COMMANDS,
     STATE_LOGGING_CONTACT_POINTS,
     STATE_LOGGING_GENERIC_ROBOT,
+    STATE_LOGGING_MINITAUR,
     STATE_LOGGING_PROFILE_TIMINGS,
     STATE_LOGGING_VIDEO_MP4,
     STATE_LOGGING_VR_CONTROLLERS,
@@ -46,19 +47,20 @@ def startStateLogging(
     logFlags: int = -1,
     physicsClientId: int = 0,
 ) -> Any:
-    """Starts to write a log after each step.
+    """Starts to write a log after each step, or after each of the substeps it has.
 
     Args:
         loggingType: `STATE_LOGGING_GENERIC_ROBOT` for bases and joints, `STATE_LOGGING_CONTACT_POINTS`
-            for contacts, both in PyBullet's binary layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a trace
+            for contacts, `STATE_LOGGING_MINITAUR` for the motors of a Minitaur, all in PyBullet's binary
+            layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a trace
             that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
             `_0.json` added; `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of
             simulated time, from where the camera of the window is, which needs `pip install carom[video]`
             and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty. Logs of
             commands are not available: a warning says so, and no file is written.
         fileName: The file; one that is there is replaced.
-        objectUniqueIds: Bodies to log; none for all. Those with more joints than columns, or with
-            spherical or planar joints, are left out.
+        objectUniqueIds: Bodies to log; none for all, but a Minitaur has to be named. Those with more
+            joints than columns, or with spherical or planar joints, are left out.
         maxLogDof: Number of joints there are columns for; 12 when negative.
         bodyUniqueIdA: Of contacts: only those of this body; -1 for any.
         bodyUniqueIdB: Of contacts: and of this one.
@@ -70,7 +72,8 @@ def startStateLogging(
         physicsClientId: The connection.
 
     Returns:
-        The id of the log; None for types that log nothing (`STATE_LOGGING_MINITAUR` and others).
+        The id of the log; None for types that log nothing (`STATE_LOGGING_CUSTOM_TIMER` and others),
+        and when the first body is no Minitaur.
 
     Raises:
         pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, or a
@@ -100,6 +103,12 @@ def startStateLogging(
         if kind == STATE_LOGGING_GENERIC_ROBOT:
             room = _DEFAULT_ROOM if room < 0 else room
             log = files.RobotLog(Path(path), client.world, frozenset(bodies), room, flags)
+        elif kind == STATE_LOGGING_MINITAUR:
+            from pybullet._minitaur_log import MinitaurLog, minitaur_motors
+
+            robot = minitaur_motors(client.world, bodies)
+            if robot is not None:
+                log = MinitaurLog(Path(path), *robot)
         elif kind == STATE_LOGGING_CONTACT_POINTS:
             log = files.ContactLog(Path(path), physicsClientId, client.world, sides)
         elif kind == STATE_LOGGING_PROFILE_TIMINGS:
@@ -113,7 +122,10 @@ def startStateLogging(
     except (OSError, ValueError, ImportError) as reason:
         fail(problem, f"{reason}.")
     if log is None and kind not in _WITHOUT_FILE:
-        logger.warning("startStateLogging: logs of type %d are not available.", kind)
+        if kind == STATE_LOGGING_MINITAUR:
+            logger.warning("startStateLogging: the first of objectUniqueIds is no Minitaur.")
+        else:
+            logger.warning("startStateLogging: logs of type %d are not available.", kind)
         return None
     if log is None:
         logger.warning("startStateLogging: no log is written; %s.", _WITHOUT_FILE[kind])
