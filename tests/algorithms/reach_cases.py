@@ -17,12 +17,13 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True)
 class Arm:
-    """A robot, the link that is to reach, and where it starts from."""
+    """A robot, the link that is to reach, where it starts from; whether PyBullet's iteration is slow there."""
 
     file: Path
     link: int
     home: tuple[float, ...]
     fixed_base: bool = True
+    slow: bool = False
 
 
 ARMS = {
@@ -30,6 +31,8 @@ ARMS = {
         ASSETS / "franka_panda" / "panda.urdf", 11, (0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02)
     ),
     "kuka": Arm(ASSETS / "kuka_iiwa" / "model.urdf", 6, (0.0, 0.5, 0.0, -1.5, 0.0, 1.0, 0.0)),
+    "xarm": Arm(ASSETS / "xarm" / "xarm6_robot.urdf", 6, (0.0, -0.3, -1.2, 0.0, 1.0, 0.0), slow=True),
+    "a1": Arm(ASSETS / "a1" / "a1.urdf", 5, 4 * (0.0, 0.8, -1.6), slow=True),
     "seven_dof": Arm(ROBOTS / "seven_dof.urdf", 7, (0.1, 0.5, 0.0, -1.2, 0.1, 1.0, 0.2)),
     "tree": Arm(ROBOTS / "tree.urdf", 1, (), fixed_base=False),
 }
@@ -50,10 +53,10 @@ WAYS = {
     "default": Way(1000),
     "100 iterations": Way(1000, options={"maxNumIterations": 100, "residualThreshold": 1e-5}),
     "1000 iterations": Way(1000, options=_PATIENT),
-    "oriented": Way(200, oriented=True, options={"maxNumIterations": 20}),
-    "oriented, 1000 iterations": Way(200, oriented=True, options=_PATIENT),
-    "limits and rest poses": Way(300, limited=True, options=_PATIENT),
-    "limits and rest poses, oriented": Way(200, oriented=True, limited=True, options=_PATIENT),
+    "oriented": Way(1000, oriented=True, options={"maxNumIterations": 20}),
+    "oriented, 1000 iterations": Way(1000, oriented=True, options=_PATIENT),
+    "limits and rest poses": Way(1000, limited=True, options=_PATIENT),
+    "limits and rest poses, oriented": Way(1000, oriented=True, limited=True, options=_PATIENT),
 }
 ANSWERS_KEPT = 15
 """So many answers of PyBullet are kept to compare with, beside the number of targets reached."""
