@@ -17,7 +17,7 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True)
 class Arm:
-    """A robot, the link that is to reach, where it starts from; whether PyBullet's iteration is slow there."""
+    """A robot, the link that is to reach, where it starts from; whether PyBullet's search is slow there."""
 
     file: Path
     link: int

@@ -99,7 +99,6 @@ WITHOUT_EFFECT = {
     "COV_ENABLE_TINY_RENDERER": "no effect: there is one renderer",
     "ER_TINY_RENDERER": "no effect: there is one renderer",
     "ER_BULLET_HARDWARE_OPENGL": "no effect: there is one renderer",
-    "STATE_LOGGING_MINITAUR": "logs nothing, as PyBullet does for bodies that are no Minitaur",
     "STATE_LOGGING_CUSTOM_TIMER": "logs nothing",
     "STATE_LOGGING_ALL_COMMANDS": "no file is written; a warning says so",
     "STATE_REPLAY_ALL_COMMANDS": "nothing is replayed; a warning says so",
