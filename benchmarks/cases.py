@@ -31,6 +31,8 @@ IN_PROCESS = (
     Case("step_kuka_free", "stepSimulation, KUKA, motors off", speedup=3.0),
     Case("step_tree", "stepSimulation, floating tree of 20 links, motors off"),
     Case("step_r2d2", "stepSimulation, R2D2 at rest on the plane", speedup=4.0),
+    Case("step_quadruped", "stepSimulation, quadruped standing on the plane", speedup=4.0),
+    Case("step_humanoid", "stepSimulation, humanoid lying on the plane", speedup=4.0),
     Case("step_27_boxes", "stepSimulation, 9 towers of 3 boxes", speedup=5.0, no_slower_than="MuJoCo"),
     Case("step_125_boxes", "stepSimulation, 25 towers of 5 boxes", speedup=5.0, no_slower_than="MuJoCo"),
     Case("step_1000_balls", "stepSimulation, 1,000 balls in a pile", speedup=3.0),

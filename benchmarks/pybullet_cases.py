@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import crowds
+import robots
 
 import pybullet as p
 
@@ -21,6 +22,8 @@ ASSETS = ROOT / "src" / "pybullet_data"
 PANDA = str(ASSETS / "franka_panda" / "panda.urdf")
 PLANE = str(ASSETS / "plane.urdf")
 R2D2 = str(ASSETS / "r2d2.urdf")
+QUADRUPED = str(ASSETS / "a1" / "a1.urdf")
+HUMANOID = str(ASSETS / "humanoid" / "humanoid.urdf")
 KUKA = str(ASSETS / "kuka_iiwa" / "model.urdf")
 TREE = str(ROOT / "tests" / "conformance" / "robots" / "random_tree.urdf")
 MOVABLE = [0, 1, 2, 3, 4, 5, 6, 9, 10]
@@ -80,6 +83,18 @@ def step_r2d2(original_data: str) -> Prepared:
     p.loadURDF(PLANE)
     p.loadURDF(R2D2, [0.0, 0.0, 0.5])
     crowds.settle(300)
+    return p.stepSimulation
+
+
+def step_quadruped(original_data: str) -> Prepared:
+    _world()
+    robots.quadruped(PLANE, QUADRUPED)
+    return p.stepSimulation
+
+
+def step_humanoid(original_data: str) -> Prepared:
+    _world()
+    robots.humanoid(PLANE, HUMANOID)
     return p.stepSimulation
 
 
