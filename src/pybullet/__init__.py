@@ -39,6 +39,7 @@ from pybullet._multi_body import *
 from pybullet._nearby import *
 from pybullet._plugins import *
 from pybullet._rays import *
+from pybullet._scaling import *
 from pybullet._scene_script import *
 from pybullet._shape_data import *
 from pybullet._soft_bodies import *

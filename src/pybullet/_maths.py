@@ -41,6 +41,8 @@ __all__ = [
 _single = Struct("f")
 # Ten times the spacing of single-precision numbers at 1.
 _NO_AXIS = 10.0 * 1.1920928955078125e-07
+# How far the squared length of a unit quaternion in single precision may be from 1.
+_UNIT = 1e-6
 _TWO_QUATERNIONS = "Require start and end quaternion, each with 4 components [x,y,z,w]."
 
 
@@ -393,7 +395,10 @@ def calculateVelocityQuaternion(
         return (0.0, 0.0, 0.0)
     if duration == 0.0:
         fail("deltaTime has to be different from 0.")
-    scale = 2.0 * atan2(sine, w) / (sine * duration)
+    # Of quaternions that are not of unit length PyBullet looks at w alone.
+    is_unit = abs(sine * sine + w * w - 1.0) < _UNIT
+    angle = 2.0 * (atan2(sine, w) if is_unit else acos(max(-1.0, min(1.0, w))))
+    scale = angle / (sine * duration)
     return (x * scale, y * scale, z * scale)
 
 

@@ -16,7 +16,6 @@ from pybullet._errors import fail
 
 __all__ = [
     "loadSoftBody",
-    "unsupportedChangeScaling",
 ]
 
 
@@ -34,7 +33,7 @@ def _later(name: str, parameters: str) -> Callable[..., Any]:
             signature.bind(*arguments, **keywords)
         except TypeError as problem:
             raise TypeError(f"{name}(): {problem}") from None
-        fail(f"{name} is not available in this version of Carom")
+        fail(f"{name} is not available in this version of Carom, which has no soft bodies.")
 
     unavailable.__name__ = unavailable.__qualname__ = name
     unavailable.__doc__ = "Not available in this version of Carom: raises `pybullet.error`."
@@ -68,7 +67,4 @@ loadSoftBody: Callable[..., Any] = _later(
     "springDampingStiffness=0.1, springDampingAllDirections=0, springBendingStiffness=0.1, "
     "NeoHookeanMu=1, NeoHookeanLambda=1, NeoHookeanDamping=0.1, frictionCoeff=0, useFaceContact=0, "
     'useSelfCollision=0, repulsionStiffness=0.5, simFileName="", physicsClientId=0',
-)
-unsupportedChangeScaling: Callable[..., Any] = _later(
-    "unsupportedChangeScaling", "bodyUniqueId, scaling, physicsClientId=0"
 )

@@ -289,8 +289,17 @@ class ShapeArrays:
             link_row: The link.
             spec: Its shapes now.
             implicit_cylinder: Cylinders are exact.
+
+        Raises:
+            ValueError: There would not be as many rows; nothing has changed.
         """
         body, link = self._body_of(link_row)
+        shapes = self._shapes_of(link_row)
+        pieces = placed_pieces(spec, link, implicit_cylinder)
+        if len(pieces) != shapes.stop - shapes.start or not all(
+            self._fits(placed.piece, row) for row, placed in enumerate(pieces, start=shapes.start)
+        ):
+            raise ValueError("its hull would have another number of corners")
         body.bounds[link] = link_bounds(
             spec.collisions,
             spec.inertial_frame,
@@ -298,17 +307,33 @@ class ShapeArrays:
             compound_margin=spec.compound_margin,
         )
         numpy = self.table.numpy
-        shapes = self._shapes_of(link_row)
-        for row, placed in zip(
-            range(shapes.start, shapes.stop), placed_pieces(spec, link, implicit_cylinder), strict=True
-        ):
+        for row, placed in enumerate(pieces, start=shapes.start):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
             face = at["face"]
             at["corner"] = int(numpy["face_first_corner"][face]) if placed.piece.polyhedron else 0
             at["shape"] = row
+            numpy["shape_pose"][row] = placed.pose
             numpy["shape_size"][row] = placed.piece.size
             numpy["shape_center"][row] = placed.piece.center
+            numpy["shape_margin"][row] = placed.piece.margin
+            numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[link])
             self._write_polyhedron(placed.piece, row, at)
+
+    def _fits(self, piece: ShapePiece, row: int) -> bool:
+        """Whether a piece is of the kind, and has the room, of the one in a row."""
+        numpy = self.table.numpy
+        counts = row_counts([piece])
+        if numpy["shape_kind"][row] != piece.kind:
+            return False
+        if piece.polyhedron is None:
+            return True
+        first = int(numpy["shape_first_face"][row])
+        faces = slice(first, first + int(numpy["shape_face_count"][row]))
+        return (
+            int(numpy["shape_vertex_count"][row]) == counts["vertex"]
+            and int(numpy["shape_face_count"][row]) == counts["face"]
+            and int(numpy["face_corner_count"][faces].sum()) == counts["corner"]
+        )
 
     def _shapes_of(self, link_row: int) -> slice:
         first = int(self.table.numpy["link_first_shape"][link_row])
