@@ -61,6 +61,7 @@ class TouchArrays:
                 "tree": model["tree"],
                 "contact": contacts,
                 "unit": contacts,
+                "run": contacts,
                 "patch": contacts // 2,
                 "constraint": model["constraint"],
                 "visit": self._arrays.scratch.capacity["row"] + ROWS_PER_PAIR * self.users.capacity["user"],

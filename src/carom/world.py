@@ -23,6 +23,7 @@ from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.flags import LoadFlags
 from carom.model.launch import KernelStructs, Launch, TreeLaunch, launch
+from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.queries import Queries
@@ -497,19 +498,26 @@ class World(StateViews):
         return self._stepper
 
     def _can_touch(self) -> bool:
-        """Whether two shapes could ever touch: of two bodies that are not both fixed, or of one body."""
-        moving = fixed = 0
+        """Whether two shapes could ever touch: of two bodies that are not both scenery, or of one body."""
+        solid = scenery = 0
         for body in self.bodies.values():
             links = [body.spec.base, *body.spec.links]
             if not any(link.collisions for link in links):
                 continue
             if body.spec.flags & LoadFlags.ANY_SELF_COLLISION:
                 return True
-            if any(moving_links(body)):
-                moving += 1
-            else:
-                fixed += 1
-        return moving > 1 or (moving == 1 and fixed > 0)
+            solid += 1
+            scenery += self._is_scenery(body)
+        return solid > 1 and (solid > scenery or bool(self.touch.shapes.filters.all))
+
+    def _is_scenery(self, body: Body) -> bool:
+        """Whether a body has shapes on its fixed base alone, in the group of fixed bases."""
+        shapes, base = self.touch.shapes.table.numpy, body.first_link
+        return (
+            body.fixed_base
+            and not any(link.collisions for link in body.spec.links)
+            and (shapes["link_group"][base], shapes["link_mask"][base]) == (FIXED_GROUP, FIXED_MASK)
+        )
 
     def _can_sleep(self) -> bool:
         """Whether a body may fall asleep, or has to be woken up."""

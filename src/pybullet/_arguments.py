@@ -42,8 +42,8 @@ def integer(value: Any, name: str) -> int:
     return number
 
 
-def real(value: Any, name: str) -> float:
-    """A finite number.
+def real(value: Any, name: str, problem: str = "") -> float:
+    """A finite number; `problem` is PyBullet's text if it is not.
 
     Raises:
         TypeError: It is not a number.
@@ -56,7 +56,8 @@ def real(value: Any, name: str) -> float:
         return float(value)
     number = _as_float(value, name)
     if not isfinite(number):
-        fail(f"{name} has to be a finite number, not {number}.")
+        particulars = f"{name} has to be a finite number, not {number}."
+        fail(problem or particulars, particulars if problem else "")
     return number
 
 

@@ -87,6 +87,7 @@ def setCollisionFilterGroupMask(
     row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
     if row is not None:
         client.world.touch.shapes.set_group_and_mask(row, group, mask)
+        client.world.constraints_changed()
 
 
 def _row(client: Client, body_id: Any, link_index: Any, function: str) -> int | None:

@@ -44,7 +44,7 @@ def getClosestPoints(
         bodyA: A body; -1 if there is only a shape on this side.
         bodyB: Another, or the same.
         distance: Only points at most this far apart [m].
-        linkIndexA: Link of `bodyA`, -1 for the base; -2 for all links.
+        linkIndexA: Link of `bodyA`, -1 for the base; -2 and less for all links.
         linkIndexB: Link of `bodyB`.
         collisionShapeA: A collision shape beside, or instead of, `bodyA`; -1 for none.
         collisionShapeB: The same for the other side.
@@ -104,7 +104,7 @@ def _rows(world: World, body_id: int, link: int) -> range:
     if body is None:
         return range(0)
     every = range(body.first_link, body.first_link + 1 + body.joint_count)
-    if link == _ANY_LINK:
+    if link <= _ANY_LINK:
         return every
     return every[link + 1 : link + 2] if link >= -1 else range(0)
 

@@ -54,11 +54,13 @@ def primitive(
         if norm == 0.0:
             fail(problem, "planeNormal has no length.")
         return Plane((x / norm, y / norm, z / norm))
-    size = real(radius, "radius")
-    _check_size(size > 0.0, size, problem, f"radius is {size}.")
+    size = real(radius, "radius", problem)
+    if size == 0.0:
+        fail(problem, "radius is 0. Without one there is no shape.")
+    _check_size(size >= 0.0, size, problem, f"radius is {size}.")
     if kind == GEOM_SPHERE:
         return Sphere(size)
-    height = real(length, length_name)
+    height = real(length, length_name, problem)
     _check_size(height >= 0.0, height, problem, f"{length_name} is {height}.")
     return Capsule(size, height) if kind == GEOM_CAPSULE else Cylinder(size, height)
 

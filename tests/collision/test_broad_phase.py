@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from tests.collision.scene import Scene, box, plane, sphere
 
 from carom.model.flags import LoadFlags
+from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 
 def brute_force_pairs(scene: Scene, count: int, reach: float) -> list[tuple[int, int]]:
@@ -108,8 +109,10 @@ def test_pair_filters_decide_whatever_the_masks():
     assert scene.pairs == [(0, 2), (0, 3), (1, 2), (2, 3)]
 
 
-def test_what_cannot_move_does_not_touch_what_cannot_move():
+def test_fixed_bases_do_not_touch_each_other_by_their_groups():
     scene = Scene([plane(), box((1, 1, 1), static=True), sphere(1)])
+    scene.numpy("shapes")["link_group"][:2] = FIXED_GROUP
+    scene.numpy("shapes")["link_mask"][:2] = FIXED_MASK
     scene.collide()
     assert scene.pairs == [(0, 2), (1, 2)]
 

@@ -223,3 +223,48 @@ def test_the_shapes_decide_which_body_comes_first(client: int, lower: str, upper
     up = 1.0 if first == 1 else -1.0
     assert points[0][7] == pytest.approx((0.0, 0.0, up), abs=1e-9)
     assert points[0][11] == pytest.approx((0.0, -up, 0.0), abs=1e-9)
+
+
+def test_links_fixed_to_a_fixed_base_touch_other_fixed_bodies_without_force() -> None:
+    """As in PyBullet: only the bases of two fixed bodies do not touch."""
+    p.connect(p.DIRECT)
+    p.setGravity(0, 0, -10)
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    lamp = p.createMultiBody(
+        0,
+        ball,
+        basePosition=[0, 0, 0.1],
+        linkMasses=[1],
+        linkCollisionShapeIndices=[ball],
+        linkVisualShapeIndices=[-1],
+        linkPositions=[[0.3, 0, 0]],
+        linkOrientations=[[0, 0, 0, 1]],
+        linkInertialFramePositions=[[0, 0, 0]],
+        linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        linkParentIndices=[0],
+        linkJointTypes=[p.JOINT_FIXED],
+        linkJointAxis=[[0, 0, 1]],
+    )
+    loose = p.createMultiBody(1, ball, basePosition=[0.499, 0, 0.1])
+    for _ in range(10):
+        p.stepSimulation()
+    (contact,) = p.getContactPoints(lamp, floor)
+    assert contact[3] == 0
+    assert contact[9] == 0
+    (contact,) = p.getContactPoints(loose, floor)
+    assert contact[9] == pytest.approx(10)
+    assert [contact[4] for contact in p.getContactPoints(loose, lamp)] == [0]
+    p.setCollisionFilterGroupMask(lamp, -1, 1, -1)
+    p.performCollisionDetection()
+    assert sorted(contact[3] for contact in p.getContactPoints(lamp, floor)) == [-1, 0]
+
+
+def test_links_below_minus_one_stand_for_all() -> None:
+    p.connect(p.DIRECT)
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    first, second = (p.createMultiBody(1, ball, basePosition=[x, 0, 0]) for x in (0.0, 0.15))
+    p.performCollisionDetection()
+    for link in (-2, -3, -7):
+        assert len(p.getContactPoints(linkIndexA=link, linkIndexB=link)) == 1
+        assert len(p.getClosestPoints(first, second, 1.0, link, link)) == 1

@@ -82,7 +82,7 @@ def may_touch(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, 
         return False
     root_a = rigid_root(model, a)
     root_b = rigid_root(model, b)
-    if root_a == root_b or (model.link[root_a].dof_count == 0 and model.link[root_b].dof_count == 0):
+    if root_a == root_b:
         return False
     if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):
         return False

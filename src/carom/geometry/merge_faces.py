@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 COPLANAR = 1e-5
 """Distance from a plane, relative to the size of the whole, up to which a vertex counts as in it."""
 
+LEAST_FACES = 4
+"""Fewer do not enclose anything."""
+
 _PARALLEL = 0.999
 """Least cosine between the normals of triangles that are joined."""
 
@@ -50,7 +53,9 @@ def merged_loops(
             loops.extend(list(triangles[number]) for number in group)
         else:
             loops.append(loop)
-    return _without_middles(loops)
+    merged = _without_middles(loops)
+    # What is thinner everywhere than the tolerance would lose its faces.
+    return merged if len(merged) >= LEAST_FACES else [list(triangle) for triangle in triangles]
 
 
 def _patch(
@@ -88,7 +93,7 @@ def _outline(group: list[tuple[int, int, int]]) -> list[int] | None:
     edges = {(t[i], t[(i + 1) % 3]) for t in group for i in range(3)}
     rim = [(start, end) for start, end in edges if (end, start) not in edges]
     following = dict(rim)
-    if len(following) != len(rim):
+    if not rim or len(following) != len(rim):
         return None
     # Begin with the least, so that the same triangles always make the same loop.
     loop = [min(following)]

@@ -241,6 +241,8 @@ class Couplings:
     tree_touches: IntRows  # whether it has contacts itself
     constraint_next: IntRows
     contact_next: IntRows
+    run_first: IntRows  # first contact of each manifold, in the order in which they are relaxed
+    run_island: IntRows  # what they are sorted by: the last tree of its island
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )

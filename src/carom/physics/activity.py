@@ -1,8 +1,36 @@
-"""What it means for a tree to be asleep; `slumber` says who is."""
+"""Which trees take part in a substep: those that can move and are not asleep; `slumber` says who is."""
 
 from carom.model.codes import ASLEEP, STIRRED
-from carom.model.real import Int32, func
+from carom.model.contact_structs import Shapes
+from carom.model.real import Index4, Int32, func
 from carom.model.structs import Model, State
+
+
+@func
+def can_move(model: Model, tree: Int32) -> bool:
+    """Whether a tree has dofs; the world, -1, has none."""
+    if tree < 0:
+        return False
+    return model.tree[tree].dof_count > 0
+
+
+@func
+def link_moves(model: Model, link: Int32) -> bool:
+    """Whether some dof moves a link."""
+    return model.link[link].nearest_dof >= 0
+
+
+@func
+def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
+    """The tree of the first of two links in contact that moves; -1 if neither does.
+
+    `pair` has both shapes, then both links.
+    """
+    if link_moves(model, pair[2]):
+        return shapes.shape_tree[pair[0]]
+    if link_moves(model, pair[3]):
+        return shapes.shape_tree[pair[1]]
+    return -1
 
 
 @func

@@ -15,18 +15,13 @@ from carom.model.codes import ACTIVE, ASLEEP, DROWSY, STIRRED
 from carom.model.contact_structs import Contacts, Couplings, Pairs, Shapes, UserConstraints
 from carom.model.real import Int32, func, kernel, real
 from carom.model.structs import Model, Settings, State
+from carom.physics.activity import link_moves
 from carom.physics.islands import unite
 
 # Time without motion after which a tree may fall asleep [s].
 TIRED_AFTER = real(2.0)
 # Gap between the bounds of two trees up to which they fall asleep and stir together [m].
 NEAR = real(0.04)
-
-
-@func
-def link_moves(model: Model, link: Int32) -> bool:
-    """Whether some dof moves a link."""
-    return model.link[link].nearest_dof >= 0
 
 
 @func

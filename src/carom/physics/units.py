@@ -3,21 +3,13 @@
 from carom.model.contact_structs import Contacts, Couplings, Shapes
 from carom.model.real import Index4, Int32, func
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.contact_order import same_shapes
 from carom.physics.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.physics.contact_terms import contact_friction, contact_terms
 from carom.physics.couplings import has_room, tree_blocks
 from carom.physics.long_patches import RUN_PER_BLOCK
 from carom.physics.patch_writing import keep_patch_impulses, write_patch
 from carom.physics.patches import SMALL
-
-
-@func
-def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) -> bool:
-    """Whether a contact, if it is one, is between the shapes of `pair`."""
-    if contact < 0:
-        return False
-    other = contacts.contact_shapes[world, contact]
-    return other[0] == pair[0] and other[1] == pair[1]
 
 
 @func

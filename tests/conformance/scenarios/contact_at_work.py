@@ -92,11 +92,11 @@ def rover_drives(p: Any) -> dict[str, Any]:
     return simulate(p, 2.0, lambda: _heading(p, rover), act)
 
 
-@scenario(tolerance=3e-2)
+@scenario(tolerance={"place": 3e-2, "heading": 4e-2})
 def car_drives_a_curve(p: Any) -> dict[str, Any]:
     """A car with steered front wheels drives a curve.
 
-    PyBullet's own turn changes by 2 % when the car starts 2 mm higher: measured 2.8 % for the turn, 1.8 %
+    PyBullet's own turn changes by 2 % when the car starts 2 mm higher: measured 3.4 % for the turn, 2.0 %
     for the place.
     """
     p.setGravity(0, 0, -9.81)
@@ -116,7 +116,7 @@ def car_drives_a_curve(p: Any) -> dict[str, Any]:
 def walking_robot_stands(p: Any) -> dict[str, Any]:
     """The A1 is put on its feet and holds its legs bent for three seconds.
 
-    Where the feet slip as they land depends on the order of contacts: measured 7e-4.
+    How the feet slip as they land depends on the points of contact: measured 3e-4.
     """
     p.setGravity(0, 0, -9.81)
     load_asset(p, "plane.urdf")
@@ -144,9 +144,9 @@ def walking_robot_stands(p: Any) -> dict[str, Any]:
     return simulate(p, 3.0, observe, act, stride=24)
 
 
-@scenario(tolerance=1e-3)
+@scenario()
 def humanoid_holds_its_pose(p: Any) -> dict[str, Any]:
-    """The humanoid of MJCF keeps its joints stiff and lands on its feet, which are balls: measured 3e-5."""
+    """The humanoid of MJCF keeps its joints stiff and lands on its feet, which are balls."""
     p.setGravity(0, 0, -9.81)
     load_asset(p, "plane.urdf")
     (robot,) = p.loadMJCF(str(ASSETS / "mjcf/humanoid_symmetric.xml"))
