@@ -12,7 +12,7 @@ from typing import overload
 import numpy as np
 
 from carom.body import Body
-from carom.constraints import JointConstraints, moving_links
+from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
 from carom.engine_settings import engine_settings
