@@ -50,6 +50,23 @@ def add_bodies(
             ids = tuple(body.id for body in client.world.load_all(bodies))
             if load is not None:
                 client.origins.update({number: Origin(load, index) for index, number in enumerate(ids)})
+            _look_at_fresh_files(client, [spec for spec, _ in bodies])
             return ids
     except CaromError as reason:
         fail(problem, str(reason))
+
+
+def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
+    """Reads what bodies look like if the files may be gone by the time of the first image.
+
+    Otherwise that waits until somebody looks: a robot has more to look at than to load.
+    """
+    from carom.description import Mesh
+    from carom.formats.files import is_fresh
+
+    visuals = (visual for spec in specs for link in (spec.base, *spec.links) for visual in link.visuals)
+    shapes = (visual.geometry for visual in visuals)
+    if any(isinstance(shape, Mesh) and is_fresh(shape.path) for shape in shapes):
+        from carom.render.appearance import appearance_of
+
+        appearance_of(client.world).number_textures(client.world)

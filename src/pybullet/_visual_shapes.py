@@ -202,12 +202,18 @@ def createVisualShapeArray(
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
     """A mesh file. One that cannot be used stops nobody, as in PyBullet: nothing is seen then."""
     from carom.errors import DescriptionError
+    from carom.formats.files import is_fresh
     from carom.formats.mesh import read_mesh
 
     scale = scale_of(mesh_scale, problem)
     try:
         mesh = Mesh(find_file(client, name, problem), scale, asked_for=name)
         read_mesh(mesh.path)
+        if is_fresh(mesh.path):
+            # It may be gone when somebody looks.
+            from carom.render.mesh_visuals import read_mesh_visual
+
+            read_mesh_visual(mesh.path)
     except (error, DescriptionError) as reason:
         logger.warning("%s", reason)
         return _nothing()

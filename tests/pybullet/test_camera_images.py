@@ -283,3 +283,25 @@ def test_nothing_works_without_a_connection():
     ):
         with pytest.raises(p.error, match="Not connected to physics server"):
             call()
+
+
+TENT = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 0 1\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n"
+TENT_ROBOT = """<robot name="tent"><link name="base"><visual><geometry>
+<mesh filename="tent.obj"/></geometry></visual></link></robot>"""
+
+
+@pytest.mark.parametrize("way", ["loadURDF", "createVisualShape"])
+def test_files_may_be_removed_once_they_are_loaded(client, tmp_path, way):
+    mesh, robot = tmp_path / "tent.obj", tmp_path / "tent.urdf"
+    mesh.write_text(TENT)
+    robot.write_text(TENT_ROBOT)
+    if way == "loadURDF":
+        p.loadURDF(str(robot), useFixedBase=True)
+        mesh.unlink()
+    else:
+        shape = p.createVisualShape(p.GEOM_MESH, fileName=str(mesh))
+        mesh.unlink()
+        p.createMultiBody(0, -1, shape)
+    view = p.computeViewMatrix([0, -3, 2], [0, 0, 0], [0, 0, 1])
+    image = p.getCameraImage(32, 24, view, p.computeProjectionMatrixFOV(60, 4 / 3, 0.1, 10))
+    assert (image[4] == 0).sum() > 30

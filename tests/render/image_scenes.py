@@ -11,6 +11,7 @@ import numpy as np
 
 ASSETS = Path(__file__).parents[2] / "src" / "pybullet_data"
 WIDTH, HEIGHT = 96, 72
+FAR = 20.0
 
 Vector = tuple[float, float, float]
 
@@ -95,7 +96,7 @@ def take_picture(p: Any, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarr
     p.resetSimulation()
     scene.build(p)
     view = p.computeViewMatrix(scene.eye, scene.target, (0.0, 0.0, 1.0))
-    projection = p.computeProjectionMatrixFOV(scene.field_of_view, WIDTH / HEIGHT, scene.near, 20.0)
+    projection = p.computeProjectionMatrixFOV(scene.field_of_view, WIDTH / HEIGHT, scene.near, FAR)
     _, _, rgba, depth, label = p.getCameraImage(
         WIDTH,
         HEIGHT,

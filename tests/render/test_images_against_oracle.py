@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from image_scenes import SCENES, Scene, take_picture
+from image_scenes import FAR, SCENES, Scene, take_picture
 from record_oracle import DEPTH_STEP, IMAGES
 
 import pybullet as p
@@ -29,7 +29,8 @@ def pictures(request: pytest.FixtureRequest, oracle: Images) -> Iterator[tuple[I
     p.disconnect(client)
     theirs = {name: oracle[f"{scene.name}_{name}"] for name in ("colour", "depth", "label")}
     theirs["depth"] = theirs["depth"] * DEPTH_STEP
-    yield theirs, {"colour": rgba[:, :, :3], "depth": depth, "label": label}
+    near = np.array(scene.near)
+    yield theirs, {"colour": rgba[:, :, :3], "depth": depth.astype(np.float64), "label": label, "near": near}
 
 
 def test_the_same_links_are_seen_in_the_same_pixels(pictures):
@@ -46,6 +47,14 @@ def test_nothing_is_missing_or_made_up(pictures):
 def test_depths_agree(pictures):
     theirs, ours = pictures
     assert np.mean(np.abs(theirs["depth"] - ours["depth"]) < 1e-4) >= 0.995
+
+
+def test_distances_agree_within_a_percent(pictures):
+    theirs, ours = pictures
+    near, far = ours["near"], FAR
+    theirs_m, ours_m = (far * near / (far - (far - near) * image["depth"]) for image in (theirs, ours))
+    seen = (theirs["label"] == ours["label"]) & (theirs["label"] >= 0)
+    assert np.mean(np.abs(theirs_m - ours_m)[seen] < 0.01 * theirs_m[seen]) >= 0.999
 
 
 def test_colours_look_the_same(pictures):

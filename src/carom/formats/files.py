@@ -19,6 +19,9 @@ Value = TypeVar("Value")
 SETTLED_NS = 2_000_000_000
 """A file changed more recently than this could change again within the resolution of its time stamp."""
 
+FRESH_NS = 60_000_000_000
+"""Whoever wrote a file more recently than this may be about to remove it."""
+
 
 @dataclass(frozen=True, slots=True)
 class FileStamp:
@@ -52,6 +55,15 @@ class FileStamp:
         )
 
 
+def is_fresh(file: Path) -> bool:
+    """Whether a file has just been written, so that it may be gone in a moment, as temporary ones are."""
+    try:
+        stamp = FileStamp.of(file)
+    except OSError:
+        return False
+    return stamp.taken - stamp.modified < FRESH_NS
+
+
 def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
     """Content of a file and its stamp.
 
@@ -77,10 +89,12 @@ class FileCache(Generic[Key, Value]):
 
     Args:
         capacity: Most values kept.
+        outlive: Serve values of files that are gone, too.
     """
 
-    def __init__(self, capacity: int) -> None:
+    def __init__(self, capacity: int, *, outlive: bool = False) -> None:
         self._capacity = capacity
+        self._outlive = outlive
         self._entries: OrderedDict[Key, tuple[FileStamp, Value]] = OrderedDict()
         self._lock = Lock()
 
@@ -93,6 +107,8 @@ class FileCache(Generic[Key, Value]):
             stamp, value = entry
             try:
                 unchanged = stamp.same_file(FileStamp.of(file))
+            except FileNotFoundError:
+                unchanged = self._outlive
             except OSError:
                 unchanged = False
             if not unchanged:

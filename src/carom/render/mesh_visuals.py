@@ -16,7 +16,7 @@ from carom.render.render_mesh import RenderMesh, flat_mesh
 def read_mesh_visual(path: Path) -> RenderMesh:
     """Reads an OBJ, STL or DAE file for drawing.
 
-    Unchanged files are served from a cache.
+    Unchanged files are served from a cache, and so are files that have gone since they were read.
 
     Raises:
         DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles.
@@ -39,4 +39,4 @@ def read_mesh_visual(path: Path) -> RenderMesh:
     return mesh
 
 
-_cache: FileCache[Path, RenderMesh] = FileCache(128)
+_cache: FileCache[Path, RenderMesh] = FileCache(128, outlive=True)
