@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import shutil
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -83,3 +84,11 @@ class Page:
                 return picture
             self.page.wait_for_timeout(200)
         raise AssertionError("the picture does not become what it should be")
+
+
+def wait_for(condition: Callable[[], object], page: Page) -> None:
+    """Lets the browser work until something holds here."""
+    give_up = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < give_up
+        page.page.wait_for_timeout(20)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from tests.viewer.browser import HEIGHT, WIDTH, Page, chromium, needs_browser
+from tests.viewer.browser import HEIGHT, WIDTH, Page, chromium, needs_browser, wait_for
 from tests.viewer.watcher import PATIENCE
 
 import pybullet as p
@@ -30,14 +30,6 @@ def page(viewer: Viewer, browser) -> Iterator[Page]:
     yield page
     page.page.close()
     assert page.complaints == []
-
-
-def wait_for(condition: Callable[[], object], page: Page) -> None:
-    """Lets the browser work until something holds here."""
-    give_up = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < give_up
-        page.page.wait_for_timeout(20)
 
 
 def pixel_of(point: tuple[float, float, float]) -> tuple[int, int]:

@@ -34,10 +34,16 @@ def test_plotted_joints_are_sampled(viewer: Viewer):
         assert driven[2:5] == pytest.approx([state[0], state[1], state[3]])
         assert driven[5] == 0.4
         assert free[:2] == [arm, 3]
-        assert free[5:] == [None, None]
-        page.tell("plot", joints=[])
+        assert free[5:] == [None, None, None]
+        p.setJointMotorControl2(arm, 3, p.TORQUE_CONTROL, force=1.5)
         p.stepSimulation()
-        page.wait_for(lambda: page.frame["time"] > 20.5 / 240)
+        page.wait_for(lambda: page.frame["time"] == pytest.approx(21 / 240))
+        free = page.frame["joints"][1]
+        assert (free[4], free[7]) == (1.5, 1.5)
+        page.tell("plot", joints=[])
+        page.wait_for(lambda: "joints" not in page.frame)
+        p.stepSimulation()
+        page.wait_for(lambda: page.frame["time"] > 21.5 / 240)
         assert "joints" not in page.frame
 
 

@@ -1,35 +1,13 @@
 """Whole scripts: the tutorial with sliders and ESC, as it is, driven from its page; and Ctrl-C."""
 
-import os
 import re
 import signal
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from tests.viewer.browser import Page, chromium, needs_browser
+from tests.viewer.scripts import ROOT, started
 from tests.viewer.watcher import PATIENCE, Watcher
-
-ROOT = Path(__file__).parents[2]
-
-
-def started(*command: str | Path) -> tuple[subprocess.Popen[str], str]:
-    """A script that shows its world, and the address it prints."""
-    environment = {**os.environ, "CI": "1", "PYTHONUNBUFFERED": "1", "PYTHONPATH": str(ROOT / "src")}
-    script = subprocess.Popen(
-        [sys.executable, *command],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    assert script.stdout is not None
-    for line in script.stdout:
-        if address := re.search(r"http://\S+/", line):
-            return script, address[0]
-    raise AssertionError("no address")
-
 
 STEPPING = """
 import pybullet as p

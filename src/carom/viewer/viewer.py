@@ -21,7 +21,7 @@ from carom.viewer.keys import Keyboard
 from carom.viewer.mouse import Mouse
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
-from carom.viewer.probes import sample
+from carom.viewer.probes import Probes
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
 
@@ -96,6 +96,7 @@ class Viewer:
         self.previews = Previews(self._board)
         self._world = world
         self._hands = Hands(world, self.lock)
+        self._probes = Probes(world)
         # What each page wants to know besides: whether collision shapes, and which joints.
         self._collisions: dict[int, bool] = {}
         self._plotted: dict[int, set[tuple[int, int]]] = {}
@@ -179,8 +180,8 @@ class Viewer:
         self.drawings.expire()
         self._hands.apply()
         extras: dict[str, Any] = {"picture": self._pictures.asked}
-        if joints := set().union(*self._plotted.values()):
-            extras["joints"] = sample(self._world, joints)
+        if self._plotted:
+            extras["joints"] = self._probes.samples()
         return self._feed.frame(extras)
 
     def _receive(self, page: int, told: dict[str, Any]) -> None:
@@ -190,7 +191,7 @@ class Viewer:
         self.keyboard.release_all(page)
         self._pictures.forget(page)
         self._collisions.pop(page, None)
-        self._plotted.pop(page, None)
+        self._plot(page, set())
         self._feed.collisions = any(self._collisions.values())
         self._hands.release(page)
         self._hands.apply(_PATIENCE)
@@ -222,7 +223,16 @@ class Viewer:
         self._feed.collisions = any(self._collisions.values())
 
     def _take_plots(self, page: int, told: dict[str, Any]) -> None:
-        self._plotted[page] = {(int(body), int(joint)) for body, joint in told["joints"][:_MOST_PLOTS]}
+        self._plot(page, {(int(body), int(joint)) for body, joint in told["joints"][:_MOST_PLOTS]})
+
+    def _plot(self, page: int, joints: set[tuple[int, int]]) -> None:
+        if joints:
+            self._plotted[page] = joints
+        else:
+            self._plotted.pop(page, None)
+        # Nobody may step while the observers of the world change.
+        with self.lock:
+            self._probes.watch(set().union(*self._plotted.values()))
 
     def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
         point, target = _vector(told["point"]), _vector(told["target"])

@@ -4,7 +4,7 @@ const SECONDS = 10;
 const QUANTITIES = [
   { name: "position", at: 2, target: 5 },
   { name: "velocity", at: 3, target: 6 },
-  { name: "torque", at: 4, target: null },
+  { name: "torque", at: 4, target: 7 },
 ];
 const LINE = "#1f6fb2";
 const TARGET = "#e08a1e";
@@ -98,7 +98,7 @@ function drawChart(canvas, samples, { name, at, target }) {
   context.fillStyle = "#5b6b7a";
   context.fillText(name, 4, 11);
   if (samples.length === 0) return;
-  const columns = target === null ? [at] : [at, target];
+  const columns = [at, target];
   const values = samples.flatMap(({ sample }) => columns.map((column) => sample[column]).filter((x) => x !== null));
   let [low, high] = [values.reduce((a, b) => Math.min(a, b)), values.reduce((a, b) => Math.max(a, b))];
   const margin = Math.max((high - low) * 0.1, 1e-3);
@@ -121,9 +121,9 @@ function drawChart(canvas, samples, { name, at, target }) {
     context.stroke();
   };
   context.lineWidth = 1.4;
-  if (target !== null) trace(target, TARGET, [4, 3]);
+  trace(target, TARGET, [4, 3]);
   trace(at, LINE, []);
   const now = samples.at(-1).sample;
-  const text = now[at].toPrecision(4) + (target !== null && now[target] !== null ? ` → ${now[target].toPrecision(4)}` : "");
+  const text = now[at].toPrecision(4) + (now[target] !== null ? ` → ${now[target].toPrecision(4)}` : "");
   context.fillText(text, width - 4 - context.measureText(text).width, 11);
 }
