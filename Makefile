@@ -4,7 +4,7 @@
 #   make test         the test suite
 #   make check        lint, types and tests
 #   make docs         the documentation, in site/
-#   make figures      the plots of the tutorials and the picture of the viewer, by running them; needs Chromium
+#   make figures      the plots of the tutorials and the pictures of the viewer, by running them; needs Chromium
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
 #   make record       record what real PyBullet does in every conformance scenario
 #   make surface      call every function of real PyBullet in every way and record what comes of it
@@ -149,7 +149,7 @@ docs: $(VENV)/docs
 
 figures: $(VENV)/dev
 	$(RUN) tools/docs/plots.py
-	$(RUN) tools/docs/viewer_picture.py
+	PYTHONPATH=. $(RUN) tools/docs/viewer_pictures.py
 
 clean:
 	rm -rf $(VENV) .oracle .mujoco .bench .clients build dist site demo-output .pytest_cache .ruff_cache .hypothesis

@@ -22,7 +22,7 @@ _PERIOD = 1.0 / 60.0
 _FULL_TURN = pi
 _SLIDE = 1.0
 # How far from a robot the camera is, in sizes of the robot.
-_DISTANCE = 1.3
+_DISTANCE = 1.1
 _LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
 
 
