@@ -17,6 +17,7 @@ from carom.description import (
     Geometry,
     Inertial,
     Joint,
+    JointLimit,
     JointType,
     Link,
     Material,
@@ -29,9 +30,11 @@ from carom.description import (
     Visual,
 )
 from carom.description.pose import IDENTITY, Quaternion, Vector3
-from carom.description.transform import rotation_matrix
+from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
 
+# Decimals that angles may have before they are written with all of them.
+_DIGITS = 16
 _GIMBAL_LOCK = 1e-10
 """Cosine of the pitch below which roll and yaw cannot be told apart."""
 
@@ -144,9 +147,11 @@ class _Writer:
         yield from _origin(joint.frame, 2)
         yield f"    <parent link={quoteattr(self.robot.links[joint.parent].name)}/>"
         yield f"    <child link={quoteattr(self.robot.links[joint.child].name)}/>"
-        if joint.type not in (JointType.FIXED, JointType.FLOATING):
+        moves = joint.type not in (JointType.FIXED, JointType.FLOATING)
+        if moves:
             x, y, z = (component * joint.axis_length for component in joint.axis)
             yield f'    <axis xyz="{_numbers((x, y, z))}"/>'
+        if moves or limit != JointLimit():
             yield (
                 f'    <limit lower="{limit.lower!r}" upper="{limit.upper!r}" effort="{limit.effort!r}" '
                 f'velocity="{limit.velocity!r}" twist="{limit.twist!r}"/>'
@@ -218,7 +223,20 @@ def _origin(pose: Pose, depth: int) -> Iterator[str]:
 
 
 def roll_pitch_yaw(quaternion: Quaternion) -> Vector3:
-    """Angles about the fixed axes x, y and z [rad]; yaw is 0 where it and roll are the same."""
+    """Angles about the fixed axes x, y and z [rad]; yaw is 0 where it and roll are the same.
+
+    They have as few digits as give the same quaternion, if any do: it takes the last one for a shape to lie
+    exactly in the inertial frame, and inertias depend on that.
+    """
+    angles = _angles(quaternion)
+    for digits in range(_DIGITS):
+        rounded = (round(angles[0], digits), round(angles[1], digits), round(angles[2], digits))
+        if quaternion_from_rpy(*rounded) == quaternion:
+            return rounded
+    return angles
+
+
+def _angles(quaternion: Quaternion) -> Vector3:
     m = rotation_matrix(quaternion)
     level = hypot(m[0][0], m[1][0])
     if level < _GIMBAL_LOCK:
