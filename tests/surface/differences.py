@@ -37,7 +37,6 @@ MEANT: dict[tuple[str, str, str], str] = {
     ("loadMJCF", "*", "body 6 link 2 shapes"): _GARBAGE,
     ("loadURDF", "flag 256", "later body 6 joint *"): "global velocities lose digits in PyBullet",
     ("performCollisionDetection", "*", "* bounds"): _BOUNDS,
-    ("rayTestBatch", "keyword parent*", "* bounds"): _BOUNDS,
     ("getLinkState*", "*", "* bounds"): _BOUNDS,
     ("restoreState", "*", "* bounds"): _BOUNDS,
     (
@@ -93,11 +92,11 @@ UNHEARD: dict[tuple[str, str], str] = {
 }
 
 
-def why(function: str, call: str, what: str) -> str | None:
-    """Why a difference is meant; None if it is not."""
-    for pattern, reason in MEANT.items():
+def meant(function: str, call: str, what: str) -> tuple[str, str, str] | None:
+    """The entry of `MEANT` for a difference; None if it is not meant."""
+    for pattern in MEANT:
         if all(map(fnmatchcase, (function, call, what), pattern)):
-            return reason
+            return pattern
     return None
 
 

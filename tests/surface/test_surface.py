@@ -18,7 +18,7 @@ from pybullet import _unavailable
 from .call import CLIENT, TABLE
 from .calls import CALLS
 from .compare import differences
-from .differences import unheard, why
+from .differences import MEANT, meant, unheard
 from .perform import Places, changed, tried, untouched
 
 RECORDED: dict[str, Any] = json.loads(Path(__file__).with_name("oracle.json").read_text())
@@ -44,15 +44,19 @@ def test_what_comes_of_calls_is_what_comes_of_them_in_pybullet(function: str, tm
         pytest.skip("not built yet")
     calls, places = CALLS[function], Places(str(tmp_path))
     before = untouched(p, calls, places)
-    problems, outcomes = [], {}
+    problems, outcomes, met = [], {}, set()
     for call in calls.each(function):
         ours = tried(p, function, calls, call, places)
         ours["changes"] = changed(before, ours.pop("seen"))
         outcomes[call.title] = ours
         for what, how in differences(RECORDED[function][call.title], ours, before):
-            if why(function, call.title, what) is None:
+            reason = meant(function, call.title, what)
+            if reason is None:
                 problems.append(f"{call.title}: {what}: {how}")
+            else:
+                met.add(reason)
     assert problems == []
+    assert {reason for reason in MEANT if reason[0] == function} <= met, "differences that are none"
     assert outcomes.keys() == RECORDED[function].keys()
     if "needed" in outcomes:
         assert outcomes["by position"] == outcomes["needed"]
