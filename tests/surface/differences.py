@@ -17,11 +17,6 @@ MEANT: dict[tuple[str, str, str], str] = {
     ("calculateInverseKinematics", "the body by its other name", "value"): _IK,
     ("calculateJacobian", "*linkIndex=77", "raises"): "there is no such link; PyBullet returns zeros",
     ("calculateMassMatrix", "*objPositions=[[]]", "raises"): "PyBullet reads behind the end of the list",
-    (
-        "calculateVelocityQuaternion",
-        "*",
-        "value",
-    ): "the angle is that of the rotation, however long the quaternion",
     ("changeConstraint", "keyword *", "constraint 1"): _GARBAGE,
     ("getConstraintInfo", "*", "value"): _GARBAGE,
     ("changeConstraint", "keyword gearAuxLink", "*"): "there is no such link",
