@@ -32,7 +32,7 @@ from pybullet._page_window import PageWindow
 
 WANTED_PERIOD = 1.0 / 30.0
 WANTED_SLOWDOWN = 0.20
-STEPS_IN_A_BLOCK, BLOCKS, ROUNDS = 5000, 12, 6
+STEPS_IN_A_BLOCK, BLOCKS, ROUNDS = 5000, 4, 12
 SECONDS_TRACED = 6.0
 
 # A page that takes what it is sent and draws nothing; it says when it is connected, and goes with its input.
@@ -164,34 +164,44 @@ def mark(seconds: float) -> str:
 
 
 def block() -> float:
-    """Time of a step, as the mean over a block long enough for several frames [s]."""
-    began = time.perf_counter()
+    """Processor time of a step, as the mean over a block long enough for several frames [s]."""
+    began = time.thread_time()
     for _ in range(STEPS_IN_A_BLOCK):
         p.stepSimulation()
-    return (time.perf_counter() - began) / STEPS_IN_A_BLOCK
+    return (time.thread_time() - began) / STEPS_IN_A_BLOCK
 
 
 def watch_the_panda() -> list[list[str]]:
-    """Rows of the table about the Panda under its default motors, watched and not."""
-    p.connect(p.DIRECT)
-    panda()
-    alone = statistics.median(block() for _ in range(ROUNDS * BLOCKS))
-    p.disconnect()
+    """Rows of the table about the Panda under its default motors, watched and not.
+
+    A step waits for the server's thread at most while that works, as both need the interpreter: so what
+    watching costs is what a step's own time grows by, and the time that the server takes.
+    """
     unwatched: list[float] = []
     watched: list[float] = []
+    idling = serving = passed = 0.0
     with window() as shown:
         panda()
+        server = clock_of_server()
         for _ in range(ROUNDS):
+            before = time.clock_gettime(server)
             unwatched += [block() for _ in range(BLOCKS)]
+            idling += time.clock_gettime(server) - before
             with reader(shown.viewer.address):
+                before, began = time.clock_gettime(server), time.perf_counter()
                 watched += [block() for _ in range(BLOCKS)]
-    before, after = statistics.median(unwatched), statistics.median(watched)
-    slower = after / before - 1.0
+                serving += time.clock_gettime(server) - before
+                passed += time.perf_counter() - began
+    alone, seen = statistics.median(unwatched), statistics.median(watched)
+    share = serving / passed
+    slower = seen / alone * (1.0 + share) - 1.0
     verdict = "PASS" if slower <= WANTED_SLOWDOWN else "FAIL"
     return [
-        ["a step of the Panda in `DIRECT`", readable(alone), "", ""],
-        ["in `GUI`, with no page open", readable(before), "", ""],
-        ["with a page open", f"{readable(after)} ({100 * slower:+.0f} %)", "≤ +20 %", verdict],
+        ["a step of the Panda with no page open", readable(alone), "", ""],
+        ["the server's thread meanwhile", readable(idling) if idling > 1e-3 else "nothing", "nothing", ""],
+        ["a step with a page open", readable(seen), "", ""],
+        ["the server's thread meanwhile, of a core", f"{100 * share:.1f} %", "", ""],
+        ["so stepping takes longer by", f"{100 * slower:.0f} %", "≤ 20 %", verdict],
     ]
 
 
