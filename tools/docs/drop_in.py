@@ -70,7 +70,8 @@ cube = p.loadURDF("cube_small.urdf", [0.5, 0, 0.025])
 
 LIMITED = {
     "configureDebugVisualizer": "the flags of virtual reality are recorded and have no effect",
-    "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1",
+    "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1, and "
+    "`allowedCcdPenetration` and `enableSAT` have no effect",
     "vhacd": "needs the library CoACD, which cuts differently from V-HACD",
 }
 
@@ -100,6 +101,7 @@ WITHOUT_EFFECT = {
     "ER_TINY_RENDERER": "no effect: there is one renderer",
     "ER_BULLET_HARDWARE_OPENGL": "no effect: there is one renderer",
     "STATE_LOGGING_CUSTOM_TIMER": "logs nothing",
+    "CNSFileIO": "refused, as by PyBullet as it is distributed",
     "STATE_LOGGING_ALL_COMMANDS": "no file is written; a warning says so",
     "STATE_REPLAY_ALL_COMMANDS": "nothing is replayed; a warning says so",
 }
