@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from tests.pybullet.touching import BALL, FLOOR, PAIR, RADIUS, WEIGHT, balls
+from tests.pybullet.touching import BALL, FLOOR, PAIR, RADIUS, WEIGHT, add_pair, balls
 
 import pybullet as p
 
@@ -225,28 +225,12 @@ def test_the_shapes_decide_which_body_comes_first(client: int, lower: str, upper
     assert points[0][11] == pytest.approx((0.0, -up, 0.0), abs=1e-9)
 
 
-def test_links_fixed_to_a_fixed_base_touch_other_fixed_bodies_without_force() -> None:
+def test_links_fixed_to_a_fixed_base_touch_other_fixed_bodies_without_force(client: int) -> None:
     """As in PyBullet: only the bases of two fixed bodies do not touch."""
-    p.connect(p.DIRECT)
     p.setGravity(0, 0, -10)
-    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
-    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
-    lamp = p.createMultiBody(
-        0,
-        ball,
-        basePosition=[0, 0, 0.1],
-        linkMasses=[1],
-        linkCollisionShapeIndices=[ball],
-        linkVisualShapeIndices=[-1],
-        linkPositions=[[0.3, 0, 0]],
-        linkOrientations=[[0, 0, 0, 1]],
-        linkInertialFramePositions=[[0, 0, 0]],
-        linkInertialFrameOrientations=[[0, 0, 0, 1]],
-        linkParentIndices=[0],
-        linkJointTypes=[p.JOINT_FIXED],
-        linkJointAxis=[[0, 0, 1]],
-    )
-    loose = p.createMultiBody(1, ball, basePosition=[0.499, 0, 0.1])
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=RADIUS)
+    floor, lamp = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE)), add_pair(0, ball)
+    loose = p.createMultiBody(1, ball, basePosition=[1.699, 0, RADIUS])
     for _ in range(10):
         p.stepSimulation()
     (contact,) = p.getContactPoints(lamp, floor)
@@ -260,8 +244,7 @@ def test_links_fixed_to_a_fixed_base_touch_other_fixed_bodies_without_force() ->
     assert sorted(contact[3] for contact in p.getContactPoints(lamp, floor)) == [-1, 0]
 
 
-def test_links_below_minus_one_stand_for_all() -> None:
-    p.connect(p.DIRECT)
+def test_links_below_minus_one_stand_for_all(client: int) -> None:
     ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
     first, second = (p.createMultiBody(1, ball, basePosition=[x, 0, 0]) for x in (0.0, 0.15))
     p.performCollisionDetection()

@@ -9,15 +9,10 @@ RADIUS = 0.1
 WEIGHT = 9.81
 
 
-@pytest.fixture
-def balls(client: int) -> None:
-    """Body 0 is the floor, 1 a ball, 2 two balls fixed to each other: its base and its link 0."""
-    p.setGravity(0, 0, -WEIGHT)
-    p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 1]), basePosition=[0, 0, -1])
-    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=RADIUS)
-    p.createMultiBody(1, shape, basePosition=[0, 0, RADIUS])
-    p.createMultiBody(
-        1,
+def add_pair(mass: float, shape: int) -> int:
+    """Two balls fixed to each other, on the floor; the base is fixed if it has no mass."""
+    return p.createMultiBody(
+        mass,
         shape,
         basePosition=[1, 0, RADIUS],
         linkMasses=[1],
@@ -31,3 +26,13 @@ def balls(client: int) -> None:
         linkJointTypes=[p.JOINT_FIXED],
         linkJointAxis=[[0, 0, 1]],
     )
+
+
+@pytest.fixture
+def balls(client: int) -> None:
+    """Body 0 is the floor, 1 a ball, 2 two balls fixed to each other: its base and its link 0."""
+    p.setGravity(0, 0, -WEIGHT)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 1]), basePosition=[0, 0, -1])
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=RADIUS)
+    p.createMultiBody(1, shape, basePosition=[0, 0, RADIUS])
+    add_pair(1.0, shape)

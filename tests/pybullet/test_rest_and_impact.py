@@ -1,0 +1,119 @@
+"""What must hold of contact whoever computes it: how deep things sink, and what a collision keeps."""
+
+import random
+from collections.abc import Callable
+from itertools import combinations_with_replacement
+
+import numpy as np
+import pytest
+from tests.pybullet.test_drops import GROUNDS, turned
+
+import pybullet as p
+
+DEEPEST = 2e-4
+"""Penetration at rest that nobody sees [m]."""
+
+# A shape of a size [m], how high its centre stands above the floor in sizes, and how it lies.
+LYING = [2**-0.5, 0.0, 0.0, 2**-0.5]
+UPRIGHT = [0.0, 0.0, 0.0, 1.0]
+HOUSEHOLD: dict[str, tuple[Callable[[float], int], float, list[float]]] = {
+    "ball": (lambda size: p.createCollisionShape(p.GEOM_SPHERE, radius=size), 1.0, UPRIGHT),
+    "box": (
+        lambda size: p.createCollisionShape(p.GEOM_BOX, halfExtents=[size, 0.5 * size, 0.7 * size]),
+        0.7,
+        UPRIGHT,
+    ),
+    "standing cylinder": (
+        lambda size: p.createCollisionShape(p.GEOM_CYLINDER, radius=size, height=size),
+        0.5,
+        UPRIGHT,
+    ),
+    "lying cylinder": (
+        lambda size: p.createCollisionShape(p.GEOM_CYLINDER, radius=size, height=size),
+        1.0,
+        LYING,
+    ),
+    "lying capsule": (
+        lambda size: p.createCollisionShape(p.GEOM_CAPSULE, radius=size, height=size),
+        1.0,
+        LYING,
+    ),
+    "hull": (
+        lambda size: p.createCollisionShape(
+            p.GEOM_MESH,
+            vertices=[
+                [size * x, size * y, size * z] for x in (-1, 1) for y in (-0.6, 0.6) for z in (-0.8, 0.8)
+            ],
+        ),
+        0.8,
+        UPRIGHT,
+    ),
+}
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_household_things_hardly_sink_in(client: int, ground: str) -> None:
+    p.setGravity(0, 0, -9.81)
+    make, height = GROUNDS[ground]
+    floor = p.createMultiBody(0, make(), basePosition=[0, 0, height])
+    bodies: dict[str, int] = {}
+    for i, (name, (shape, stands, turn)) in enumerate(HOUSEHOLD.items()):
+        for j, size in enumerate((0.02, 0.05, 0.15, 0.4)):
+            bodies[f"{name} of {size} m"] = p.createMultiBody(
+                1000.0 * size**3 + 0.05,
+                shape(size),
+                basePosition=[2.0 * i - 5, 2.0 * j - 3, stands * size + 0.002],
+                baseOrientation=turn,
+            )
+    for _ in range(480):
+        p.stepSimulation()
+    for name, body in bodies.items():
+        contacts = p.getContactPoints(body, floor)
+        assert contacts, name
+        assert min(contact[8] for contact in contacts) > -DEEPEST, name
+
+
+SHAPES: dict[str, Callable[[], int]] = {
+    "ball": lambda: p.createCollisionShape(p.GEOM_SPHERE, radius=0.1),
+    "box": lambda: p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.07, 0.12]),
+    "capsule": lambda: p.createCollisionShape(p.GEOM_CAPSULE, radius=0.06, height=0.15),
+    "cylinder": lambda: p.createCollisionShape(p.GEOM_CYLINDER, radius=0.1, height=0.12),
+    "hull": lambda: p.createCollisionShape(
+        p.GEOM_MESH, vertices=[[x, y, z] for x in (-0.1, 0.1) for y in (-0.08, 0.1) for z in (-0.09, 0.1)]
+    ),
+}
+
+
+def momentum(masses: dict[int, float]) -> np.ndarray:
+    """The sum over free bodies [kg m/s]."""
+    return np.sum([mass * np.array(p.getBaseVelocity(body)[0]) for body, mass in masses.items()], axis=0)
+
+
+@pytest.mark.parametrize(("first", "second"), list(combinations_with_replacement(SHAPES, 2)))
+def test_collisions_keep_momentum_to_rounding(client: int, first: str, second: str) -> None:
+    """Of bodies of unequal mass that spin, slip and bounce, twenty times from random sides."""
+    chance = random.Random(first + second)
+    shapes = SHAPES[first](), SHAPES[second]()
+    hits = 0
+    for _ in range(20):
+        masses = {
+            p.createMultiBody(
+                mass, shape, basePosition=[x, chance.uniform(-0.05, 0.05), 0], baseOrientation=turned(chance)
+            ): mass
+            for shape, x, mass in zip(shapes, (-0.3, 0.3), (1.0, 7.0), strict=True)
+        }
+        for body, speed in zip(masses, (3.0, -1.0), strict=True):
+            p.changeDynamics(body, -1, linearDamping=0, angularDamping=0)
+            p.changeDynamics(body, -1, restitution=0.8, lateralFriction=1, rollingFriction=0.01)
+            spin = [chance.uniform(-5, 5) for _ in range(3)]
+            p.resetBaseVelocity(body, [speed, chance.uniform(-0.2, 0.2), 0], spin)
+        before = momentum(masses)
+        touched = False
+        for _ in range(60):
+            p.stepSimulation()
+            touched |= bool(p.getContactPoints())
+            np.testing.assert_allclose(momentum(masses), before, atol=1e-11)
+        hits += touched
+        for body in masses:
+            p.removeBody(body)
+    assert hits > 10
