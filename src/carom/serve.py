@@ -12,6 +12,8 @@ import pybullet
 from carom.errors import CaromError
 from carom.warmup import warmup
 
+# What asks a process to end; Ctrl-Break is all that processes can send each other on Windows.
+_REQUESTS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name)]
 # How often to look whether the window has been closed [s].
 _LOOK = 0.25
 
@@ -49,9 +51,7 @@ def serve(service: Service) -> None:
         client = pybullet.connect(method, key=service.key, options=" ".join(service.options))
     except pybullet.error as problem:
         raise CaromError(str(problem)) from problem
-    before: dict[int, Any] = {
-        number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)
-    }
+    before: dict[int, Any] = {number: signal.signal(number, end) for number in _REQUESTS}
     try:
         print(f"The physics server has the key {service.key}; Ctrl-C ends it.", flush=True)
         while pybullet.isConnected(client) and not ending.wait(_LOOK):

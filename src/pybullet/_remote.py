@@ -75,6 +75,10 @@ class RemoteClient:
         """Ends the connection; the server and its world go on."""
         self._connection.close()
 
+    def leave_to_the_parent(self) -> None:
+        """Lets go of the connection, in a process that was forked from its own."""
+        self._connection.abandon()
+
 
 def join_server(method: int, address: Address) -> RemoteClient | None:
     """Connects to a server.
@@ -101,7 +105,7 @@ def _raise(name: str, text: str) -> NoReturn:
 def _leave_to_the_parent() -> None:
     # Two processes on one connection would read each other's answers.
     for client in list(_alive):
-        client.close()
+        client.leave_to_the_parent()
 
 
 if hasattr(os, "register_at_fork"):

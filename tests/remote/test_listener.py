@@ -287,6 +287,24 @@ def test_a_call_that_takes_too_long_ends_the_connection(server: Listener, echo: 
     assert works(server)
 
 
+def test_disconnecting_while_another_thread_waits(server: Listener) -> None:
+    connection = join(server)
+    problems: list[Exception] = []
+
+    def ask() -> None:
+        try:
+            connection.call("wait")
+        except ServerGone as problem:
+            problems.append(problem)
+
+    asking = Thread(target=ask)
+    asking.start()
+    assert until(connection._lock.locked)
+    connection.close()
+    asking.join(10.0)
+    assert len(problems) == 1
+
+
 def test_closing_while_a_call_is_in_progress(server: Listener, echo: Echo) -> None:
     connection = join(server)
     problems: list[Exception] = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from contextlib import suppress
 from threading import Lock
 from typing import Any
 
@@ -106,6 +107,13 @@ class Connection:
 
     def close(self) -> None:
         """Closes the connection; the server goes on."""
+        # Closing alone would leave a thread waiting that is in the middle of a call.
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+        self._socket.close()
+
+    def abandon(self) -> None:
+        """Closes what a forked process has inherited; its parent goes on with the connection."""
         self._socket.close()
 
     def _send(self, message: bytes, arrays: list[memoryview]) -> None:
