@@ -78,7 +78,7 @@ CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
 
 .clients/carom/clients: pyproject.toml
 	$(PYTHON) -m venv .clients/carom
-	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --editable . $(CLIENT_NEEDS)
+	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --editable '.[decompose]' $(CLIENT_NEEDS)
 	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --no-deps panda-gym
 	@touch $@
 

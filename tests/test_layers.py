@@ -69,6 +69,7 @@ MAY_IMPORT = {
     "pybullet_data": set(),
     # The URDF editor writes files of its own.
     "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
+    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils"},
 }
 
 

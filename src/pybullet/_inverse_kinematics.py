@@ -106,8 +106,8 @@ def calculateInverseKinematics(
 
     The search starts at the present pose, or at `currentPositions`. Where PyBullet's own iteration comes
     close enough, this is its result. Where it does not, the search goes on from there, and the result is
-    the nearest that was found; save for a position with an orientation and neither limits nor
-    `maxNumIterations` nor `residualThreshold`: that is PyBullet's result in any case.
+    the nearest that was found; save for a position with an orientation and neither
+    `maxNumIterations` nor `residualThreshold`: that is PyBullet's result, unless it violates limits.
 
     With limits the result keeps them, in any case. With `lowerLimits`, `upperLimits`, `jointRanges` and
     `restPoses` joints are also drawn to their rest poses, a little with each call, as far as the link
@@ -169,7 +169,7 @@ def calculateInverseKinematics(
         residualThreshold,
     )
     _check_link(body, link)
-    if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0 and "lower" not in options:
+    if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
         # Who says nothing of accuracy has learnt to live with PyBullet's, in trained policies for one.
         options["further"] = 0
 

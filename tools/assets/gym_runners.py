@@ -19,6 +19,8 @@ RED = (0.8, 0.25, 0.2, 1.0)
 FLOOR = (0.8, 0.85, 0.9, 1.0)
 MODEST: Vector3 = (0.8, 0.1, 0.1)
 """Friction of the runners that stay in a plane."""
+ONLY_OTHERS, NOTHING = (1, 0), (0, 1)
+"""Groups and masks of runners whose links do not touch each other, and of what touches nothing at all."""
 
 
 def _rod(start: Vector3, end: Vector3, radius: float, name: str = "") -> Geom:
@@ -80,7 +82,15 @@ def walker2d() -> Model:
         geoms=(_upright(1.45, 1.05, 0.05),),
         bodies=(_leg("", foot), _leg("_left", foot)),
     )
-    return Model("walker2d", "A walker on two legs that stays in a plane.", (torso,), MODEST, BLUE, "degree")
+    return Model(
+        "walker2d",
+        "A walker on two legs that stays in a plane.",
+        (torso,),
+        MODEST,
+        BLUE,
+        "degree",
+        ONLY_OTHERS,
+    )
 
 
 def _limb(
@@ -124,7 +134,9 @@ def half_cheetah() -> Model:
         ),
         bodies=(back, front),
     )
-    return Model("cheetah", "A cheetah with two legs that stays in a plane.", (torso,), MODEST, SAND)
+    return Model(
+        "cheetah", "A cheetah with two legs that stays in a plane.", (torso,), MODEST, SAND, touch=ONLY_OTHERS
+    )
 
 
 ANT_LEGS = (
@@ -157,7 +169,7 @@ def ant() -> Model:
         root = _rod((0.0, 0.0, 0.0), knee, 0.08)
         legs.append(Body(f"{name}_leg", geoms=(root,), bodies=(upper,)))
     torso = Body("torso", (0.0, 0.0, 0.75), geoms=(Geom("sphere", (0.25,)),), bodies=tuple(legs), free="root")
-    return Model("ant", "An ant with four legs.", (torso,), (1.5, 0.1, 0.1), SAND, "degree")
+    return Model("ant", "An ant with four legs.", (torso,), (1.5, 0.1, 0.1), SAND, "degree", ONLY_OTHERS)
 
 
 RAIL = Geom("capsule", (0.02, 1.0), "rail", turn=(Y, 1.5707963267948966), rgba=GREY)
@@ -170,7 +182,7 @@ def inverted_pendulum() -> Model:
     lean = _rod((0.0, 0.0, 0.0), (0.001, 0.0, 0.6), 0.049)
     pole = Body("pole", joints=(Hinge("hinge", Y),), geoms=(lean,))
     cart = Body("cart", joints=(SLIDER,), geoms=(CART,), bodies=(pole,))
-    return Model("inverted pendulum", "A pole on a cart on a rail.", (RAIL, cart), rgba=ORANGE)
+    return Model("inverted pendulum", "A pole on a cart on a rail.", (RAIL, cart), rgba=ORANGE, touch=NOTHING)
 
 
 def inverted_double_pendulum() -> Model:
@@ -179,7 +191,9 @@ def inverted_double_pendulum() -> Model:
     pole = Body("pole", joints=(Hinge("hinge", Y),), geoms=(_upright(0.0, 0.6, 0.045),), bodies=(upper,))
     cart = Body("cart", joints=(SLIDER,), geoms=(CART,), bodies=(pole,))
     floor = Geom("plane", (40.0, 40.0, 40.0), "floor", (0.0, 0.0, -3.0), rgba=FLOOR)
-    return Model("cartpole", "Two poles on a cart on a rail.", (floor, RAIL, cart), rgba=ORANGE)
+    return Model(
+        "cartpole", "Two poles on a cart on a rail.", (floor, RAIL, cart), rgba=ORANGE, touch=NOTHING
+    )
 
 
 def swimmer() -> Model:
@@ -232,7 +246,7 @@ def reacher() -> Model:
     )
     ground = Geom("plane", (1.0, 1.0, 10.0), "ground", rgba=FLOOR)
     world = (ground, *sides, root, inner, target)
-    return Model("reacher", "An arm of two links and a target to reach.", world, rgba=BLUE)
+    return Model("reacher", "An arm of two links and a target to reach.", world, rgba=BLUE, touch=NOTHING)
 
 
 def ground_plane() -> Model:

@@ -63,6 +63,7 @@ class Model:
 
     Attributes:
         angle: Unit of the bounds of joints.
+        touch: The groups that shapes are in, and those they touch, as bits (contype and conaffinity).
     """
 
     name: str
@@ -71,16 +72,19 @@ class Model:
     friction: Vector3 = (1.0, 0.005, 0.0001)
     rgba: tuple[float, float, float, float] = (0.8, 0.6, 0.4, 1.0)
     angle: Literal["degree", "radian"] = "radian"
+    touch: tuple[int, int] = (1, 1)
 
 
 def mjcf_text(model: Model) -> str:
     """The whole file; colours and friction are defaults at its top."""
     friction, rgba = _numbers(model.friction), _numbers(model.rgba)
+    group, mask = model.touch
+    touch = "" if model.touch == (1, 1) else f' contype="{group}" conaffinity="{mask}"'
     world = [line for item in model.world for line in _item(item)]
     body = [
         f'<compiler angle="{model.angle}" coordinate="local" inertiafromgeom="true"/>',
         "<default>",
-        f'{INDENT}<geom friction="{friction}" rgba="{rgba}"/>',
+        f'{INDENT}<geom friction="{friction}" rgba="{rgba}"{touch}/>',
         "</default>",
         "<worldbody>",
         *_deeper(world),

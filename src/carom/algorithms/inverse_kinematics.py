@@ -84,7 +84,7 @@ def inverse_kinematics(
         start: Joint positions to start from, a quaternion for each spherical joint.
         in_base_frame: Targets are in the inertial frame of the base instead of the world's.
         iterations: Most steps of PyBullet's method.
-        further: Most steps of the other one; as many where not given.
+        further: Most steps of the other one, unless a limit is violated: then, or where not given, as many.
         threshold: Distance [m] and angle [rad] that are close enough.
 
     Returns:

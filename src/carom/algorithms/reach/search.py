@@ -219,6 +219,8 @@ def inverse_kinematics_kernel(
     for dof in range(sizes.dofs):
         search.dof_step[dof] = real(0.0)
     left = further
+    if outside == 1:
+        left = iterations
     spread = _FIRST_SPREAD
     seed = Int32(1)
     while left > 0:

@@ -1,0 +1,51 @@
+"""PyBullet's environments for learning, for Gymnasium: `gymnasium.make("AntBulletEnv-v0")`.
+
+Importing this package registers them. Observations, actions, rewards and ends of episodes are PyBullet's; the
+interface is Gymnasium's, with its five results of `step`.
+"""
+
+from __future__ import annotations
+
+try:
+    import gymnasium
+except ImportError as missing:
+    raise ImportError(
+        "pybullet_envs needs Gymnasium; install it with: pip install carom[envs]", name="gymnasium"
+    ) from missing
+
+__all__ = ["getList"]
+
+_SWINGUP = "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv"
+# Name, module and class, steps of an episode, and what counts as solved.
+_ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
+    ("CartPoleBulletEnv-v1", "bullet.cartpole_bullet:CartPoleBulletEnv", 200, 190.0),
+    ("CartPoleContinuousBulletEnv-v0", "bullet.cartpole_bullet:CartPoleContinuousBulletEnv", 200, 190.0),
+    ("InvertedPendulumBulletEnv-v0", "gym_pendulum_envs:InvertedPendulumBulletEnv", 1000, 950.0),
+    ("InvertedDoublePendulumBulletEnv-v0", "gym_pendulum_envs:InvertedDoublePendulumBulletEnv", 1000, 9100.0),
+    (
+        "InvertedPendulumSwingupBulletEnv-v0",
+        _SWINGUP,
+        1000,
+        800.0,
+    ),
+    ("ReacherBulletEnv-v0", "gym_manipulator_envs:ReacherBulletEnv", 150, 18.0),
+    ("Walker2DBulletEnv-v0", "gym_locomotion_envs:Walker2DBulletEnv", 1000, 2500.0),
+    ("HalfCheetahBulletEnv-v0", "gym_locomotion_envs:HalfCheetahBulletEnv", 1000, 3000.0),
+    ("AntBulletEnv-v0", "gym_locomotion_envs:AntBulletEnv", 1000, 2500.0),
+    ("HopperBulletEnv-v0", "gym_locomotion_envs:HopperBulletEnv", 1000, 2500.0),
+    ("HumanoidBulletEnv-v0", "gym_locomotion_envs:HumanoidBulletEnv", 1000, None),
+)
+
+for _name, _place, _steps, _solved in _ENVIRONMENTS:
+    if _name not in gymnasium.registry:
+        gymnasium.register(
+            _name,
+            entry_point=f"pybullet_envs.{_place}",
+            max_episode_steps=_steps,
+            reward_threshold=_solved,
+        )
+
+
+def getList() -> list[str]:
+    """Names of the environments, as lines of a list."""
+    return [f"- {name}" for name, *_ in _ENVIRONMENTS]

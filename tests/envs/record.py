@@ -1,0 +1,97 @@
+"""Two episodes of each environment with fixed starts and actions, as recorded with PyBullet.
+
+    .oracle/bin/python tests/envs/record.py     # needs gymnasium there, for its spaces
+
+PyBullet's own environments are written for the gym of old, of which little is needed here.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+import types
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+RECORD = Path(__file__).with_name("pybullet.json")
+STEPS = 8
+ACTIONS = {
+    "gym_pendulum_envs:InvertedPendulumBulletEnv": 1,
+    "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv": 1,
+    "gym_pendulum_envs:InvertedDoublePendulumBulletEnv": 1,
+    "gym_manipulator_envs:ReacherBulletEnv": 2,
+    "gym_locomotion_envs:HopperBulletEnv": 3,
+    "gym_locomotion_envs:Walker2DBulletEnv": 6,
+    "gym_locomotion_envs:HalfCheetahBulletEnv": 6,
+    "gym_locomotion_envs:AntBulletEnv": 8,
+    "gym_locomotion_envs:HumanoidBulletEnv": 17,
+    "bullet.cartpole_bullet:CartPoleContinuousBulletEnv": 1,
+}
+"""Environments by module and class, and the numbers of an action."""
+
+Episodes = list[list[tuple[list[float], float]]]
+
+
+class EvenChance:
+    """Numbers in place of random ones: the same in every run, whatever draws them."""
+
+    def __init__(self) -> None:
+        self._drawn = 0
+
+    def uniform(self, low: float = 0.0, high: float = 1.0, size: Any = None) -> Any:
+        count = 1 if size is None else int(np.prod(size))
+        shares = [((self._drawn + number) * 0.37) % 1.0 for number in range(count)]
+        self._drawn += count
+        values = low + (high - low) * np.array(shares)
+        return float(values[0]) if size is None else values.reshape(size)
+
+
+def action(name: str, step: int) -> np.ndarray:
+    return 0.5 * np.sin(0.1 * step + np.arange(ACTIONS[name]))
+
+
+def _old_gym() -> None:
+    """What PyBullet's environments import of gym, which is not kept up any more."""
+    import gymnasium
+
+    modules: dict[str, Any] = {
+        name: types.ModuleType(name)
+        for name in ("gym", "gym.utils", "gym.utils.seeding", "gym.envs", "gym.envs.registration")
+    }
+    gym = modules["gym"]
+    gym.Env, gym.spaces, gym.__version__ = type("Env", (), {}), gymnasium.spaces, "0.21"
+    gym.utils, gym.envs = modules["gym.utils"], modules["gym.envs"]
+    gym.utils.seeding, gym.envs.registration = modules["gym.utils.seeding"], modules["gym.envs.registration"]
+    gym.utils.seeding.np_random = lambda seed=None: (EvenChance(), 0)
+    registration = gym.envs.registration
+    registration.registry, registration.make, registration.spec = (
+        types.SimpleNamespace(env_specs={}),
+        None,
+        None,
+    )
+    registration.register = lambda *arguments, **keywords: None
+    sys.modules.update(modules | {"gym.spaces": gymnasium.spaces})
+
+
+def _episodes_of_pybullet(name: str) -> Episodes:
+    module, _, kind = name.partition(":")
+    env = getattr(importlib.import_module(f"pybullet_envs.{module}"), kind)()
+    episodes = []
+    for _ in range(2):
+        env.np_random = EvenChance()
+        if hasattr(env, "robot"):
+            env.robot.np_random = env.np_random
+        episode = [(np.asarray(env.reset(), float).tolist(), 0.0)]
+        for step in range(STEPS):
+            observation, reward, *_ = env.step(action(name, step))
+            episode.append((np.asarray(observation, float).tolist(), float(reward)))
+        episodes.append(episode)
+    return episodes
+
+
+if __name__ == "__main__":
+    _old_gym()
+    RECORD.write_text(json.dumps({name: _episodes_of_pybullet(name) for name in ACTIONS}) + "\n")

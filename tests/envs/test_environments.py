@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import pybullet_envs
+
+# Numbers of an observation and of an action; none of the latter where there is a choice of two.
+SIZES: dict[str, tuple[int, int | None]] = {
+    "CartPoleBulletEnv-v1": (4, None),
+    "CartPoleContinuousBulletEnv-v0": (4, 1),
+    "InvertedPendulumBulletEnv-v0": (5, 1),
+    "InvertedPendulumSwingupBulletEnv-v0": (5, 1),
+    "InvertedDoublePendulumBulletEnv-v0": (9, 1),
+    "ReacherBulletEnv-v0": (9, 2),
+    "HopperBulletEnv-v0": (15, 3),
+    "Walker2DBulletEnv-v0": (22, 6),
+    "HalfCheetahBulletEnv-v0": (26, 6),
+    "AntBulletEnv-v0": (28, 8),
+    "HumanoidBulletEnv-v0": (44, 17),
+}
+
+
+def rollout(name: str, steps: int) -> tuple[list[np.ndarray], list[float]]:
+    env: Any = gymnasium.make(name).unwrapped
+    observations, rewards = [env.reset(seed=3)[0]], []
+    for number in range(steps):
+        shape = env.action_space.shape
+        action = np.sin(0.1 * number + np.arange(shape[0])) if shape else number % 2
+        observation, reward, done, *_ = env.step(action)
+        observations.append(observation)
+        rewards.append(reward)
+        if done:
+            break
+    env.close()
+    return observations, rewards
+
+
+def test_all_of_them_are_listed() -> None:
+    assert sorted(pybullet_envs.getList()) == sorted(f"- {name}" for name in SIZES)
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_environments_are_what_gymnasium_expects(name: str) -> None:
+    env: Any = gymnasium.make(name).unwrapped
+    observed, acted = SIZES[name]
+    assert env.observation_space.shape == (observed,)
+    assert env.action_space.shape == (() if acted is None else (acted,))
+    check_env(env, skip_render_check=True)
+    env.close()
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_the_same_seed_gives_the_same_episode(name: str) -> None:
+    first, second = rollout(name, 20), rollout(name, 20)
+    assert np.array_equal(first[0], second[0])
+    assert first[1] == second[1]
+
+
+def test_a_pole_that_nobody_holds_falls() -> None:
+    env = gymnasium.make("InvertedPendulumBulletEnv-v0")
+    env.reset(seed=1)
+    steps = 0
+    while not env.step(np.zeros(1, np.float32))[2]:
+        steps += 1
+        assert steps < 200
+    env.close()
+
+
+def test_a_pendulum_that_hangs_is_worth_less_than_nothing() -> None:
+    env = gymnasium.make("InvertedPendulumSwingupBulletEnv-v0")
+    env.reset(seed=1)
+    assert float(env.step(np.zeros(1, np.float32))[1]) < -0.9
+    env.close()
+
+
+def test_pictures() -> None:
+    env: Any = gymnasium.make("AntBulletEnv-v0", render_mode="rgb_array").unwrapped
+    assert env.render().min() == 255
+    env.reset(seed=1)
+    assert env.render().shape == (240, 320, 3)
+    assert env.render().min() < 200
+    env.close()
+
+
+def test_actions_that_are_no_numbers_are_refused() -> None:
+    env: Any = gymnasium.make("AntBulletEnv-v0").unwrapped
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="not finite"):
+        env.step(np.full(8, np.nan))
+    env.close()
+
+
+def test_without_gymnasium_it_says_what_to_install() -> None:
+    code = "import sys; sys.modules['gymnasium'] = None\nimport pybullet_envs"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "pip install carom[envs]" in run.stderr
