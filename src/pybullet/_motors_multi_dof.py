@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import Indices, Vector, bound, indices, integer, numbers, real, sequence
@@ -11,7 +12,7 @@ from pybullet._clients import client_of
 from pybullet._constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL, TORQUE_CONTROL
 from pybullet._errors import fail
 from pybullet._joints import NO_INDICES
-from pybullet._lookup import joint_access
+from pybullet._lookup import OUT_OF_RANGE, body_access, joint_access, no_joint
 from pybullet._motors import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
@@ -145,10 +146,15 @@ def setJointMotorControlMultiDofArray(
     count = len(requested)
     if count == 0 or any(entries and len(entries) != count for entries in lists.values()):
         return
-    joints = [joint_access(bodyUniqueId, index, physicsClientId) for index in requested]
-    positions = [_list(entry, "targetPositions", 4) for entry in lists["targetPositions"] or [()] * count]
-    velocities = [_list(entry, "targetVelocities", 3) for entry in lists["targetVelocities"] or [()] * count]
-    bounds = [_list(entry, "forces", 3) for entry in lists["forces"] or [()] * count]
+    access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
+    for index in requested:
+        if index not in access.joints:
+            fail(OUT_OF_RANGE, no_joint(access.body, index))
+    joints = [access.joints[index] for index in requested]
+    positions, velocities, bounds = (
+        [_list(entry, name, most) for entry in lists[name]] or [()] * count
+        for name, most in (("targetPositions", 4), ("targetVelocities", 3), ("forces", 3))
+    )
     kps = [real(kp, "positionGains") for kp in lists["positionGains"] or [DEFAULT_POSITION_GAIN] * count]
     kds = [real(kd, "velocityGains") for kd in lists["velocityGains"] or [DEFAULT_VELOCITY_GAIN] * count]
     for position in positions:
@@ -169,9 +175,9 @@ def setJointMotorControlMultiDofArray(
 
 def _stable_pd(
     joints: Sequence[JointAccess],
-    positions: Sequence[tuple[float, ...]],
-    velocities: Sequence[tuple[float, ...]],
-    forces: Sequence[tuple[float, ...]],
+    positions: Sequence[Sequence[float]],
+    velocities: Sequence[Sequence[float]],
+    forces: Sequence[Sequence[float]],
     kps: Sequence[float],
     kds: Sequence[float],
     time_step: float,
@@ -192,8 +198,14 @@ def _stable_pd(
         memory[first + column] += torque
 
 
-def _list(values: Vector | None, name: str, most: int) -> tuple[float, ...]:
+def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
     """The numbers of one joint, at most as many as any joint has; none when left out."""
+    if isinstance(values, (list, tuple)) and len(values) <= most:
+        try:
+            if -inf < sum(values) < inf:
+                return values
+        except TypeError:
+            pass
     return () if values is None else numbers(values, f"expected a {name} sequence", name)[:most]
 
 
@@ -211,6 +223,6 @@ def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
         return real(value, name)
 
 
-def _check_rotation(position: tuple[float, ...]) -> None:
+def _check_rotation(position: Sequence[float]) -> None:
     if len(position) == 4 and not any(position):
         fail("expected a targetPosition sequence", "A quaternion of length 0 is no rotation.")

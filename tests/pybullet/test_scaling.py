@@ -1,6 +1,7 @@
 """unsupportedChangeScaling, with the numbers that PyBullet 3.2.7 gives."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,7 @@ def client() -> Iterator[None]:
     p.disconnect()
 
 
-def body(kind: int, **shape: object) -> int:
+def body(kind: int, **shape: Any) -> int:
     return p.createMultiBody(1, p.createCollisionShape(kind, **shape))
 
 
@@ -34,7 +35,7 @@ def bounds(number: int) -> tuple[float, ...]:
     ],
     ids=["box", "ball", "capsule"],
 )
-def test_bounds(kind: int, shape: dict[str, object], half: tuple[float, ...]) -> None:
+def test_bounds(kind: int, shape: dict[str, Any], half: tuple[float, ...]) -> None:
     number = body(kind, **shape)
     inertia = p.getDynamicsInfo(number, -1)[2]
     p.unsupportedChangeScaling(number, [2, 3, 4])

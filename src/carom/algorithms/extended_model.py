@@ -14,7 +14,7 @@ from carom.algorithms.extended_nodes import extended_nodes
 from carom.algorithms.moving_tree import MovingTree
 from carom.algorithms.nodes import Node
 from carom.description.pose import Vector3
-from carom.description.transform import rotation_matrix
+from carom.description.transform import matrix_vector, rotation_matrix, transposed
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 
 if TYPE_CHECKING:
@@ -59,7 +59,8 @@ class ExtendedModel:
     def bias_forces(self, position: np.ndarray, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
         """Forces of inertia and gravity [m/s²] at zero acceleration, (size,)."""
         rotation = _rotation(position)
-        self._tree.set_base_motion(*base_motion(rotation, rate[:3], rate[3:6], gravity))
+        velocity, omega = rate[:3].tolist(), rate[3:6].tolist()
+        self._tree.set_base_motion(*base_motion(position[3:7].tolist(), velocity, omega, gravity))
         still = np.zeros(self._tree.joint_dofs)
         rates = rate[self._places[BASE_VELOCITIES:]]
         forces = np.array(self._tree.forces(position[BASE_POSITIONS:], rates, still))
@@ -70,20 +71,26 @@ class ExtendedModel:
 
 
 def base_motion(
-    rotation: np.ndarray, velocity: np.ndarray, omega: np.ndarray, gravity: Vector3
-) -> np.ndarray:
+    orientation: Sequence[float], velocity: Sequence[float], omega: Sequence[float], gravity: Vector3
+) -> tuple[float, ...]:
     """Motion of a base at zero acceleration, as `MovingTree.set_base_motion` takes it, in PyBullet's way.
 
     Args:
-        rotation: From the base's axes to the world's.
+        orientation: Of the base, a quaternion (x, y, z, w).
         velocity: In world axes [m/s].
         omega: In world axes [rad/s].
         gravity: In world axes [m/s²].
     """
-    own_velocity, own_omega, own_gravity = np.array([velocity, omega, gravity]) @ rotation
+    x, y, z, w = orientation
+    to_base = transposed(rotation_matrix((x, y, z, w)))
+    (vx, vy, vz), (ox, oy, oz) = velocity, omega
+    vx, vy, vz = matrix_vector(to_base, (vx, vy, vz))
+    own_omega = matrix_vector(to_base, (ox, oy, oz))
+    gx, gy, gz = matrix_vector(to_base, gravity)
     # Nothing but gravity would be left if PyBullet did not take omega along the body's axes here.
-    acceleration = np.cross(own_omega - omega, own_velocity) - own_gravity
-    return np.concatenate([own_omega, np.zeros(3), acceleration])
+    dx, dy, dz = own_omega[0] - ox, own_omega[1] - oy, own_omega[2] - oz
+    acceleration = (dy * vz - dz * vy - gx, dz * vx - dx * vz - gy, dx * vy - dy * vx - gz)
+    return (*own_omega, 0.0, 0.0, 0.0, *acceleration)
 
 
 def _rotation(position: np.ndarray) -> np.ndarray:

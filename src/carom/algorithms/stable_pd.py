@@ -18,7 +18,6 @@ from carom.algorithms.extended_nodes import extended_nodes
 from carom.algorithms.moving_tree import MovingTree, numbers_of
 from carom.algorithms.tree.stable_pd import Control, stable_pd_kernel
 from carom.algorithms.tree.structs import BASE_MOTION
-from carom.description.transform import rotation_matrix
 from carom.model.arrays import ArrayTable
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.model.launch import Launch, argument_indices
@@ -110,10 +109,10 @@ class _Controller:
     def _take_state(self) -> None:
         body, world = self._body, self._body.world
         q, u = body.first_position, body.first_velocity
-        x, y, z, w = world.position_memory[q + 3 : q + BASE_POSITIONS]
-        rotation = np.array(rotation_matrix((x, y, z, w)))
-        omega, velocity = world.velocity[u : u + 3], world.velocity[u + 3 : u + BASE_VELOCITIES]
-        self._tree.set_base_motion(*base_motion(rotation, velocity, omega, world.parameters.gravity))
+        orientation = world.position_memory[q + 3 : q + BASE_POSITIONS].tolist()
+        rates = world.velocity_memory[u : u + BASE_VELOCITIES].tolist()
+        gravity = world.parameters.gravity
+        self._tree.set_base_motion(*base_motion(orientation, rates[3:], rates[:3], gravity))
         self._position[:] = world.position_memory[q + BASE_POSITIONS :][: self._tree.coordinates]
         self._rate[:] = world.velocity_memory[u + BASE_VELOCITIES :][: self._tree.joint_dofs]
 
