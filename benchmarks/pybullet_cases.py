@@ -6,6 +6,7 @@ has to be done, untimed, with its result.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from functools import partial
@@ -238,6 +239,52 @@ def set_motors(original_data: str) -> Prepared:
 def reset_joint(original_data: str) -> Prepared:
     panda = _panda()
     return lambda: p.resetJointState(panda, 3, -1.9)
+
+
+def change_gravity(original_data: str) -> Prepared:
+    _panda()
+    values = itertools.cycle((-9.8, -9.9))
+
+    def change_and_step() -> None:
+        p.setGravity(0, 0, next(values))
+        p.stepSimulation()
+
+    return change_and_step
+
+
+def _boxes_on_a_floor() -> list[int]:
+    _world()
+    p.loadURDF(PLANE)
+    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+    boxes = [p.createMultiBody(1, shape, -1, [0.5 * place, 0, 0.1]) for place in range(10)]
+    crowds.settle(20)
+    return boxes
+
+
+def change_constraint(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+
+    def tie_and_untie() -> None:
+        tie = p.createConstraint(box, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [1.5, 0, 0.1])
+        p.stepSimulation()
+        p.removeConstraint(tie)
+
+    return tie_and_untie
+
+
+def detect_collisions(original_data: str) -> Prepared:
+    _boxes_on_a_floor()
+    return p.performCollisionDetection
+
+
+def contact_points(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.getContactPoints(box)
+
+
+def closest_points(original_data: str) -> Prepared:
+    boxes = _boxes_on_a_floor()
+    return lambda: p.getClosestPoints(boxes[3], boxes[4], 1.0)
 
 
 def inverse_dynamics(original_data: str) -> Prepared:
