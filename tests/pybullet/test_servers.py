@@ -198,11 +198,12 @@ def test_everybody_sees_what_others_do(joined: int, key: int) -> None:
 
 def test_all_at_once(joined: int, key: int) -> None:
     p.setGravity(0, 0, -10)
-    work = "[(p.loadURDF({!r}, [{}, 0, 5]), p.stepSimulation()) for _ in range(20)][-1]"
+    # Apart from each other, so that nothing is pushed upwards.
+    work = "[(p.loadURDF({!r}, [{}, 3 * k, 5]), p.stepSimulation()) for k in range(20)][-1]"
     with another(key) as first, another(key) as second, another(key) as third:
         crowd = (first, second, third)
         for number, process in enumerate(crowd):
-            process.tell(work.format(ARM, number))
+            process.tell(work.format(ARM, 3 * number))
         states = [p.getBasePositionAndOrientation(0)[0][2] for _ in range(50) if p.getNumBodies()]
         for process in crowd:
             assert process.hear().endswith("())")
