@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import builtins
 import contextlib
-import io
 import json
 import os
 import random
@@ -181,25 +180,22 @@ def main() -> None:
     signal.signal(signal.SIGALRM, ring)
     signal.alarm(int(float(seconds)))
     start = real_clock()
-    printed = io.StringIO()
     record: dict[str, Any] = {"end": "last line", "error": ""}
-    with contextlib.redirect_stdout(printed):
-        try:
-            runpy.run_path(script, run_name="__main__")
-        except Over:
-            record["end"] = "steps" if watch.step_count >= watch.step_limit else "time"
-        except SystemExit as leaving:
-            record["end"] = f"exit {leaving.code}"
-        except BaseException as error:
-            record["end"] = "error"
-            record["error"] = f"{type(error).__name__}: {error}"
-            record["traceback"] = traceback.format_exc()
+    try:
+        runpy.run_path(script, run_name="__main__")
+    except Over:
+        record["end"] = "steps" if watch.step_count >= watch.step_limit else "time"
+    except SystemExit as leaving:
+        record["end"] = f"exit {leaving.code}"
+    except BaseException as error:
+        record["end"] = "error"
+        record["error"] = f"{type(error).__name__}: {error}"
+        record["traceback"] = traceback.format_exc()
     signal.alarm(0)
     record |= {
         "module": pybullet.__file__,
         "wall": real_clock() - start,
         "steps": watch.step_count,
-        "printed": printed.getvalue()[:200_000],
         "states": watch.states,
     }
     with open(record_path, "w") as file:
