@@ -1,4 +1,4 @@
-"""What a call to a world in another process costs: `python benchmarks/servers.py --oracle .oracle/bin/python`.
+"""What a call to a world in another process costs: `python benchmarks/servers.py`.
 
 Prints the fastest of many calls: in the own process, and by SHARED_MEMORY, of Carom and of PyBullet.
 """
