@@ -72,21 +72,19 @@ oracle: .oracle/pybullet
 	.mujoco/bin/python -m pip --quiet --disable-pip-version-check install 'mujoco>=3.2,<5'
 	@touch $@
 
-# What the tests of the clients need beside the simulator. panda-gym asks for the distribution `pybullet`, which
-# is not to come here: `--no-deps`.
+# What the tests of the clients need beside the simulator. The clients themselves are not installed: they would
+# bring the distribution `pybullet`.
 CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
 
 .clients/carom/clients: pyproject.toml
 	$(PYTHON) -m venv .clients/carom
 	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --editable '.[decompose]' $(CLIENT_NEEDS)
-	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --no-deps panda-gym
 	@touch $@
 
 .clients/oracle/clients:
 	@test -n "$(ORACLE_PYTHON)" || { echo "PyBullet needs Python <= 3.11; name one: make ORACLE_PYTHON=..." >&2; exit 1; }
 	$(ORACLE_PYTHON) -m venv .clients/oracle
 	.clients/oracle/bin/python -m pip --quiet --disable-pip-version-check install pybullet==3.2.7 $(CLIENT_NEEDS)
-	.clients/oracle/bin/python -m pip --quiet --disable-pip-version-check install --no-deps panda-gym
 	@touch $@
 
 # --- what users run ------------------------------------------------------------------------------

@@ -13,13 +13,13 @@ class Suite:
         repository: Owner and name of its repository on GitHub.
         tests: Folder or files of the tests in it.
         options: Arguments of pytest.
-        path: Folder of the repository that is put on Python's path, where the project is not installed.
+        path: Folder of the repository that is put on Python's path: projects are run as they lie there.
     """
 
     repository: str
     tests: tuple[str, ...]
     options: tuple[str, ...] = ()
-    path: str | None = None
+    path: str = "."
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ SUITES = {
         ),
     ),
     # Learning takes torch and many minutes: `learn` is left to those who have them.
-    "gym-pybullet-drones": Suite("utiasDSL/gym-pybullet-drones", ("tests",), ("-k", "not learn"), path="."),
+    "gym-pybullet-drones": Suite("utiasDSL/gym-pybullet-drones", ("tests",), ("-k", "not learn")),
 }
 
 SCRIPTS = {

@@ -64,8 +64,9 @@ def run_suite(bench: Bench, name: str, suite: Suite) -> Verdict:
         report.unlink(missing_ok=True)
         tests = [str(source / test) for test in suite.tests]
         command = [str(python), "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={report}"]
-        environment = _clean() | ({"PYTHONPATH": str(source / suite.path)} if suite.path else {})
-        _run([*command, *suite.options, *tests], folder, environment, SUITE_SECONDS)
+        environment = _clean() | {"PYTHONPATH": str(source / suite.path)}
+        # Tests may count on being run from the root of their repository.
+        _run([*command, *suite.options, *tests], folder, environment, SUITE_SECONDS, source)
         outcomes[which] = read_tests(report)
     return compare_tests(outcomes["oracle"], outcomes["carom"])
 
@@ -97,12 +98,15 @@ def _clean() -> dict[str, str]:
     return {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
 
 
-def _run(command: list[str], folder: Path, environment: dict[str, str], seconds: float) -> None:
+def _run(
+    command: list[str], folder: Path, environment: dict[str, str], seconds: float, place: Path | None = None
+) -> None:
+    """Runs a command in a place, which is the folder unless given; the folder gets what it prints."""
     with (folder / "output.txt").open("w") as output:
         try:
             subprocess.run(
                 command,
-                cwd=folder,
+                cwd=place or folder,
                 env=environment,
                 stdout=output,
                 stderr=subprocess.STDOUT,
