@@ -253,6 +253,8 @@ def test_there_is_room_for_so_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listener, "MAX_CLIENTS", 3)
     server = Listener([("127.0.0.1", 0)], KEY, Echo())
     connections = [join(server) for _ in range(3)]
+    # Places are given after the greeting, so only an answer shows that somebody has one.
+    assert [connection.call(0) for connection in connections] == [0, 0, 0]
     surplus = join(server)
     with pytest.raises(ServerGone):
         surplus.call(1)
