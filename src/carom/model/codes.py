@@ -131,4 +131,3 @@ USER_GEAR = wp.constant(int(UserConstraintKind.GEAR))
 # What link forces are computed for; see `physics.dynamics.link_bias_forces`.
 FREE_MOTION = wp.constant(0)
 CONSTRAINT_FEEDBACK = wp.constant(1)
-INVERSE_DYNAMICS = wp.constant(2)

@@ -203,14 +203,13 @@ class LinkScratch:
 
 @wp.struct
 class DofScratch:
-    """Motion subspace, force and acceleration of one dof."""
+    """Motion subspace and force of one dof."""
 
     start_velocity: real
     start_torque: real
     angular: Vector3  # motion subspace
     linear: Vector3
     force: real
-    acceleration: real  # what inverse dynamics is asked for
     inverse_pivot: real
 
 

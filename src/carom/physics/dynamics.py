@@ -7,7 +7,7 @@ Notation and method: R. Featherstone, Rigid Body Dynamics Algorithms (2008), cha
 
 import warp as wp
 
-from carom.model.codes import CONSTRAINT_FEEDBACK, FREE_MOTION, INVERSE_DYNAMICS
+from carom.model.codes import CONSTRAINT_FEEDBACK, FREE_MOTION
 from carom.model.real import Int32, Matrix3, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.kinematics import base_omega, base_velocity
@@ -87,8 +87,7 @@ def link_bias_forces(
     For the purpose `FREE_MOTION` that is to move on without joint acceleration, against gravity, the
     forces the user applied and damping. `CONSTRAINT_FEEDBACK` is Bullet's second pass for
     force-torque sensors: constraint forces in place of gravity and applied forces, and no
-    centripetal force of the links. `INVERSE_DYNAMICS` is with the joint accelerations in
-    `dof_acceleration` and without damping.
+    centripetal force of the links.
     """
     base = model.tree[tree].first_link
     linear_damping = model.tree[tree].linear_damping
@@ -113,9 +112,6 @@ def link_bias_forces(
                 rate = state.dof_velocity[world, dof]
                 joint_omega += scratch.dof[world, dof].angular * rate
                 joint_velocity += scratch.dof[world, dof].linear * rate
-                if purpose == INVERSE_DYNAMICS:
-                    alpha += scratch.dof[world, dof].angular * scratch.dof[world, dof].acceleration
-                    acceleration += scratch.dof[world, dof].linear * scratch.dof[world, dof].acceleration
                 dof += 1
             omega += joint_omega
             velocity += joint_velocity
@@ -125,11 +121,6 @@ def link_bias_forces(
         elif model.tree[tree].fixed == 0:
             # The base keeps its velocity; its spatial acceleration is that minus omega x velocity.
             acceleration = -wp.cross(omega, velocity)
-            if purpose == INVERSE_DYNAMICS:
-                first = model.tree[tree].first_velocity
-                for axis in range(3):
-                    alpha[axis] = scratch.dof[world, first + axis].acceleration
-                    acceleration[axis] += scratch.dof[world, first + 3 + axis].acceleration
         scratch.link[world, link].omega = omega
         scratch.link[world, link].velocity = velocity
         scratch.link[world, link].alpha = alpha
@@ -146,11 +137,10 @@ def link_bias_forces(
         force = mass * com_acceleration
         torque = about_com * alpha + wp.cross(omega, spin)
 
-        if purpose != INVERSE_DYNAMICS:
-            if linear_damping != 0.0:
-                force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
-            if angular_damping != 0.0:
-                torque += spin * damping_rate(angular_damping, wp.length(omega))
+        if linear_damping != 0.0:
+            force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
+        if angular_damping != 0.0:
+            torque += spin * damping_rate(angular_damping, wp.length(omega))
 
         if purpose != CONSTRAINT_FEEDBACK:
             force -= external_force(state, settings, mass, world, link)
