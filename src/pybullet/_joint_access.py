@@ -66,7 +66,7 @@ assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD, MOTOR_MAX_IMPULSE, M
     5,
 )
 write_target = Struct("5d").pack_into
-_write_target_and_clamp = Struct("6d").pack_into
+write_target_and_clamp = Struct("6d").pack_into
 _read_wrench = Struct("6d").unpack_from
 
 
@@ -221,7 +221,7 @@ class AxisJoint(JointAccess):
                 self.motors[self.u * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
         elif mode == VELOCITY_CONTROL:
             impulse = float(force) * self.client.time_step
-            _write_target_and_clamp(self.motors, self.row_at, 0.0, velocity, 0.0, kd, impulse, inf)
+            write_target_and_clamp(self.motors, self.row_at, 0.0, velocity, 0.0, kd, impulse, inf)
         elif mode == TORQUE_CONTROL:
             self.torques[self.u] += force
         else:

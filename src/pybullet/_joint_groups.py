@@ -8,10 +8,18 @@ them all.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import inf
 from typing import TYPE_CHECKING
 
-from pybullet._constants import POSITION_CONTROL
-from pybullet._joint_access import NO_WRENCH, AxisJoint, JointAccess, JointState, write_target
+from pybullet._constants import POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
+from pybullet._joint_access import (
+    NO_WRENCH,
+    AxisJoint,
+    JointAccess,
+    JointState,
+    write_target,
+    write_target_and_clamp,
+)
 
 if TYPE_CHECKING:
     from pybullet._clients import Client
@@ -58,6 +66,7 @@ class ConsecutiveAxes(JointGroup):
         self._positions = first.positions[first.q : first.q + count]
         self._velocities = first.velocities[first.u : first.u + count]
         self._impulses = first.impulses[first.u : first.u + count]
+        self._torques = first.torques[first.u : first.u + count]
         self._motors = first.motors
         self._targets = [(joint.row_at, joint.lower, joint.upper) for joint in joints]
 
@@ -81,16 +90,25 @@ class ConsecutiveAxes(JointGroup):
         kps: Iterable[float],
         kds: Iterable[float],
     ) -> None:
-        if mode != POSITION_CONTROL:
-            super().command(mode, positions, velocities, forces, kps, kds)
-            return
         motors, time_step = self._motors, self._client.time_step
-        for (row_at, lower, upper), position, velocity, force, kp, kd in zip(
-            self._targets, positions, velocities, forces, kps, kds, strict=True
-        ):
-            if not lower <= position <= upper:
-                position = lower if position < lower else upper
-            write_target(motors, row_at, position, velocity, kp, kd, force * time_step)
+        if mode == POSITION_CONTROL:
+            for (row_at, lower, upper), position, velocity, force, kp, kd in zip(
+                self._targets, positions, velocities, forces, kps, kds, strict=True
+            ):
+                if not lower <= position <= upper:
+                    position = lower if position < lower else upper
+                write_target(motors, row_at, position, velocity, kp, kd, force * time_step)
+        elif mode == VELOCITY_CONTROL:
+            for (row_at, _, _), velocity, force, kd in zip(
+                self._targets, velocities, forces, kds, strict=True
+            ):
+                write_target_and_clamp(motors, row_at, 0.0, velocity, 0.0, kd, force * time_step, inf)
+        elif mode == TORQUE_CONTROL:
+            torques = self._torques
+            for place, force in enumerate(forces):
+                torques[place] += force
+        else:
+            super().command(mode, positions, velocities, forces, kps, kds)
 
 
 class JointGroups(dict[tuple[int, ...], JointGroup]):

@@ -237,10 +237,9 @@ def setJointMotorControlArray(
 def _finite(values: Any, count: int) -> Sequence[float]:
     """As many finite numbers in a list or tuple; raises `ValueError` or `TypeError` for anything else."""
     plain = values if isinstance(values, (list, tuple)) else values.tolist()
-    check = sum(plain)
-    if len(plain) != count or not -inf < check < inf:
-        raise ValueError
-    return plain
+    if len(plain) == count and -inf < sum(plain) < inf:
+        return plain
+    raise ValueError
 
 
 def _set_array_carefully(
