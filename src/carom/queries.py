@@ -191,23 +191,27 @@ class RayCast:
     """A launch over a number of rays, and its memory."""
 
     def __init__(self, structs: KernelStructs, count: int, device: str) -> None:
-        def zeros(dtype: Any) -> Any:
-            return wp.zeros(count, dtype=dtype, device=device)
+        def memory(shape: tuple[int, ...], scalar: Any, dtype: Any) -> tuple[np.ndarray, Any]:
+            numbers = np.zeros(shape, dtype=scalar)
+            return numbers, wp.array(numbers, dtype=dtype, device=device, copy=False)
 
-        self._starts, self._ends, self._normal = zeros(Vector3), zeros(Vector3), zeros(Vector3)
-        self._shape, self._fraction = zeros(wp.int32), zeros(real)
+        self._starts, starts = memory((count, 3), NUMPY_REAL, Vector3)
+        self._ends, ends = memory((count, 3), NUMPY_REAL, Vector3)
+        self._shape, shape = memory((count,), np.int32, wp.int32)
+        self._fraction, fraction = memory((count,), NUMPY_REAL, real)
+        self._normal, normal = memory((count, 3), NUMPY_REAL, Vector3)
         arguments = [
             structs["shapes"],
             structs["pairs"],
             0,
-            self._starts,
-            self._ends,
+            starts,
+            ends,
             -1,
             0,
             NUMPY_REAL(0.0),
-            self._shape,
-            self._fraction,
-            self._normal,
+            shape,
+            fraction,
+            normal,
         ]
         self._launch = Launch(rays_kernel, count, arguments, device)
         self._index = argument_indices(rays_kernel)
@@ -222,15 +226,14 @@ class RayCast:
         separation: float,
     ) -> RayHits:
         """Cast the rays; the arguments are those of `Queries.cast_rays`."""
-        self._starts.numpy()[:] = starts
-        self._ends.numpy()[:] = ends
+        self._starts[:] = starts
+        self._ends[:] = ends
         self._launch.replace(self._index["mask"], mask)
         self._launch.replace(self._index["hit_number"], hit_number)
         self._launch.replace(self._index["separation"], separation)
         self._launch()
-        shape = self._shape.numpy()
-        link = np.where(shape >= 0, shapes["shape_link"][shape], -1)
-        return RayHits(link, self._fraction.numpy().copy(), self._normal.numpy().copy())
+        link = np.where(self._shape >= 0, shapes["shape_link"][self._shape], -1)
+        return RayHits(link, self._fraction.copy(), self._normal.copy())
 
 
 def _points(terms: list[float]) -> NearestPoints:

@@ -120,3 +120,14 @@ def test_clear_sets_everything_to_zero(table):
         array.fill(3)
     table.clear()
     assert not any(array.any() for array in table.numpy.values())
+
+
+def test_bytes_of_a_field_follow_it_when_it_is_replaced():
+    table = ArrayTable(Model, None)
+    table.numpy["link_mass"][0] = 2.5
+    before = table.bytes_of("link")
+    assert table.bytes_of("link") is before
+    table.reserve({"link": 1000})
+    after = table.bytes_of("link")
+    assert len(after) > len(before)
+    assert after[: len(before)] == before

@@ -79,6 +79,7 @@ class ArrayTable:
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         self._made: dict[str, Any] = {}
+        self._bytes: dict[str, memoryview[int]] = {}
         for name in self._fields:
             self._replace(name, self._allocate(name))
 
@@ -92,10 +93,19 @@ class ArrayTable:
     def _replace(self, name: str, array: np.ndarray) -> None:
         self._memory[name] = array
         self._made.clear()
+        self._bytes.pop(name, None)
         if array.dtype.names is None:
             self.numpy[name] = array
         for part in array.dtype.names or ():
             self.numpy[f"{name}_{part}"] = array[part]
+
+    def bytes_of(self, name: str) -> memoryview[int]:
+        """The memory of a field, for reading a few rows at less cost than NumPy has for one."""
+        memory = self._bytes.get(name)
+        if memory is None:
+            array: Any = self._memory[name]
+            memory = self._bytes[name] = memoryview(array).cast("B")
+        return memory
 
     def reserve(self, needed: Mapping[str, int]) -> bool:
         """Make room for `needed` rows on each axis; true if arrays were replaced."""
