@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from carom.algorithms.moving_tree import MovingTree
     from carom.body import Body
     from pybullet._clients import Client
+    from pybullet._link_box import LinkBox
 
 _read_pose = Struct("7d").unpack_from
 _read_velocity = Struct("6d").unpack_from
@@ -48,6 +49,14 @@ class BodyAccess:
     def links(self) -> dict[int, LinkAccess]:
         """Access to the links other than the base, by index."""
         return {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
+
+    @cached_property
+    def boxes(self) -> dict[int, LinkBox]:
+        """The boxes around the links, by index, -1 for the base."""
+        # Made late: most scripts never ask, and what it is made with takes long to import.
+        from pybullet._link_box import LinkBox
+
+        return {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
 
     @cached_property
     def tree(self) -> MovingTree | None:

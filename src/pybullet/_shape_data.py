@@ -21,7 +21,7 @@ from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix
 from pybullet._arguments import integer
 from pybullet._builtin import exported
-from pybullet._clients import Client, client_of
+from pybullet._clients import Client, client_of, clients
 from pybullet._constants import (
     GEOM_BOX,
     GEOM_CAPSULE,
@@ -202,29 +202,16 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
         >>> [round(x, 3) for x in lower], [round(x, 3) for x in upper]
         ([0.475, -0.025, 0.0], [0.525, 0.025, 0.05])
     """
-    client = client_of(physicsClientId)
-    if integer(bodyUniqueId, "bodyUniqueId") < 0:
-        fail("getAABB failed; invalid bodyUniqueId", no_body(bodyUniqueId))
-    if integer(linkIndex, "linkIndex") < BASE:
-        fail("getAABB failed; invalid linkIndex", f"{linkIndex} is less than -1, the base.")
-    body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_AABB)
-
-    from carom.description.transform import NO_ROTATION, rotation_matrix
-    from carom.model.inertia import is_in_place
-
-    row = body.first_link + 1 + link
-    if link == BASE:
-        (x, y, z), (qx, qy, qz, qw) = client.bodies[body.id].base_pose()
-    else:
-        x, y, z, qx, qy, qz, qw = client.world.link_pose[row].tolist()
-    spec = body.link_spec(link)
-    lone = spec.collisions[0].geometry if is_in_place(spec.collisions, spec.inertial_frame) else None
-    bounds = client.world.touch.shapes.bounds(row)
-    if not isinstance(lone, Plane):
-        rotation = NO_ROTATION if isinstance(lone, Sphere) else rotation_matrix((qx, qy, qz, qw))
-        bounds = bounds.placed(rotation, (x, y, z))
-    (cx, cy, cz), (hx, hy, hz) = bounds.center, bounds.half
-    return (cx - hx, cy - hy, cz - hz), (cx + hx, cy + hy, cz + hz)
+    try:
+        return clients[physicsClientId].bodies[bodyUniqueId].boxes[linkIndex].corners()
+    except (KeyError, TypeError):
+        client = client_of(physicsClientId)
+        if integer(bodyUniqueId, "bodyUniqueId") < 0:
+            fail("getAABB failed; invalid bodyUniqueId", no_body(bodyUniqueId))
+        if integer(linkIndex, "linkIndex") < BASE:
+            fail("getAABB failed; invalid linkIndex", f"{linkIndex} is less than -1, the base.")
+        body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_AABB)
+        return client.bodies[body.id].boxes[link].corners()
 
 
 def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) -> tuple[Body, int]:

@@ -35,6 +35,28 @@ _UNBOUNDED = 1e30
 """Half extent that stands for the infinite one of a plane [m]."""
 
 
+def turned_box(
+    center: Vector3, half: Vector3, rotation: Matrix3, position: Vector3
+) -> tuple[Vector3, Vector3]:
+    """Centre and half sizes of the bounds of a box after it is turned and moved."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
+    cx, cy, cz = center
+    hx, hy, hz = half
+    px, py, pz = position
+    return (
+        (
+            xx * cx + xy * cy + xz * cz + px,
+            yx * cx + yy * cy + yz * cz + py,
+            zx * cx + zy * cy + zz * cz + pz,
+        ),
+        (
+            abs(xx) * hx + abs(xy) * hy + abs(xz) * hz,
+            abs(yx) * hx + abs(yy) * hy + abs(yz) * hz,
+            abs(zx) * hx + abs(zy) * hy + abs(zz) * hz,
+        ),
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Bounds:
     """An axis-aligned box.
@@ -62,12 +84,7 @@ class Bounds:
 
     def placed(self, rotation: Matrix3, position: Vector3) -> Bounds:
         """Bounds of the box after it is turned and moved."""
-        cx, cy, cz = self.center
-        hx, hy, hz = self.half
-        rows = [(r[0], r[1], r[2]) for r in rotation]
-        center = [r[0] * cx + r[1] * cy + r[2] * cz + p for r, p in zip(rows, position, strict=True)]
-        half = [abs(r[0]) * hx + abs(r[1]) * hy + abs(r[2]) * hz for r in rows]
-        return Bounds((center[0], center[1], center[2]), (half[0], half[1], half[2]))
+        return Bounds(*turned_box(self.center, self.half, rotation, position))
 
     def joined(self, other: Bounds) -> Bounds:
         """Bounds of both boxes."""
