@@ -20,8 +20,7 @@ from carom.physics.contact_terms import (
 from carom.physics.couplings import tree_blocks
 from carom.physics.patches import (
     add_change,
-    lowered_friction,
-    lowered_normals,
+    combination,
 )
 from carom.physics.rows import inverse_or_off
 
@@ -231,19 +230,19 @@ def write_small_contact(
 def write_small_gains(couplings: Couplings, world: Int32, patch: Int32):
     """Write by how much each impulse of a patch lowers those wanted along the rows after it."""
     for i in range(4):
-        couplings.patch[world, patch].normal_gain[i] = lowered_normals(
+        couplings.patch[world, patch].normal_gain[i] = combination(
             couplings.patch[world, patch].normal_weighted_a,
             couplings.patch[world, patch].normal_response_a[i],
-        ) + lowered_normals(
+        ) + combination(
             couplings.patch[world, patch].normal_weighted_b,
             couplings.patch[world, patch].normal_response_b[i],
         )
     row = Int32(0)
     while row < 8:
-        couplings.patch[world, patch].friction_gain[row] = lowered_friction(
+        couplings.patch[world, patch].friction_gain[row] = combination(
             couplings.patch[world, patch].friction_weighted_a,
             couplings.patch[world, patch].friction_response_a[row],
-        ) + lowered_friction(
+        ) + combination(
             couplings.patch[world, patch].friction_weighted_b,
             couplings.patch[world, patch].friction_response_b[row],
         )

@@ -8,14 +8,14 @@ Places beyond the last contact of a patch have no effective mass. Those of small
 bodies, are here; `long_patches` does the same for trees of any size.
 """
 
+from typing import Any
+
 import warp as wp
 
 from carom.model.contact_structs import Couplings
 from carom.model.real import (
     Int32,
-    Matrix8,
     Matrix48,
-    Matrix84,
     Vector4,
     Vector8,
     func,
@@ -45,26 +45,10 @@ def add_change(scratch: Scratch, world: Int32, delta: Int32, change: Vector8):
 
 
 @func
-def lowered_normals(weighted: Matrix84, change: Vector8) -> Vector4:
-    """By how much a change of velocity lowers the impulses wanted along the normals."""
-    return (
-        (change[0] * weighted[0] + change[1] * weighted[1])
-        + (change[2] * weighted[2] + change[3] * weighted[3])
-    ) + (
-        (change[4] * weighted[4] + change[5] * weighted[5])
-        + (change[6] * weighted[6] + change[7] * weighted[7])
-    )
-
-
-@func
-def lowered_friction(weighted: Matrix8, change: Vector8) -> Vector8:
-    """By how much a change of velocity lowers the friction wanted."""
-    return (
-        (change[0] * weighted[0] + change[1] * weighted[1])
-        + (change[2] * weighted[2] + change[3] * weighted[3])
-    ) + (
-        (change[4] * weighted[4] + change[5] * weighted[5])
-        + (change[6] * weighted[6] + change[7] * weighted[7])
+def combination(rows: Any, factors: Vector8) -> Any:
+    """The eight rows of a matrix, each times its factor, summed up."""
+    return ((factors[0] * rows[0] + factors[1] * rows[1]) + (factors[2] * rows[2] + factors[3] * rows[3])) + (
+        (factors[4] * rows[4] + factors[5] * rows[5]) + (factors[6] * rows[6] + factors[7] * rows[7])
     )
 
 
@@ -73,18 +57,6 @@ def push_of_normals(response: Matrix48, impulse: Vector4) -> Vector8:
     """How impulses along the normals change velocities."""
     return (impulse[0] * response[0] + impulse[1] * response[1]) + (
         impulse[2] * response[2] + impulse[3] * response[3]
-    )
-
-
-@func
-def push_of_friction(response: Matrix8, impulse: Vector8) -> Vector8:
-    """How friction changes velocities."""
-    return (
-        (impulse[0] * response[0] + impulse[1] * response[1])
-        + (impulse[2] * response[2] + impulse[3] * response[3])
-    ) + (
-        (impulse[4] * response[4] + impulse[5] * response[5])
-        + (impulse[6] * response[6] + impulse[7] * response[7])
     )
 
 
@@ -186,13 +158,13 @@ def relax_small_normals(scratch: Scratch, couplings: Couplings, world: Int32, pa
     if place[1] > 0:
         couplings.patch[world, patch].normal_wanted = couplings.patch[
             world, patch
-        ].normal_wanted - lowered_normals(
+        ].normal_wanted - combination(
             couplings.patch[world, patch].normal_weighted_a, tree_change(scratch, world, place[0])
         )
     if place[3] > 0:
         couplings.patch[world, patch].normal_wanted = couplings.patch[
             world, patch
-        ].normal_wanted - lowered_normals(
+        ].normal_wanted - combination(
             couplings.patch[world, patch].normal_weighted_b, tree_change(scratch, world, place[2])
         )
     change = bounded_normals(couplings, world, patch)
@@ -215,20 +187,20 @@ def relax_small_friction(
     if place[1] > 0:
         couplings.patch[world, patch].friction_wanted = couplings.patch[
             world, patch
-        ].friction_wanted - lowered_friction(
+        ].friction_wanted - combination(
             couplings.patch[world, patch].friction_weighted_a, tree_change(scratch, world, place[0])
         )
     if place[3] > 0:
         couplings.patch[world, patch].friction_wanted = couplings.patch[
             world, patch
-        ].friction_wanted - lowered_friction(
+        ].friction_wanted - combination(
             couplings.patch[world, patch].friction_weighted_b, tree_change(scratch, world, place[2])
         )
     change = bounded_friction(settings, couplings, world, patch)
     if place[1] > 0:
-        moved = push_of_friction(couplings.patch[world, patch].friction_response_a, change)
+        moved = combination(couplings.patch[world, patch].friction_response_a, change)
         add_change(scratch, world, place[0], moved)
     if place[3] > 0:
-        moved = push_of_friction(couplings.patch[world, patch].friction_response_b, change)
+        moved = combination(couplings.patch[world, patch].friction_response_b, change)
         add_change(scratch, world, place[2], moved)
     return friction_residual(couplings, world, patch, change)
