@@ -1,4 +1,4 @@
-"""Calls that take another way: to a server in another process, or past a lock.
+"""Calls that take another way: to a server in another process, past a lock, or into a log.
 
 Which way a call takes depends on its `physicsClientId`, and asking that first would cost every call of every
 script, most of which know no servers. So functions ask only while there is a connection with a detour: the
@@ -103,6 +103,11 @@ def add_detour(client: int, detour: Detour) -> None:
         _detours[client] = detour
 
 
+def detour_of(client: int) -> Detour | None:
+    """The way that the calls of a connection take; None for the usual one."""
+    return _detours.get(client)
+
+
 def remove_detour(client: int) -> None:
     """Lets the calls of a connection take the usual way again, if they take another."""
     with _changing:
@@ -121,10 +126,16 @@ def call(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any
     if place is not None and len(arguments) > place:
         client = arguments[place]
     try:
-        detour = _detours.get(client)
+        hash(client)
     except TypeError:
         # It cannot even be looked up: the function will say so.
-        detour = None
+        return function.plain(*arguments, **keywords)
+    return call_on(client, function, arguments, keywords)
+
+
+def call_on(client: int, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+    """Calls a function, whose arguments name a connection, on the way that belongs to this connection."""
+    detour = _detours.get(client)
     if detour is None:
         return function.plain(*arguments, **keywords)
     return detour.call(function, arguments, keywords)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from carom.body import Body
     from carom.recorder import Film
     from carom.world import World
+    from pybullet._command_log import CommandLog
 
 _BASE_COLUMNS = (("pos", "XYZ"), ("ori", "XYZW"), ("vel", "XYZ"), ("omega", "XYZ"))
 _MARKER = b"\xaa\xbb"
@@ -255,5 +256,5 @@ class TimingLog:
             self._file.write(f'{{"traceEvents":[\n{events}\n],\n"displayTimeUnit": "ns"}}')
 
 
-StateLog: TypeAlias = "BinaryLog | TimingLog | Film"
+StateLog: TypeAlias = "BinaryLog | TimingLog | CommandLog | Film"
 """Any log."""

@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
 _DEFAULT_ROOM = 12
-_WITHOUT_FILE = {
-    STATE_LOGGING_ALL_COMMANDS: "PyBullet writes its own memory there; use saveWorld or saveBullet",
-    STATE_REPLAY_ALL_COMMANDS: "PyBullet's logs of commands cannot be replayed",
-}
 
 
 @exported
@@ -56,9 +52,12 @@ def startStateLogging(
             that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
             `_0.json` added; `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of
             simulated time, from where the camera of the window is, which needs `pip install carom[video]`
-            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty. Logs of
-            commands are not available: a warning says so, and no file is written.
-        fileName: The file; one that is there is replaced.
+            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty.
+
+            `STATE_LOGGING_ALL_COMMANDS` for all calls that change the world, one such log at a time;
+            `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results to the last
+            bit in a world that is as it was when the log began. See docs/command-logs.md.
+        fileName: The file; one that is there is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
         objectUniqueIds: Bodies to log; none for all, but a Minitaur has to be named. Those with more
             joints than columns, or with spherical or planar joints, are left out.
         maxLogDof: Number of joints there are columns for; 12 when negative.
@@ -73,11 +72,12 @@ def startStateLogging(
 
     Returns:
         The id of the log; None for types that log nothing (`STATE_LOGGING_CUSTOM_TIMER` and others),
-        and when the first body is no Minitaur.
+        when the first body is no Minitaur, and when commands are being logged already.
 
     Raises:
-        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, or a
-            video is asked for and PyAV is not installed.
+        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, a
+            video is asked for and PyAV is not installed, or a log cannot be replayed: its file is missing
+            or damaged and nothing has been done, or one of its commands fails.
 
     Examples:
         >>> log = p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, folder + "/arm.bin", [arm])
@@ -119,16 +119,23 @@ def startStateLogging(
             from pybullet._film import film_of
 
             log = film_of(client, Path(path))
+        elif kind in (STATE_LOGGING_ALL_COMMANDS, STATE_REPLAY_ALL_COMMANDS):
+            from pybullet._command_log import CommandLog, replay
+
+            if kind == STATE_REPLAY_ALL_COMMANDS:
+                replay(physicsClientId, client, Path(path))
+            elif not any(isinstance(other, CommandLog) for other in client.logs.by_id.values()):
+                log = CommandLog(physicsClientId, client, Path(path))
     except (OSError, ValueError, ImportError) as reason:
         fail(problem, f"{reason}.")
-    if log is None and kind not in _WITHOUT_FILE:
+    if log is None and kind != STATE_REPLAY_ALL_COMMANDS:
         if kind == STATE_LOGGING_MINITAUR:
             logger.warning("startStateLogging: the first of objectUniqueIds is no Minitaur.")
+        elif kind == STATE_LOGGING_ALL_COMMANDS:
+            logger.warning("startStateLogging: commands are being logged already.")
         else:
             logger.warning("startStateLogging: logs of type %d are not available.", kind)
         return None
-    if log is None:
-        logger.warning("startStateLogging: no log is written; %s.", _WITHOUT_FILE[kind])
     with client.lock:
         return client.logs.start(client, log)
 

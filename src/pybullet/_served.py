@@ -14,7 +14,7 @@ from carom.remote.listener import Listener
 from carom.remote.meeting import Note, find
 from carom.remote.values import pack, unpack
 from pybullet._clients import NOT_CONNECTED, Client, living_client
-from pybullet._detours import Function, functions, remove_detour
+from pybullet._detours import Function, detour_of, functions, remove_detour
 from pybullet._errors import error, fail, logger
 from pybullet._remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
 from pybullet._server_options import ServerOptions, reachable
@@ -105,7 +105,9 @@ class Served:
             if living_client(self._number) is not self._client:
                 fail(NOT_CONNECTED, "The server is closing.")
             arguments, keywords = function.with_client(self._number, arguments, keywords)
-            answer = pack((RESULT, self._call(function, arguments, keywords)))
+            # A log may have put itself before this server.
+            way = detour_of(self._number) or self
+            answer = pack((RESULT, way.call(function, tuple(arguments), keywords)))
             check_size(*answer, OF_RESULTS)
         except error as problem:
             return pack((PROBLEM, ERROR, str(problem)))

@@ -126,8 +126,6 @@ def test_ids_are_not_used_again_and_logs_end_with_the_connection(boxes, tmp_path
 def test_what_cannot_be_logged(boxes, tmp_path: Path) -> None:
     for kind in (p.STATE_LOGGING_MINITAUR, p.STATE_LOGGING_CUSTOM_TIMER, 99):
         assert p.startStateLogging(kind, str(tmp_path / "none")) is None
-    for kind in (p.STATE_LOGGING_ALL_COMMANDS, p.STATE_REPLAY_ALL_COMMANDS):
-        assert p.startStateLogging(kind, str(tmp_path / "none")) is not None
     assert [file.name for file in tmp_path.iterdir()] == []
     for name, ids in (("nowhere/x", None), ("", None), ("x", 5)):
         with pytest.raises(p.error, match=r"^startStateLogging failed\."):

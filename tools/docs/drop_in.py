@@ -102,8 +102,6 @@ WITHOUT_EFFECT = {
     "ER_BULLET_HARDWARE_OPENGL": "no effect: there is one renderer",
     "STATE_LOGGING_CUSTOM_TIMER": "logs nothing",
     "CNSFileIO": "refused, as by PyBullet as it is distributed",
-    "STATE_LOGGING_ALL_COMMANDS": "no file is written; a warning says so",
-    "STATE_REPLAY_ALL_COMMANDS": "nothing is replayed; a warning says so",
 }
 
 MEMBERS = """
