@@ -73,7 +73,7 @@ def change_link(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     for name, value in changes.items():
         setattr(dynamics, name, value)
     if changes:
-        body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics)
+        body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics, changes)
 
 
 def write_link(body: Body, link: int) -> None:

@@ -18,23 +18,27 @@ from carom.model.launch import KernelStructs, Launch, argument_indices, launch
 from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
 from carom.touch_arrays import TouchArrays
 
+Points = np.ndarray | Sequence[Sequence[float]]
+
 # A distance that counts as none; column of a row of `closest_points_kernel` that tells if it is filled.
 _FAR = 1e30
 _FOUND = 7
 
 
 class RayHits(NamedTuple):
-    """What rays hit, one row each.
+    """What rays hit, an item for each.
 
     Attributes:
         link: Row of the link in the world's arrays, -1 for none.
         fraction: Where along the ray; 1 for none.
+        position: The same in world axes [m].
         normal: In world axes; 0 for none.
     """
 
-    link: np.ndarray
-    fraction: np.ndarray
-    normal: np.ndarray
+    link: list[int]
+    fraction: list[float]
+    position: list[list[float]]
+    normal: list[list[float]]
 
 
 class NearestPoints(NamedTuple):
@@ -83,8 +87,8 @@ class Queries:
 
     def cast_rays(
         self,
-        starts: np.ndarray,
-        ends: np.ndarray,
+        starts: Points,
+        ends: Points,
         *,
         mask: int = -1,
         hit_number: int = 0,
@@ -219,8 +223,8 @@ class RayCast:
     def run(
         self,
         shapes: dict[str, np.ndarray],
-        starts: np.ndarray,
-        ends: np.ndarray,
+        starts: Points,
+        ends: Points,
         mask: int,
         hit_number: int,
         separation: float,
@@ -232,8 +236,10 @@ class RayCast:
         self._launch.replace(self._index["hit_number"], hit_number)
         self._launch.replace(self._index["separation"], separation)
         self._launch()
-        link = np.where(self._shape >= 0, shapes["shape_link"][self._shape], -1)
-        return RayHits(link, self._fraction.copy(), self._normal.copy())
+        link = shapes["shape_link"][self._shape]
+        link[self._shape < 0] = -1
+        position = self._starts + self._fraction[:, None] * (self._ends - self._starts)
+        return RayHits(link.tolist(), self._fraction.tolist(), position.tolist(), self._normal.tolist())
 
 
 def _points(terms: list[float]) -> NearestPoints:

@@ -49,6 +49,7 @@ _NUMBERS = (
     ("joint_lower_limit", "jointLowerLimit", False),
     ("joint_upper_limit", "jointUpperLimit", False),
 )
+_BEFORE_LIMITS = ("joint_limit_force", "sleep_threshold")
 _INTEGERS = tuple(
     place for place, (_, name, _) in enumerate(_NUMBERS) if name in ("frictionAnchor", "activationState")
 )
@@ -213,22 +214,24 @@ def changeDynamics(
     *values, lower, upper = values
     if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
         fail("Both contactStiffness and contactDamping needs to be set together.")
-    lists = (
-        ("anisotropic_friction", _optional_vector(anisotropicFriction, "anisotropicFriction")),
-        ("inertia", _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")),
-    )
+    anisotropy = _optional_vector(anisotropicFriction, "anisotropicFriction")
+    inertia = _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")
     changes = _Changes(named_link)
-    for (name, _, of_body), value in zip(_NUMBERS, values, strict=False):
-        if value >= 0:
+    given = [(entry, value) for entry, value in zip(_NUMBERS, values, strict=False) if value >= 0]
+    # The limits and lists have their place among the numbers, see the docstring.
+    for (name, _, of_body), value in given:
+        if name in _BEFORE_LIMITS:
             changes.take(name, value, of_body=of_body)
-        if name == "sleep_threshold":
-            # The limits and lists have their place among the numbers, see the docstring.
-            if lower <= upper:
-                changes.take("joint_lower_limit", lower)
-                changes.take("joint_upper_limit", upper)
-            for field, vector in lists:
-                if vector is not None:
-                    changes.take(field, vector)
+    if lower <= upper:
+        changes.take("joint_lower_limit", lower)
+        changes.take("joint_upper_limit", upper)
+    if anisotropy is not None:
+        changes.take("anisotropic_friction", anisotropy)
+    if inertia is not None:
+        changes.take("inertia", inertia)
+    for (name, _, of_body), value in given:
+        if name not in _BEFORE_LIMITS:
+            changes.take(name, value, of_body=of_body)
 
     found = link_or_warning(client, bodyUniqueId, changes.link, "changeDynamics")
     if found is None:
@@ -307,8 +310,8 @@ class _Changes:
 def _checked(values: tuple[Any, ...]) -> Sequence[Any]:
     """The numbers of a call in the order of `_NUMBERS`, each checked, or all at once if that will do."""
     try:
-        integers = [values[place] for place in _INTEGERS]
-        if -inf < sum(values) < inf and all(type(value) is int for value in integers):
+        anchor, state = _INTEGERS
+        if -inf < sum(values) < inf and type(values[anchor]) is type(values[state]) is int:
             return values
     except TypeError:
         pass

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -15,9 +15,9 @@ from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._constants import MAX_RAY_INTERSECTION_BATCH_SIZE
 from pybullet._errors import fail
-from pybullet._link_rows import places
 
 if TYPE_CHECKING:
+    from carom.queries import Points
     from carom.world import World
 
 __all__ = ["rayTest", "rayTestBatch"]
@@ -68,7 +68,7 @@ def rayTest(
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    return (_cast(world, np.array([start]), np.array([end]), mask, number, 0.0)[0],)
+    return (_cast(world, [start], [end], mask, number, 0.0)[0],)
 
 
 @exported
@@ -163,24 +163,13 @@ def _frame_of(world: World, body_id: int, link: int) -> Pose | None:
 
 
 def _cast(
-    world: World, starts: np.ndarray, ends: np.ndarray, mask: int, number: int, separation: float
+    world: World, starts: Points, ends: Points, mask: int, number: int, separation: float
 ) -> list[RayHit]:
     hits = world.queries().cast_rays(
         starts, ends, mask=mask, hit_number=max(number, 0), separation=separation
     )
-    position = starts + hits.fraction[:, None] * (ends - starts)
-    rows = zip(
-        places(world, hits.link),
-        hits.fraction.tolist(),
-        _triples(position),
-        _triples(hits.normal),
-        strict=True,
-    )
+    places = world.link_places
     return [
-        _MISS if place is None else (*place, fraction, at, normal) for place, fraction, at, normal in rows
+        (*places[link], fraction, (x, y, z), (nx, ny, nz)) if link >= 0 else _MISS
+        for link, fraction, (x, y, z), (nx, ny, nz) in zip(*hits, strict=True)
     ]
-
-
-def _triples(points: np.ndarray) -> Iterator[Vector3]:
-    x, y, z = points.T.tolist()
-    return zip(x, y, z, strict=True)

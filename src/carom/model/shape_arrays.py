@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -36,6 +36,21 @@ _INDEX_FIELDS = {
     "face_first_corner": "corner",
     "corner_vertex": "vertex",
     "link_first_shape": "shape",
+}
+
+# Where each attribute of a surface is kept.
+_SURFACE_FIELDS = {
+    "lateral_friction": "link_lateral_friction",
+    "rolling_friction": "link_rolling_friction",
+    "spinning_friction": "link_spinning_friction",
+    "restitution": "link_restitution",
+    "contact_stiffness": "link_stiffness",
+    "contact_damping": "link_contact_damping",
+    "friction_anchor": "link_friction_anchor",
+    "anisotropic_friction": "link_anisotropy",
+    "contact_processing_threshold": "link_processing_threshold",
+    "ccd_swept_sphere_radius": "shape_ccd_radius",
+    "collision_margin": "shape_margin",
 }
 
 
@@ -144,8 +159,8 @@ class ShapeArrays:
         self._write_links(body, spec, links)
         self._write_pieces(body, pieces)
         self.used.update(needed)
-        for j, surface in enumerate(surfaces):
-            self._write_surface(body, j, surface)
+        for link_row, surface in enumerate(surfaces, start=self.used["link"] - len(links)):
+            self.write_surface(link_row, surface)
         return grown
 
     def _write_links(self, body: BodyShapes, spec: BodySpec, links: Sequence[LinkSpec]) -> None:
@@ -235,26 +250,17 @@ class ShapeArrays:
             for first, other in self._bodies.items()
         }
 
-    def write_surface(self, link_row: int, surface: Surface) -> None:
-        """Take over how a link touches."""
-        self._write_surface(*self._body_of(link_row), surface)
-
-    def _write_surface(self, body: BodyShapes, link: int, surface: Surface) -> None:
+    def write_surface(self, link_row: int, surface: Surface, names: Iterable[str] | None = None) -> None:
+        """Take over how a link touches, or of all that has changed, by name, what matters for it."""
+        body, link = self._body_of(link_row)
         numpy = self.table.numpy
-        link_row = body.rows.first["link"] + link
-        numpy["link_lateral_friction"][link_row] = surface.lateral_friction
-        numpy["link_rolling_friction"][link_row] = surface.rolling_friction
-        numpy["link_spinning_friction"][link_row] = surface.spinning_friction
-        numpy["link_restitution"][link_row] = surface.restitution
-        numpy["link_stiffness"][link_row] = surface.contact_stiffness
-        numpy["link_contact_damping"][link_row] = surface.contact_damping
-        numpy["link_friction_anchor"][link_row] = surface.friction_anchor
-        numpy["link_anisotropy"][link_row] = surface.anisotropic_friction
-        numpy["link_processing_threshold"][link_row] = surface.contact_processing_threshold
-        shapes = self._shapes_of(link_row)
-        numpy["shape_ccd_radius"][shapes] = surface.ccd_swept_sphere_radius
-        if body.own_margin[link]:
-            numpy["shape_margin"][shapes] = surface.collision_margin
+        for name in _SURFACE_FIELDS if names is None else names:
+            field = _SURFACE_FIELDS.get(name)
+            if field is None:
+                continue
+            rows = link_row if field.startswith("link") else self._shapes_of(link_row)
+            if field != "shape_margin" or body.own_margin[link]:
+                numpy[field][rows] = getattr(surface, name)
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
         """Put a link in the group of fixed bases, which do not touch each other, or of the rest."""
