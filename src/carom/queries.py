@@ -23,6 +23,8 @@ Points = np.ndarray | Sequence[Sequence[float]]
 # A distance that counts as none; column of a row of `closest_points_kernel` that tells if it is filled.
 _FAR = 1e30
 _FOUND = 7
+# Sets of pairs of links whose shapes are remembered: scripts ask for the same ones step by step.
+_MOST_SHAPE_PAIRS = 64
 
 
 class RayHits(NamedTuple):
@@ -84,6 +86,7 @@ class Queries:
         self._place_shapes = launch(place_shapes_kernel, structs, device)
         self._casts: dict[int, RayCast] = {}
         self._searches: dict[int, PairSearch] = {}
+        self._shape_pairs: dict[tuple[tuple[int, int], ...], tuple[list[tuple[int, int]], np.ndarray]] = {}
 
     def cast_rays(
         self,
@@ -121,7 +124,13 @@ class Queries:
         Returns:
             The links and the points, in the order of `pairs`, then of the shapes of each link.
         """
-        links, first, second = self._shape_pairs(pairs)
+        key = tuple(pairs)
+        known = self._shape_pairs.get(key)
+        if known is None:
+            if len(self._shape_pairs) >= _MOST_SHAPE_PAIRS:
+                self._shape_pairs.clear()
+            known = self._shape_pairs[key] = self._find_shape_pairs(key)
+        links, shapes = known
         if not links:
             return []
         count = len(links)
@@ -130,20 +139,17 @@ class Queries:
             self._searches.clear()
             search = self._searches[count] = PairSearch(self._structs, count, self._device)
         self._place(self._place_shapes)
-        found = search.run(first, second, min(reach, _FAR))
+        found = search.run(shapes, min(reach, _FAR))
         return [(a, b, _points(terms)) for (a, b), terms in zip(links, found, strict=True) if terms[_FOUND]]
 
-    def _shape_pairs(
-        self, pairs: Sequence[tuple[int, int]]
-    ) -> tuple[list[tuple[int, int]], list[int], list[int]]:
-        """All pairs of shapes of pairs of links: the links, the shapes of the first, of the second."""
-        links, first, second = [], [], []
+    def _find_shape_pairs(self, pairs: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], np.ndarray]:
+        """All pairs of shapes of pairs of links: the links, and the shapes of the first and the second."""
+        links, shapes = [], []
         for a, b in pairs:
-            for shape_a, shape_b in product(self._shapes_of(a), self._shapes_of(b)):
+            for pair in product(self._shapes_of(a), self._shapes_of(b)):
                 links.append((a, b))
-                first.append(shape_a)
-                second.append(shape_b)
-        return links, first, second
+                shapes.append(pair)
+        return links, np.array(shapes, dtype=np.int32).reshape(-1, 2).T
 
     def _place(self, prepare: Launch) -> None:
         """Run a kernel that places the shapes by poses of the links that are up to date."""
@@ -183,9 +189,9 @@ class PairSearch:
         self._launch = Launch(closest_points_kernel, 1, arguments, device)
         self._reach_at = argument_indices(closest_points_kernel)["reach"]
 
-    def run(self, first: Sequence[int], second: Sequence[int], reach: float) -> list[list[float]]:
+    def run(self, shapes: np.ndarray, reach: float) -> list[list[float]]:
         """A row for each pair, as `closest_points_kernel` leaves it."""
-        self._pairs[:] = first, second
+        self._pairs[:] = shapes
         self._launch.replace(self._reach_at, reach)
         self._launch()
         return self._found[0].tolist()

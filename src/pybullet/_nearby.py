@@ -89,13 +89,8 @@ def getClosestPoints(
         return tuple(_contact_point(a, b, points) for a, b, points in found)
     links_a, links_b = _rows(world, body_a, link_a), _rows(world, body_b, link_b)
     rows = world.queries().nearest(list(product(links_a, links_b)), reach)
-    first = places(world, [a for a, _b, _points in rows])
-    second = places(world, [b for _a, b, _points in rows])
-    return tuple(
-        _contact_point(place_a, place_b, points)
-        for place_a, place_b, (_a, _b, points) in zip(first, second, rows, strict=True)
-        if place_a is not None and place_b is not None
-    )
+    table = world.link_places
+    return tuple([_contact_point(table[a], table[b], points) for a, b, points in rows])
 
 
 def _rows(world: World, body_id: int, link: int) -> range:
