@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.moving_tree import moving_tree
+from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotation_matrix
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 
@@ -44,19 +45,25 @@ def inverse_dynamics(
     if body.fixed_base:
         first = body.first_position
         own = body.world.position[first + 3 : first + BASE_POSITIONS]
-        x, y, z = _gravity_seen_from(body, own if base_orientation is None else base_orientation)
-        tree.set_resting_base((x, y, z))
+        tree.set_resting_base(_gravity_seen_from(body, own if base_orientation is None else base_orientation))
         return np.array(tree.forces(positions, velocities, accelerations))
 
-    v, a = np.asarray(velocities, dtype=float), np.asarray(accelerations, dtype=float)
-    tree.set_base_motion(*v[:3], *a[:3], *(a[3:6] - _gravity_seen_from(body, positions[3:7])))
-    forces = np.array(
-        tree.forces(positions[BASE_POSITIONS:], v[BASE_VELOCITIES:], a[BASE_VELOCITIES:]), dtype=float
+    gx, gy, gz = _gravity_seen_from(body, positions[3:BASE_POSITIONS])
+    ax, ay, az = accelerations[3:BASE_VELOCITIES]
+    tree.set_base_motion(*velocities[:3], *accelerations[:3], ax - gx, ay - gy, az - gz)
+    forces = tree.forces(
+        positions[BASE_POSITIONS:], velocities[BASE_VELOCITIES:], accelerations[BASE_VELOCITIES:]
     )
-    return np.concatenate([forces[3:6], forces[:3], forces[6:]])
+    return np.array((*forces[3:6], *forces[:3], *forces[6:]))
 
 
-def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> np.ndarray:
+def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> Vector3:
     """Gravity in a frame, by the frame's quaternion."""
     x, y, z, w = orientation
-    return np.array(rotation_matrix(conjugate((x, y, z, w)))) @ body.world.parameters.gravity
+    gx, gy, gz = body.world.parameters.gravity
+    ex, ey, ez = rotation_matrix(conjugate((x, y, z, w)))
+    return (
+        ex[0] * gx + ex[1] * gy + ex[2] * gz,
+        ey[0] * gx + ey[1] * gy + ey[2] * gz,
+        ez[0] * gx + ez[1] * gy + ez[2] * gz,
+    )
