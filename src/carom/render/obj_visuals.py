@@ -92,8 +92,9 @@ def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path)
         if len(values) < least:
             raise DescriptionError(f"at least {least} numbers are due", file=file, line=number)
         rows[index, : len(values)] = values
-        if not np.isfinite(rows[index]).all():
-            raise DescriptionError("a number is not finite", file=file, line=number)
+        # Pictures are drawn in single precision.
+        if not (np.abs(rows[index]) <= np.finfo(np.float32).max).all():
+            raise DescriptionError("a number is too large, or not finite", file=file, line=number)
     return rows
 
 
