@@ -21,11 +21,10 @@ from carom.log import Log, Observer, SubstepObserver
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
-from carom.model.flags import LoadFlags
 from carom.model.launch import KernelStructs, Launch, TreeLaunch, launch
-from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.prospects import can_sleep, can_touch
 from carom.queries import Queries
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
 from carom.solver_report import solver_report
@@ -491,38 +490,11 @@ class World(StateViews):
             self._fault,
             self.parameters.substeps,
             _DEVICE,
-            touching=self._can_touch(),
-            sleeping=self._can_sleep(),
+            touching=can_touch(self),
+            sleeping=can_sleep(self),
             watched=bool(self._substep_observers) and self.parameters.substeps > 1,
         )
         return self._stepper
-
-    def _can_touch(self) -> bool:
-        """Whether two shapes could ever touch: of two bodies that are not both scenery, or of one body."""
-        solid = scenery = 0
-        for body in self.bodies.values():
-            links = [body.spec.base, *body.spec.links]
-            if not any(link.collisions for link in links):
-                continue
-            if body.spec.flags & LoadFlags.ANY_SELF_COLLISION:
-                return True
-            solid += 1
-            scenery += self._is_scenery(body)
-        return solid > 1 and (solid > scenery or bool(self.touch.shapes.filters.all))
-
-    def _is_scenery(self, body: Body) -> bool:
-        """Whether a body has shapes on its fixed base alone, in the group of fixed bases."""
-        shapes, base = self.touch.shapes.table.numpy, body.first_link
-        return (
-            body.fixed_base
-            and not any(link.collisions for link in body.spec.links)
-            and (shapes["link_group"][base], shapes["link_mask"][base]) == (FIXED_GROUP, FIXED_MASK)
-        )
-
-    def _can_sleep(self) -> bool:
-        """Whether a body may fall asleep, or has to be woken up."""
-        model, state, count = self.arrays.model.numpy, self.arrays.state.numpy, self.arrays.used["tree"]
-        return bool(model["tree_can_sleep"][:count].any() or state["tree_activity"][0, :count].any())
 
     def _step_with_care(self) -> None:
         """One step in substeps, and again with longer arrays as long as something does not fit."""
