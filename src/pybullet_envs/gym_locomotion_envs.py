@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from abc import abstractmethod
 from collections.abc import Mapping
 from math import atan2, cos, sin
 from typing import Any, ClassVar
@@ -112,9 +113,9 @@ class WalkerBaseBulletEnv(MJCFEnv):
             self._on_ground[number] = self.parts.links[foot].touches(self._ground)
         return seen, alive + progress - self.effort * effort - at_limit, alive < 0.0, False, {}
 
+    @abstractmethod
     def _alive(self, height: float, pitch: float) -> float:
         """The reward of being alive; below 0 the episode ends."""
-        raise NotImplementedError
 
     def _looked_at(self) -> Place:
         x, y, z = self.parts.body.pose()[0].tolist()

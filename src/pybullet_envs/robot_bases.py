@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -126,7 +127,7 @@ class Parts:
             self.motors[name] = motor
 
 
-class MJCFEnv(BulletEnv):
+class MJCFEnv(BulletEnv, ABC):
     """An environment with one robot of an MJCF file.
 
     Attributes:
@@ -191,10 +192,10 @@ class MJCFEnv(BulletEnv):
         self.parts = Parts(bullet, self.robot_name)
         self.parts.add(bullet.loadMJCF(file, flags=_LOADING))
 
+    @abstractmethod
     def _place(self) -> None:
         """Puts the robot where an episode begins."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _observe(self) -> np.ndarray:
         """What the agent sees."""
-        raise NotImplementedError
