@@ -18,7 +18,7 @@ from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.model.arrays import ArrayTable
-from carom.model.codes import ShapeKind
+from carom.model.codes import Rolling, ShapeKind
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
 from carom.model.structs import Model, Settings, State
@@ -39,6 +39,7 @@ class Shape:
     polyhedron: Polyhedron | None = None
     hierarchy: TriangleHierarchy | None = None
     columns: int = 0
+    rolling: Rolling = Rolling.NONE
     static: bool = False
 
 
@@ -137,6 +138,7 @@ class Scene:
         arrays["shape_pose"][row] = (0, 0, 0, *IDENTITY)
         arrays["shape_margin"][row] = shape.margin
         arrays["shape_breaking"][row] = shape.breaking
+        arrays["shape_rolling"][row] = shape.rolling
         arrays["link_shape_count"][row] = 1
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1

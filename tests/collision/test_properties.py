@@ -125,3 +125,29 @@ def test_contacts_of_a_thousand_poses_make_sense(first, second):
         assert (np.abs(gap) < 1e-12).all()
         count += len(distance)
     assert count > 30
+
+
+@pytest.mark.parametrize("sides", [16, 32])
+def test_the_deepest_point_of_a_wheel_sunk_into_a_large_floor_is_below_it(sides):
+    """The floor's face is two triangles for the algorithm, and only one of them has the point."""
+    angles = 0.1 + 2 * np.pi * np.arange(sides) / sides
+    rim = [(np.cos(a), np.sin(a), z) for a in angles for z in (-0.3, 0.3)]
+    rng = np.random.default_rng(7)
+    floor = box((100, 100, 5), position=(0, 0, -5), margin=0.001)
+    wheels = [
+        hull(rim, margin=0.001, position=(x, y, z), orientation=turn / np.linalg.norm(turn))
+        for x, y, z, turn in zip(
+            rng.uniform(-50, 50, 60), rng.uniform(-50, 50, 60), rng.uniform(0.0, 0.4, 60),
+            rng.normal(size=(60, 4)), strict=True,
+        )
+    ]  # fmt: skip
+    scene = Scene([floor, *wheels])
+    for row, wheel in enumerate(wheels, start=1):
+        x, y, z, *normal, distance, within = scene.closest([(row, 0)])[0]
+        assert within
+        assert_allclose(normal, (0, 0, 1), atol=1e-7)
+        corners = np.array([rotated(wheel.orientation, np.array(corner)) for corner in rim]) + wheel.position
+        assert_allclose(z, 0, atol=1e-6)
+        assert_allclose(distance, corners[:, 2].min() - 0.001, atol=1e-6)
+        lowest = corners[corners[:, 2] < corners[:, 2].min() + 1e-6]
+        assert np.linalg.norm(lowest[:, :2] - (x, y), axis=1).min() < 1e-3

@@ -49,6 +49,13 @@ def candidate_distance(candidates: Vector8Rows, world: Int32, row: Int32) -> rea
 
 
 @func
+def candidate_on_a(candidates: Vector8Rows, world: Int32, row: Int32) -> Vector3:
+    """Point on shape a."""
+    distance = candidate_distance(candidates, world, row)
+    return candidate_point(candidates, world, row) + candidate_normal(candidates, world, row) * distance
+
+
+@func
 def exchange(candidates: Vector8Rows, world: Int32, i: Int32, j: Int32):
     """Swap two candidates."""
     kept = candidates[world, i]
@@ -62,7 +69,7 @@ def flip_candidates(candidates: Vector8Rows, world: Int32, count: Int32):
     for row in range(count):
         normal = candidate_normal(candidates, world, row)
         distance = candidate_distance(candidates, world, row)
-        point = candidate_point(candidates, world, row) + normal * distance
+        point = candidate_on_a(candidates, world, row)
         add_candidate(candidates, world, row, point, -normal, distance)
 
 

@@ -5,13 +5,45 @@ import warp as wp
 from carom.collision.bounds import boxes_meet, place_shapes
 from carom.collision.candidates import add_candidate, candidate_distance, exchange, flip_candidates
 from carom.collision.convex import nearest_or_deepest
-from carom.collision.cores import core_of
+from carom.collision.cores import Core, core_of
 from carom.collision.narrow_phase import in_order, touch_simple
 from carom.collision.surfaces import nearest_on_surface
 from carom.model.codes import PLANE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Ints, Vector8, Vector8Rows, func, kernel, real
 from carom.model.structs import Settings, State
+
+
+@func
+def nearest_convex(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, reach: real
+) -> Int32:
+    """The nearest candidate of two shapes, as `nearest_in_order`, if neither is a surface.
+
+    Args:
+        shapes: All shapes.
+        pairs: Room for intermediate results, and the poses of the shapes.
+        world: The world.
+        a: Row of one shape.
+        b: Row of the other.
+        core_a: Core of a.
+        reach: Largest distance of interest [m].
+    """
+    count = touch_simple(shapes, pairs, world, a, b, core_a, reach)
+    if count >= 0:
+        for row in range(1, count):
+            if candidate_distance(pairs.candidate_terms, world, row) < candidate_distance(
+                pairs.candidate_terms, world, 0
+            ):
+                exchange(pairs.candidate_terms, world, 0, row)
+        return wp.min(count, 1)
+    core_b = core_of(shapes, pairs, world, b)
+    rounding = core_a.radius + core_b.radius
+    distance, normal, _on_a, on_b = nearest_or_deepest(shapes, pairs, world, core_a, core_b, reach + rounding)
+    distance -= rounding
+    if distance > reach:
+        return 0
+    return add_candidate(pairs.candidate_terms, world, 0, on_b + normal * core_b.radius, normal, distance)
 
 
 @func
@@ -28,21 +60,7 @@ def nearest_in_order(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: In
         if distance > reach:
             return 0
         return add_candidate(pairs.candidate_terms, world, 0, point, normal, distance)
-    count = touch_simple(shapes, pairs, world, a, b, core_a, reach)
-    if count >= 0:
-        for row in range(1, count):
-            if candidate_distance(pairs.candidate_terms, world, row) < candidate_distance(
-                pairs.candidate_terms, world, 0
-            ):
-                exchange(pairs.candidate_terms, world, 0, row)
-        return wp.min(count, 1)
-    core_b = core_of(shapes, pairs, world, b)
-    rounding = core_a.radius + core_b.radius
-    distance, normal, _on_a, on_b = nearest_or_deepest(shapes, pairs, world, core_a, core_b, reach + rounding)
-    distance -= rounding
-    if distance > reach:
-        return 0
-    return add_candidate(pairs.candidate_terms, world, 0, on_b + normal * core_b.radius, normal, distance)
+    return nearest_convex(shapes, pairs, world, a, b, core_a, reach)
 
 
 @func

@@ -3,8 +3,9 @@
 import warp as wp
 
 from carom.collision.broad_phase import find_pairs
+from carom.collision.gathering import AT_ONCE, find_new_point, gather
 from carom.collision.hierarchy import PAIRS
-from carom.collision.manifold import REPEATED, THERE, WANTED, keep_previous, skip_contacts, write_contact
+from carom.collision.manifold import REPEATED, THERE, WANTED, keep_previous, skip_contacts, write_new_contact
 from carom.collision.narrow_phase import touch
 from carom.collision.reach import breaking_distance, contact_reach
 from carom.collision.sides import in_order_of_sides
@@ -91,14 +92,17 @@ def make_contacts(
             continue
         reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
         sides = in_order_of_sides(shapes, pair)
-        count = touch(shapes, pairs, world, sides[0], sides[1], reach)
         far = breaking_distance(shapes, pair[0], pair[1])
-        for candidate in range(count):
-            if wanted < room:
-                write_contact(
-                    shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
-                )
-            wanted += 1
+        found = find_new_point(shapes, pairs, world, sides, reach, first, last)
+        if found != AT_ONCE:
+            wanted = gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
+        else:
+            for candidate in range(touch(shapes, pairs, world, sides[0], sides[1], reach)):
+                if wanted < room:
+                    write_new_contact(
+                        shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
+                    )
+                wanted += 1
         first = last
     return wanted
 

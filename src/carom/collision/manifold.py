@@ -4,7 +4,12 @@ import math
 
 import warp as wp
 
-from carom.collision.candidates import candidate_distance, candidate_normal, candidate_point
+from carom.collision.candidates import (
+    candidate_distance,
+    candidate_normal,
+    candidate_on_a,
+    candidate_point,
+)
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import State
@@ -34,6 +39,8 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
         contacts.count_contacts[world, KEPT] = contacts.count_contacts[world, THERE]
         for row in range(contacts.count_contacts[world, THERE]):
             pairs.previous_shapes[world, row] = contacts.contact_shapes[world, row]
+            pairs.previous_normal[world, row] = contacts.contact_normal[world, row]
+            pairs.previous_distance[world, row] = contacts.contact_distance[world, row]
             pairs.previous_local_a[world, row] = contacts.contact_local_a[world, row]
             pairs.previous_local_b[world, row] = contacts.contact_local_b[world, row]
             pairs.previous_anchor_a[world, row] = contacts.contact_anchor_a[world, row]
@@ -95,7 +102,61 @@ def predecessor(
 
 
 @func
+def bequeath(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
+    """Pass on what the previous contact `before`, -1 for none, leaves to contact `row`."""
+    if before >= 0:
+        contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
+        contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
+        contacts.contact_impulse[world, row] = pairs.previous_impulse[world, before]
+        contacts.contact_age[world, row] = pairs.previous_age[world, before] + 1
+        pairs.previous_taken[world, before] = 1
+    else:
+        contacts.contact_anchor_a[world, row] = contacts.contact_local_a[world, row]
+        contacts.contact_anchor_b[world, row] = contacts.contact_local_b[world, row]
+        contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
+        contacts.contact_age[world, row] = 0
+
+
+@func
+def write_normal(contacts: Contacts, world: Int32, row: Int32, normal: Vector3):
+    """Write the normal of a contact, and its friction directions."""
+    direction = friction_direction(normal)
+    contacts.contact_normal[world, row] = normal
+    contacts.contact_direction1[world, row] = direction
+    contacts.contact_direction2[world, row] = wp.cross(normal, direction)
+
+
+@func
 def write_contact(
+    shapes: Shapes,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+    row: Int32,
+    pair: Index4,
+    candidate: Int32,
+):
+    """Write where a candidate is as contact `row`; it has still to inherit (`bequeath`)."""
+    link_a = shapes.shape_link[pair[0]]
+    link_b = shapes.shape_link[pair[1]]
+    point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
+    point_b = candidate_point(pairs.candidate_terms, world, candidate)
+    contacts.contact_shapes[world, row] = Index4(pair[0], pair[1], link_a, link_b)
+    contacts.contact_local_a[world, row] = wp.transform_point(
+        wp.transform_inverse(state.link_pose[world, link_a]), point_a
+    )
+    contacts.contact_local_b[world, row] = wp.transform_point(
+        wp.transform_inverse(state.link_pose[world, link_b]), point_b
+    )
+    contacts.contact_point_a[world, row] = point_a
+    contacts.contact_point_b[world, row] = point_b
+    contacts.contact_distance[world, row] = candidate_distance(pairs.candidate_terms, world, candidate)
+    write_normal(contacts, world, row, candidate_normal(pairs.candidate_terms, world, candidate))
+
+
+@func
+def write_new_contact(
     shapes: Shapes,
     state: State,
     contacts: Contacts,
@@ -109,33 +170,33 @@ def write_contact(
     far: real,
 ):
     """Write a candidate as contact `row`, with the impulses of its predecessor in [first, last)."""
-    link_a = shapes.shape_link[pair[0]]
-    link_b = shapes.shape_link[pair[1]]
-    normal = candidate_normal(pairs.candidate_terms, world, candidate)
-    distance = candidate_distance(pairs.candidate_terms, world, candidate)
-    point_b = candidate_point(pairs.candidate_terms, world, candidate)
-    point_a = point_b + normal * distance
-    local_a = wp.transform_point(wp.transform_inverse(state.link_pose[world, link_a]), point_a)
-    local_b = wp.transform_point(wp.transform_inverse(state.link_pose[world, link_b]), point_b)
-    contacts.contact_shapes[world, row] = Index4(pair[0], pair[1], link_a, link_b)
+    write_contact(shapes, state, contacts, pairs, world, row, pair, candidate)
+    before = predecessor(
+        pairs,
+        world,
+        first,
+        last,
+        contacts.contact_local_a[world, row],
+        contacts.contact_local_b[world, row],
+        far,
+    )
+    bequeath(contacts, pairs, world, before, row)
+
+
+@func
+def keep_contact(state: State, contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
+    """Write the previous contact `before` as contact `row`, its points where they are on their links now."""
+    shapes = pairs.previous_shapes[world, before]
+    normal = pairs.previous_normal[world, before]
+    local_a = pairs.previous_local_a[world, before]
+    local_b = pairs.previous_local_b[world, before]
+    point_a = wp.transform_point(state.link_pose[world, shapes[2]], local_a)
+    point_b = wp.transform_point(state.link_pose[world, shapes[3]], local_b)
+    contacts.contact_shapes[world, row] = shapes
     contacts.contact_local_a[world, row] = local_a
     contacts.contact_local_b[world, row] = local_b
     contacts.contact_point_a[world, row] = point_a
     contacts.contact_point_b[world, row] = point_b
-    contacts.contact_normal[world, row] = normal
-    direction = friction_direction(normal)
-    contacts.contact_direction1[world, row] = direction
-    contacts.contact_direction2[world, row] = wp.cross(normal, direction)
-    contacts.contact_distance[world, row] = distance
-    before = predecessor(pairs, world, first, last, local_a, local_b, far)
-    contacts.contact_anchor_a[world, row] = local_a
-    contacts.contact_anchor_b[world, row] = local_b
-    if before >= 0:
-        contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
-        contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
-        contacts.contact_impulse[world, row] = pairs.previous_impulse[world, before]
-        contacts.contact_age[world, row] = pairs.previous_age[world, before] + 1
-        pairs.previous_taken[world, before] = 1
-    else:
-        contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
-        contacts.contact_age[world, row] = 0
+    contacts.contact_distance[world, row] = wp.dot(point_a - point_b, normal)
+    write_normal(contacts, world, row, normal)
+    bequeath(contacts, pairs, world, before, row)

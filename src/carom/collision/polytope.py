@@ -30,6 +30,8 @@ MOST_CORNERS = 64
 PRECISION = real(1.0e-7)
 # A face whose plane a new corner is this much above cannot stay [m]; less than the above.
 VISIBLE = real(1.0e-8)
+# A point as near as this to a face is in it [m].
+ON_FACE = real(1.0e-9)
 # A set of differences thinner than this has no inside [m].
 THIN = real(1.0e-10)
 # Distance of faces without area, which are never the nearest.
@@ -194,6 +196,45 @@ def nearest_face(planes: Vector4Rows, world: Int32, face_count: Int32) -> Int32:
     return nearest
 
 
+@func
+def point_in_face(points: Vector3Rows, points_a: Vector3Rows, world: Int32, corners: Index4, foot: Vector3):
+    """The point of a that belongs to the difference in a face nearest to `foot`; its squared distance."""
+    p = points[world, corners[0]] - foot
+    q = points[world, corners[1]] - foot
+    r = points[world, corners[2]] - foot
+    weights = triangle_weights(p, q, r)
+    on_a = (
+        points_a[world, corners[0]] * weights[0]
+        + points_a[world, corners[1]] * weights[1]
+        + points_a[world, corners[2]] * weights[2]
+    )
+    return on_a, wp.length_sq(p * weights[0] + q * weights[1] + r * weights[2])
+
+
+@func
+def deepest_point(
+    points: Vector3Rows,
+    points_a: Vector3Rows,
+    faces: Index4Rows,
+    world: Int32,
+    corners: Index4,
+    face_count: Int32,
+    foot: Vector3,
+) -> Vector3:
+    """The point of a that belongs to `foot`, the difference on the boundary nearest to the origin.
+
+    It is in the face of these corners, or in one that lies in the same plane.
+    """
+    on_a, miss = point_in_face(points, points_a, world, corners, foot)
+    if miss > ON_FACE * ON_FACE:
+        for face in range(face_count):
+            other, distance_sq = point_in_face(points, points_a, world, faces[world, face], foot)
+            if distance_sq < miss:
+                miss = distance_sq
+                on_a = other
+    return on_a
+
+
 @shared_func
 def overlap(
     core_a: Core,
@@ -287,13 +328,5 @@ def overlap(
             face_count = wp.min(kept + edge_count, faces.shape[1])
             count += 1
             nearest = nearest_face(planes, world, face_count)
-    foot = outward * depth
-    weights = triangle_weights(
-        points[world, corners[0]] - foot, points[world, corners[1]] - foot, points[world, corners[2]] - foot
-    )
-    on_a = (
-        points_a[world, corners[0]] * weights[0]
-        + points_a[world, corners[1]] * weights[1]
-        + points_a[world, corners[2]] * weights[2]
-    )
-    return depth, -outward, on_a, on_a - foot
+    on_a = deepest_point(points, points_a, faces, world, corners, face_count, outward * depth)
+    return depth, -outward, on_a, on_a - outward * depth

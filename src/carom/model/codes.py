@@ -60,6 +60,16 @@ class ShapeKind(IntEnum):
     HEIGHTFIELD = 7  # half extents of its bounds
 
 
+class Rolling(IntEnum):
+    """About which axis of its frame a shape is round."""
+
+    NONE = 0
+    ABOUT_X = 1
+    ABOUT_Y = 2
+    ABOUT_Z = 3
+    ABOUT_ANY = 4
+
+
 JOINT_CODE = {
     JointType.REVOLUTE: JointCode.REVOLUTE,
     JointType.CONTINUOUS: JointCode.REVOLUTE,
@@ -122,6 +132,9 @@ PLANE = wp.constant(int(ShapeKind.PLANE))
 HULL = wp.constant(int(ShapeKind.HULL))
 TRIANGLES = wp.constant(int(ShapeKind.TRIANGLES))
 HEIGHTFIELD = wp.constant(int(ShapeKind.HEIGHTFIELD))
+NO_ROLLING = wp.constant(int(Rolling.NONE))
+ROLLING_ABOUT_X = wp.constant(int(Rolling.ABOUT_X))
+ROLLING_ABOUT_ANY = wp.constant(int(Rolling.ABOUT_ANY))
 
 USER_PRISMATIC = wp.constant(int(UserConstraintKind.PRISMATIC))
 USER_FIXED = wp.constant(int(UserConstraintKind.FIXED))

@@ -43,6 +43,7 @@ class Shapes:
     shape_kind: Ints
     shape_size: Vectors3  # see `codes.ShapeKind`
     shape_pose: Transforms  # in the link's inertial frame
+    shape_rolling: Ints  # see `codes.Rolling`
     shape_margin: Reals
     shape_breaking: Reals  # distance at which a contact is given up [m]
     shape_ccd_radius: Reals
@@ -121,6 +122,8 @@ class Pairs:
 
     # What the contacts of the last step leave to their successors.
     previous_shapes: Index4Rows
+    previous_normal: Vector3Rows
+    previous_distance: RealRows
     previous_local_a: Vector3Rows
     previous_local_b: Vector3Rows
     previous_anchor_a: Vector3Rows

@@ -30,9 +30,10 @@ from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
+from carom.geometry.rolling import round_about
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.model.bounds import MARGIN
-from carom.model.codes import ShapeKind
+from carom.model.codes import Rolling, ShapeKind
 
 MOST_HULL_VERTICES = 128
 """Hulls of finer meshes are simplified to so many vertices."""
@@ -42,6 +43,9 @@ HULL_TOLERANCE = 1e-3
 
 CYLINDER_SIDES = 32
 """Sides of a cylinder that is a hull."""
+
+GRID = 10216
+"""Steps of the grid over the width of a cylinder on which its corners lie when it is a hull."""
 
 _CACHED = 256
 
@@ -62,6 +66,7 @@ class ShapePiece:
         polyhedron: Vertices and faces, if it has any.
         columns: Points in one row of a height field.
         hierarchy: Boxes over the faces of a triangle mesh.
+        rolling: About which axis of the shape frame it is round.
     """
 
     kind: ShapeKind
@@ -71,6 +76,7 @@ class ShapePiece:
     polyhedron: Polyhedron | None = None
     columns: int = 0
     hierarchy: TriangleHierarchy | None = None
+    rolling: Rolling = Rolling.NONE
 
 
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
@@ -93,9 +99,13 @@ def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[Sha
         case Box(half_extents):
             return (ShapePiece(ShapeKind.BOX, half_extents, MARGIN),)
         case Capsule(radius, length):
-            return (ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0), radius),)
+            return (
+                ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0), radius, rolling=Rolling.ABOUT_Z),
+            )
         case Cylinder(radius, length) if implicit_cylinder:
-            return (ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0), MARGIN),)
+            return (
+                ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0), MARGIN, rolling=Rolling.ABOUT_Z),
+            )
         case Cylinder(radius, length):
             return (_cylinder_hull(radius, length),)
         case Plane(normal):
@@ -125,7 +135,24 @@ def _polyhedral(
     low, high = polyhedron.bounds()
     half_x, half_y, half_z = (0.5 * (high - low)).tolist()
     x, y, z = (0.5 * (high + low)).tolist()
-    return ShapePiece(kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy)
+    rolling = _rolling_of(polyhedron) if kind == ShapeKind.HULL else Rolling.NONE
+    return ShapePiece(
+        kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy, rolling
+    )
+
+
+def _rolling_of(hull: Polyhedron) -> Rolling:
+    match round_about(hull):
+        case (True, True, True):
+            return Rolling.ABOUT_ANY
+        case (True, False, False):
+            return Rolling.ABOUT_X
+        case (False, True, False):
+            return Rolling.ABOUT_Y
+        case (False, False, True):
+            return Rolling.ABOUT_Z
+        case _:
+            return Rolling.NONE
 
 
 def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
@@ -140,12 +167,23 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     points = np.array([(x, y, z) for z in (-0.5 * length, 0.5 * length) for x, y in rim])
     if radius == 0.0 or length == 0.0:
         return _hull_piece(points)
+    points = _on_grid(points)
     # Simplifying would take corners out of the rims.
     sides = range(CYLINDER_SIDES)
     bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
     following = [*sides[1:], 0]
     quads = [[a, CYLINDER_SIDES + a, CYLINDER_SIDES + b, b] for a, b in zip(sides, following, strict=True)]
     return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, [bottom, top, *quads]), MARGIN)
+
+
+def _on_grid(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 3) around the origin, drawn in to the grid that PyBullet makes hulls on.
+
+    Wheels roll from corner to corner; with each 1e-4 of the radius off, they would drift from PyBullet's.
+    The steps of the arithmetic are its, too, since an extreme point may lie on the grid or just below.
+    """
+    step = (points.max(axis=0) - points.min(axis=0)) * (1.0 / GRID)
+    return np.trunc(points * (1.0 / step)) * step
 
 
 @lru_cache(_CACHED)

@@ -1,0 +1,195 @@
+"""Manifolds of rolling shapes, against the same rules written down a second time in Python."""
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, plane
+
+from carom.model.codes import Rolling
+
+RADIUS, HALF_LENGTH, BREAKING = 0.1, 0.15, 0.004
+LYING = (2**-0.5, 0.0, 0.0, 2**-0.5)
+GROUNDS = {
+    "plane": plane(breaking=BREAKING),
+    "box": box((5, 5, 1), position=(0, 0, -1), margin=0.001, breaking=BREAKING, static=True),
+}
+
+
+def wheel(sides: int = 16) -> Shape:
+    """A prism along z."""
+    angles = 2.0 * pi * np.arange(sides) / sides
+    rim = [(RADIUS * cos(a), RADIUS * sin(a), z) for a in angles for z in (-HALF_LENGTH, HALF_LENGTH)]
+    return hull(rim, breaking=BREAKING, rolling=Rolling.ABOUT_Z)
+
+
+ROLLERS = {
+    "cylinder": cylinder(RADIUS, HALF_LENGTH, margin=0.001, breaking=BREAKING, rolling=Rolling.ABOUT_Z),
+    "capsule": capsule(RADIUS, HALF_LENGTH, breaking=BREAKING, rolling=Rolling.ABOUT_Z),
+    "wheel": wheel(),
+}
+
+
+def product(q, r):
+    """Product of two quaternions (x, y, z, w)."""
+    u, s, v, t = np.array(q[:3]), q[3], np.array(r[:3]), r[3]
+    return (*(s * v + t * u + np.cross(u, v)), s * t - u @ v)
+
+
+def turn(axis: int, angle: float):
+    """A turn about one of the world's axes."""
+    return (*(sin(angle / 2) * np.eye(3)[axis]), cos(angle / 2))
+
+
+def matrix(q):
+    """Rotation matrix of a quaternion."""
+    x, y, z, w = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+@dataclass
+class Point:
+    """A contact as the reference keeps it: its points on the roller and on the ground."""
+
+    on_roller: np.ndarray
+    on_ground: np.ndarray
+    height: float
+
+
+def spread(new, others) -> float:
+    a, b, c = (other.on_roller for other in others)
+    return float(np.sum(np.cross(new.on_roller - a, c - b) ** 2))
+
+
+def reference(points: list[Point], position, frame, new: Point | None) -> list[Point]:
+    """The points of the next step on ground whose upper side is z = 0."""
+    points = list(points)
+    if new is not None:
+        away = [float(np.sum((point.on_roller - new.on_roller) ** 2)) for point in points]
+        if away and min(away) < BREAKING**2:
+            points[int(np.argmin(away))] = new
+        elif len(points) < 4:
+            points.append(new)
+        else:
+            heights = [point.height for point in points]
+            deepest = int(np.argmin(heights)) if min(heights) < new.height else -1
+            sizes = [
+                -1.0 if slot == deepest else spread(new, points[:slot] + points[slot + 1 :])
+                for slot in range(4)
+            ]
+            points[int(np.argmax(sizes))] = new
+    for slot in reversed(range(len(points))):
+        point = points[slot]
+        offset = position + frame @ point.on_roller - point.on_ground
+        point.height = float(offset[2])
+        if point.height > BREAKING or float(offset[:2] @ offset[:2]) > BREAKING**2:
+            points[slot] = points[-1]
+            points.pop()
+    return points
+
+
+def new_point(scene: Scene, position, frame) -> Point | None:
+    """The deepest point of the roller now, as the query for nearest points has it."""
+    x, y, z, *normal, distance, within = scene.closest([(0, 1)], BREAKING)[0]
+    if not within:
+        return None
+    on_ground = np.array([x, y, z])
+    return Point(frame.T @ (on_ground + distance * np.array(normal) - position), on_ground, float(distance))
+
+
+steps = st.tuples(
+    st.floats(-0.01, 0.01), st.floats(-0.003, 0.003), st.floats(-0.03, 0.03), st.floats(-0.002, 0.002)
+)
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("roller", ROLLERS)
+@settings(max_examples=15, deadline=None)
+@given(motion=st.lists(steps, min_size=3, max_size=12))
+def test_points_gather_by_the_rules(roller: str, ground: str, motion) -> None:
+    """A roller that rolls, slips, tilts and hops by random little steps."""
+    scene = Scene([ROLLERS[roller], GROUNDS[ground]])
+    position, orientation = np.array([0.0, 0.0, RADIUS + 0.001]), LYING
+    expected: list[Point] = []
+    for way, rise, tilt, slip in motion:
+        position = position + np.array((way, slip, 0.0))
+        position[2] = RADIUS + rise
+        orientation = product(turn(1, way / RADIUS), product(turn(0, tilt), orientation))
+        scene.place(0, position, orientation)
+        frame = matrix(orientation)
+        expected = reference(expected, position, frame, new_point(scene, position, frame))
+        scene.collide()
+        assert_allclose(
+            scene.contacts("local_a"), np.reshape([point.on_roller for point in expected], (-1, 3)), atol=1e-9
+        )
+        assert_allclose(
+            scene.contacts("point_b"), np.reshape([point.on_ground for point in expected], (-1, 3)), atol=1e-9
+        )
+        assert_allclose(scene.contacts("distance"), [point.height for point in expected], atol=1e-9)
+        orientation = tuple(np.array(orientation) / np.linalg.norm(orientation))
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_a_lying_cylinder_finds_its_second_end_when_it_tilts(ground: str) -> None:
+    scene = Scene([ROLLERS["cylinder"], GROUNDS[ground]])
+    for tilt, count in ((1e-4, 1), (-1e-4, 2), (1e-4, 2)):
+        scene.place(0, (0, 0, RADIUS), product(turn(0, tilt), LYING))
+        scene.collide()
+        assert len(scene.contacts("distance")) == count
+    ends = np.sort(scene.contacts("point_b")[:, 1])
+    assert_allclose(ends, (-HALF_LENGTH, HALF_LENGTH), atol=2e-3)
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+@pytest.mark.parametrize("roller", ["cylinder", "wheel"])
+def test_a_standing_cylinder_has_all_its_points_at_once(roller: str, ground: str) -> None:
+    scene = Scene([ROLLERS[roller], GROUNDS[ground]])
+    scene.place(0, (0, 0, HALF_LENGTH))
+    scene.collide()
+    assert len(scene.contacts("distance")) == 4
+
+
+def test_a_point_that_is_found_again_keeps_its_impulse_and_a_new_one_has_none() -> None:
+    scene = Scene([ROLLERS["capsule"], GROUNDS["plane"]])
+    scene.place(0, (0, 0, RADIUS), product(turn(0, 1e-4), LYING))
+    scene.collide()
+    scene.contacts("impulse")[:] = 3.0
+    scene.place(0, (0.001, 0, RADIUS), product(turn(0, 1e-4), LYING))
+    scene.collide()
+    assert_allclose(scene.contacts("impulse"), [[3.0] * 4])
+    assert scene.contacts("age").tolist() == [1]
+    scene.place(0, (0.001, 0, RADIUS), product(turn(0, -1e-4), LYING))
+    scene.collide()
+    assert_allclose(scene.contacts("impulse"), [[3.0] * 4, [0.0] * 4])
+    assert scene.contacts("age").tolist() == [2, 0]
+
+
+def test_gathered_contacts_without_room_are_found_when_there_is_and_have_lost_nothing() -> None:
+    rollers = [
+        Shape(**{**vars(ROLLERS["capsule"]), "position": (i, 0, RADIUS), "orientation": LYING})
+        for i in range(40)
+    ]
+    small, large = (Scene([*rollers, GROUNDS["plane"]], contact_room=room) for room in (16, 128))
+    for tilt in (1e-4, -1e-4):
+        for scene in (small, large):
+            for row in range(40):
+                scene.place(row, (row, 0, RADIUS), product(turn(0, tilt), LYING))
+            scene.collide()
+        count = int(small.numpy("contacts")["count_contacts"][0, 1])
+        if count > small.tables["contacts"].capacity["contact"]:
+            small.tables["contacts"].reserve({"contact": count})
+            small.grow_scratch(41, 64)
+            small.collide()
+        for name in ("local_a", "local_b", "distance"):
+            assert_allclose(small.contacts(name), large.contacts(name), atol=0)
+    assert len(small.contacts("distance")) == 80
