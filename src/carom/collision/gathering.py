@@ -92,6 +92,9 @@ def find_new_point(
     b = sides[1]
     if not (rolls(shapes, a) or rolls(shapes, b)) or is_single_sided(shapes, a) or is_single_sided(shapes, b):
         return AT_ONCE
+    if pairs.shape_motion[world, a] + pairs.shape_motion[world, b] > 0.0:
+        # What is stopped at one end only would swing through with the other.
+        return AT_ONCE
     if last > first:
         normal = pairs.previous_normal[world, first]
         if not (
