@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from tools.assets.envelope import Envelope
+from tools.assets.envelope import Envelope, rod
 from tools.assets.measured import Dress, Filler, dressed
 from tools.assets.parts import Paint, Robot, Shape
 
@@ -53,13 +54,60 @@ def _wrist(room: Envelope) -> tuple[Shape, ...]:
     )
 
 
-def _knuckle(room: Envelope) -> tuple[Shape, ...]:
-    """A bar from one corner of the bounds to the other, with what it takes to reach them."""
-    (low_y, high_y), (low_z, high_z) = room.inner("y"), room.inner("z")
-    middle_y, middle_z = (low_y + high_y) / 2.0, (low_z + high_z) / 2.0
-    if abs(low_y) > high_y:
-        return room.box(y=(None, middle_y), z=(middle_z, None)), room.box(y=(middle_y, None))
-    return room.box(y=(middle_y, None), z=(middle_z, None)), room.box(y=(None, middle_y))
+def _palm(room: Envelope) -> tuple[Shape, ...]:
+    """A flange, the body of the gripper on it, and a pin."""
+    return (
+        room.box(x=(-0.024, 0.02), z=(-0.048, None)),
+        room.box(y=(-0.015, 0.021), z=(-0.048, -0.043)),
+        room.box(x=(-0.001, 0.003), y=(0.0, 0.004), z=(None, 0.0)),
+    )
+
+
+def _outer_knuckle(room: Envelope) -> tuple[Shape, ...]:
+    """A bar that slants across the bounds."""
+    return (
+        room.box(x=(-0.004, 0.004), y=(None, -0.017), z=(None, -0.0165)),
+        room.box(y=(-0.02, 0.0), z=(-0.012, 0.008)),
+        room.box(x=(-0.004, 0.004), y=(0.01, 0.019), z=(0.0, None)),
+        room.box(y=(0.012, None), z=(0.003, 0.01)),
+    )
+
+
+def _inner_knuckle(room: Envelope) -> tuple[Shape, ...]:
+    """A bar that slants across the bounds, with an axle through it."""
+    return (
+        room.box(x=(-0.013, 0.013), y=(None, -0.017), z=(None, -0.022)),
+        room.box(y=(-0.004, 0.004), z=(-0.004, 0.004)),
+        room.box(x=(-0.013, 0.013), y=(0.009, None), z=(0.012, None)),
+        rod((0.0, -0.0225, -0.027), (0.0, 0.014, 0.017), 0.004),
+    )
+
+
+def _finger(room: Envelope) -> tuple[Shape, ...]:
+    """A pad, and an arm that slants back to the joint."""
+    return (
+        room.box(y=(None, -0.003), z=(-0.008, None)),
+        room.box(x=(-0.008, 0.008), y=(0.0, 0.015), z=(-0.026, -0.012)),
+        room.box(x=(-0.01, 0.01), y=(0.012, None), z=(None, -0.029)),
+    )
+
+
+def _mirrored(fill: Filler) -> Filler:
+    """The same on the other side of the plane y = 0."""
+
+    def fill_other_side(room: Envelope) -> tuple[Shape, ...]:
+        (x0, y0, z0), (x1, y1, z1) = room.low, room.high
+        shapes = fill(Envelope((x0, -y1, z0), (x1, -y0, z1)))
+        return tuple(
+            replace(
+                shape,
+                xyz=(shape.xyz[0], -shape.xyz[1], shape.xyz[2]),
+                rpy=(-shape.rpy[0], shape.rpy[1], -shape.rpy[2]),
+            )
+            for shape in shapes
+        )
+
+    return fill_other_side
 
 
 XARM: Mapping[str, Filler] = {
@@ -69,7 +117,13 @@ XARM: Mapping[str, Filler] = {
     "link3": _forearm,
     "link4": _sleeve,
     "link5": _wrist,
-    "*_outer_knuckle": _knuckle,
+    "xarm_gripper_base_link": _palm,
+    "left_outer_knuckle": _outer_knuckle,
+    "right_outer_knuckle": _mirrored(_outer_knuckle),
+    "left_inner_knuckle": _inner_knuckle,
+    "right_inner_knuckle": _mirrored(_inner_knuckle),
+    "left_finger": _finger,
+    "right_finger": _mirrored(_finger),
 }
 
 

@@ -45,22 +45,22 @@ def aliengo() -> Robot:
 
 
 def _chassis(room: Envelope) -> tuple[Shape, ...]:
-    """A trunk, a belly under it, and wider shoulders and hips; it lies along z."""
+    """A trunk, a belly under it, and wider shoulders and hips, between which the legs swing; it lies along z."""
     return (
-        room.box(x=(-0.09, 0.09), y=(-0.05, 0.06)),
-        room.box(x=(-0.06, 0.06), z=(-0.12, 0.1)),
-        room.box(y=(-0.05, 0.04), z=(0.17, 0.24)),
-        room.box(y=(-0.05, 0.04), z=(-0.265, -0.195)),
+        room.box(x=(-0.072, 0.072), y=(-0.05, 0.06)),
+        room.box(x=(-0.045, 0.045), z=(-0.12, 0.1)),
+        room.box(y=(-0.047, -0.02), z=(0.255, None)),
+        room.box(y=(-0.047, -0.02), z=(-0.181, -0.157)),
     )
 
 
 def _upright_chassis(room: Envelope) -> tuple[Shape, ...]:
     """The same body along x."""
     return (
-        room.box(y=(-0.09, 0.09), z=(-0.05, 0.06)),
-        room.box(y=(-0.06, 0.06), x=(-0.12, 0.1)),
-        room.box(z=(-0.05, 0.04), x=(0.17, 0.24)),
-        room.box(z=(-0.05, 0.04), x=(-0.265, -0.195)),
+        room.box(y=(-0.072, 0.072), z=(-0.05, 0.06)),
+        room.box(y=(-0.045, 0.045), x=(-0.12, 0.1)),
+        room.box(z=(-0.047, -0.02), x=(0.255, None)),
+        room.box(z=(-0.047, -0.02), x=(-0.181, -0.157)),
     )
 
 
@@ -78,7 +78,7 @@ def _thigh(room: Envelope) -> tuple[Shape, ...]:
 def _shank(room: Envelope) -> tuple[Shape, ...]:
     """A rod to the foot; its round end is what stands."""
     front = room.capsule("y", 0.016, x=0.0, z="low", stop=0.12)
-    return (front, room.box(y=(0.1, None), z=(None, None)))
+    return (front, room.box(y=(0.1, None), z=(0.0, None)))
 
 
 def laikago(file: str) -> Robot:
@@ -96,11 +96,13 @@ def _body_of_cheetah(room: Envelope) -> tuple[Shape, ...]:
 
 
 def _thigh_of_cheetah(room: Envelope) -> tuple[Shape, ...]:
-    """A motor as wide as the link, and a rod down to the knee."""
+    """A round motor with caps on both sides, and a rod down to the knee."""
     return (
-        room.capsule("y", 0.038, x="low", z="high"),
-        room.capsule("y", 0.038, x="high", z="high"),
-        room.capsule("z", 0.02, x=0.0, y=-0.016, stop=0.02),
+        room.box(y=(-0.05, 0.018), z=(0.014, 0.026)),
+        room.box(x=(-0.01, 0.01), y=(-0.05, 0.018), z=(-0.02, None)),
+        room.box(x=(-0.034, 0.034), y=(-0.05, 0.018), z=(-0.014, 0.054)),
+        room.box(x=(-0.012, 0.012), z=(0.008, 0.032)),
+        room.capsule("z", 0.014, x=0.0, y=-0.016, stop=0.02),
     )
 
 
