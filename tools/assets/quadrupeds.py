@@ -45,7 +45,7 @@ def aliengo() -> Robot:
 
 
 def _chassis(room: Envelope) -> tuple[Shape, ...]:
-    """A trunk, a belly under it, and wider shoulders and hips, between which the legs swing; it lies along z."""
+    """A trunk, a belly under it, and shoulders and hips between which the legs swing; it lies along z."""
     return (
         room.box(x=(-0.072, 0.072), y=(-0.05, 0.06)),
         room.box(x=(-0.045, 0.045), z=(-0.12, 0.1)),
