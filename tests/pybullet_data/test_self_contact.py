@@ -1,4 +1,4 @@
-"""With self-collision on, robots touch themselves where the originals do, not where stand-ins for meshes bulge."""
+"""With self-collision on, robots touch themselves where the originals do, not where stand-ins bulge."""
 
 from __future__ import annotations
 
