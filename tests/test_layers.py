@@ -66,6 +66,7 @@ MAY_IMPORT = {
         "carom.version",
     },
     "pybullet_data": set(),
+    "eglRenderer": set(),
     # The URDF editor writes files of its own.
     "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
     "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils"},

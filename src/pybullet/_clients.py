@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from threading import RLock
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pybullet._arguments import integer
 from pybullet._detours import remove_detour
@@ -45,7 +45,9 @@ class Client:
         real_time: `useRealTimeSimulation` as the script set it.
         report_analytics: `stepSimulation` returns the statistics of the solver.
         server: What lets other processes drive the world, if anything does.
-        search_path: Directory that is searched for files besides the usual ones.
+        search_path: Directory that this connection was told to search besides the usual ones.
+        latest_search_path: What any connection of this process was told last: PyBullet has but one directory
+            for all of them, and keeps it when they end.
         shapes: Shapes the script has created.
         states: States the script has saved, by id.
         window: What the script sees of a graphical interface.
@@ -73,6 +75,8 @@ class Client:
         "world",
     )
 
+    latest_search_path: ClassVar[Path | None] = None
+
     def __init__(self, method: int, world: World, bodies: BodyTable, window: Window) -> None:
         self.method = method
         self.world = world
@@ -98,7 +102,11 @@ class Client:
 
     def search(self) -> AssetSearch:
         """Where files that the script names are looked for."""
-        return self.plugins.search(self.search_path)
+        return self.plugins.search(self.search_path, Client.latest_search_path)
+
+    def set_search_path(self, path: Path) -> None:
+        """Searches a directory besides the usual ones; the other connections do so after their own."""
+        self.search_path = Client.latest_search_path = path
 
     def set_timeout(self, seconds: float) -> None:
         """A world in the same process answers at once."""

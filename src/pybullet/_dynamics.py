@@ -50,9 +50,8 @@ _NUMBERS = (
     ("joint_upper_limit", "jointUpperLimit", False),
 )
 _BEFORE_LIMITS = ("joint_limit_force", "sleep_threshold")
-_INTEGERS = tuple(
-    place for place, (_, name, _) in enumerate(_NUMBERS) if name in ("frictionAnchor", "activationState")
-)
+_WHOLE = ("friction_anchor", "activation_state")
+_INTEGERS = tuple(place for place, (name, _, _) in enumerate(_NUMBERS) if name in _WHOLE)
 # What `BodyAccess` was made with.
 _KEPT_BY_ACCESS = {"mass", "inertia", "joint_lower_limit", "joint_upper_limit"}
 
@@ -217,14 +216,18 @@ def changeDynamics(
     anisotropy = _optional_vector(anisotropicFriction, "anisotropicFriction")
     inertia = _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")
     changes = _Changes(named_link)
-    given = [(entry, value) for entry, value in zip(_NUMBERS, values, strict=False) if value >= 0]
+    given = [
+        (entry, value if entry[0] in _WHOLE else float(value))
+        for entry, value in zip(_NUMBERS, values, strict=False)
+        if value >= 0
+    ]
     # The limits and lists have their place among the numbers, see the docstring.
     for (name, _, of_body), value in given:
         if name in _BEFORE_LIMITS:
             changes.take(name, value, of_body=of_body)
     if lower <= upper:
-        changes.take("joint_lower_limit", lower)
-        changes.take("joint_upper_limit", upper)
+        changes.take("joint_lower_limit", float(lower))
+        changes.take("joint_upper_limit", float(upper))
     if anisotropy is not None:
         changes.take("anisotropic_friction", anisotropy)
     if inertia is not None:

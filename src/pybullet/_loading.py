@@ -26,6 +26,9 @@ _LEGACY_POSE = ("startPosX", "startPosY", "startPosZ", "startOrnX", "startOrnY",
 def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
     """Sets the directory that is searched for files besides the working directory.
 
+    All connections of the process search it, also those made later; what another one was told comes after
+    what a connection was told itself.
+
     Args:
         path: The directory; replaces the one set before.
         physicsClientId: The connection.
@@ -37,7 +40,7 @@ def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
         >>> import pybullet_data
         >>> p.setAdditionalSearchPath(pybullet_data.getDataPath())
     """
-    client_of(physicsClientId).search_path = Path(text(path, "path"))
+    client_of(physicsClientId).set_search_path(Path(text(path, "path")))
 
 
 def _in_usual_form(

@@ -12,6 +12,14 @@ if TYPE_CHECKING:
 BUILT_IN = {"pdControlPlugin": 0, "collisionFilterPlugin": 1, "tinyRendererPlugin": 2, "fileIOPlugin": 3}
 """Ids of the plugins that are part of PyBullet."""
 FILE_IO = BUILT_IN["fileIOPlugin"]
+EGL_RENDERER = len(BUILT_IN)
+"""Id of the renderer in a library of its own, the only one that scripts load."""
+
+
+def is_egl_renderer(path: str) -> bool:
+    """Whether a path is that of the library `eglRenderer`, as Python's import system finds it."""
+    file = Path(path)
+    return file.is_file() and "eglRenderer" in (file.parent.name, file.name.partition(".")[0])
 
 
 class Plugins:
@@ -50,14 +58,17 @@ class Plugins:
         for slot in list(self.places):
             self.remove_place(slot)
 
-    def search(self, additional: Path | None) -> AssetSearch:
+    def search(self, additional: Path | None, last: Path | None) -> AssetSearch:
         """Where files are looked for.
 
         Args:
             additional: The directory of `setAdditionalSearchPath`.
+            last: Where files are looked for that are nowhere else.
         """
         from carom.formats.search import AssetSearch
 
         places = [self.places[slot] for slot in sorted(self.places)]
-        folders = (place if isinstance(place, Path) else place.folder for place in places)
+        folders = [place if isinstance(place, Path) else place.folder for place in places]
+        if last is not None and last != additional:
+            folders.append(last)
         return AssetSearch(additional, tuple(folders))

@@ -11,7 +11,7 @@ from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import AddFileIOAction, PosixFileIO, RemoveFileIOAction, ZipFileIO
 from pybullet._errors import logger
-from pybullet._plugin_registry import BUILT_IN, FILE_IO
+from pybullet._plugin_registry import BUILT_IN, EGL_RENDERER, FILE_IO, is_egl_renderer
 
 __all__ = ["executePluginCommand", "loadPlugin", "unloadPlugin"]
 
@@ -32,7 +32,8 @@ def loadPlugin(pluginPath: str, postFix: str | None = None, physicsClientId: int
 
     Args:
         pluginPath: `fileIOPlugin`, which lets files be found in zip archives; `pdControlPlugin`,
-            `collisionFilterPlugin` or `tinyRendererPlugin`, whose work Carom does without them.
+            `collisionFilterPlugin`, `tinyRendererPlugin` or the file of the module `eglRenderer`, whose work
+            Carom does without them.
         postFix: Not used.
         physicsClientId: The connection.
 
@@ -50,6 +51,9 @@ def loadPlugin(pluginPath: str, postFix: str | None = None, physicsClientId: int
     name = text(pluginPath, "pluginPath")
     if postFix is not None:
         text(postFix, "postFix")
+    if is_egl_renderer(name):
+        client.plugins.loaded.add(EGL_RENDERER)
+        return EGL_RENDERER
     if name not in BUILT_IN:
         renderer = "eglRenderer" in name
         advice = (

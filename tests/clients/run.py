@@ -47,6 +47,14 @@ class Bench:
         command = [str(self.interpreters["oracle"]), "-c", f"import {module}; print({module}.__path__[0])"]
         return Path(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split("\n")[0])
 
+    def packages(self) -> Path:
+        """A folder with PyBullet's examples in it as a package, which some of them import."""
+        folder = self.scratch("packages")
+        examples = folder / "pybullet_examples"
+        if not examples.exists():
+            examples.symlink_to(self.folder_of("pybullet_examples"))
+        return folder
+
     def scratch(self, *parts: str) -> Path:
         """An empty folder for one run."""
         folder = self.work.joinpath(*parts)
@@ -74,7 +82,12 @@ def run_suite(bench: Bench, name: str, suite: Suite) -> Verdict:
 def run_scripts(bench: Bench, name: str, scripts: Scripts, wanted: list[str]) -> list[tuple[str, Verdict]]:
     """Watches each script with both, on PyBullet's own assets."""
     root = bench.source(scripts.repository) if scripts.repository else bench.folder_of(str(scripts.module))
-    data = str(bench.folder_of("pybullet_data"))
+    assets = str(bench.folder_of("pybullet_data"))
+    watching = {
+        "WATCH_DATA": assets,
+        "WATCH_WITHOUT_WINDOWS": "1",
+        "PYTHONPATH": str(bench.packages()),
+    }
     verdicts = []
     for script in sorted((root / scripts.folder).glob("*.py")):
         if script.stem in (*scripts.left_out, "__init__") or (wanted and script.stem not in wanted):
@@ -84,13 +97,23 @@ def run_scripts(bench: Bench, name: str, scripts: Scripts, wanted: list[str]) ->
             folder = bench.scratch(name, which, script.stem)
             record = folder / "record.json"
             record.unlink(missing_ok=True)
-            environment = _clean() | {"WATCH_DATA": data, "WATCH_WITHOUT_WINDOWS": "1"}
+            if scripts.repository:
+                _lay_out(folder, root, root / scripts.folder)
+            environment = _clean() | watching
             command = [str(python), str(WATCH), str(record), str(STEPS), str(SECONDS), str(script)]
             _run(command, folder, environment, 2 * SECONDS)
             runs[which] = Run.read(record)
         verdicts.append((script.stem, compare_runs(runs["oracle"], runs["carom"])))
         _say(script.stem, verdicts[-1][1])
     return verdicts
+
+
+def _lay_out(folder: Path, root: Path, scripts: Path) -> None:
+    """Puts what lies beside the scripts, and the data of the repository, where they look for it."""
+    beside = [entry for entry in scripts.iterdir() if entry.suffix != ".py"]
+    for link, target in [(folder.parent / "data", root / "data"), *((folder / e.name, e) for e in beside)]:
+        if not link.is_symlink():
+            link.symlink_to(target)
 
 
 def _clean() -> dict[str, str]:

@@ -20,6 +20,8 @@ def test_runs_that_move_alike_are_the_same() -> None:
     assert compare_runs(real, Run("steps", steps=30, states=shifted(1e-4, 1))).good
     assert compare_runs(real, Run("steps", steps=30, states=shifted(0.5, 30))).good
     assert not compare_runs(real, Run("steps", steps=30, states=shifted(0.5, 20))).good
+    assert compare_runs(real, Run("steps", steps=30, states=shifted(4e-3, 1))).good
+    assert not compare_runs(real, Run("steps", steps=30, states=shifted(6e-3, 1))).good
     assert drift(FALLING, shifted(0.5, 30)) == (0.0, 0.5)
 
 
@@ -34,7 +36,9 @@ def test_errors_are_the_same_where_they_begin_alike() -> None:
     assert compare_runs(real, Run("steps")).good
     assert not compare_runs(real, Run("error", "error: something else")).good
     assert not compare_runs(Run("steps"), Run("error", "error: something else")).good
-    assert compare_runs(Run("steps"), Run("error", "error: x is not available in this version of Carom")).good
+    unavailable = Run("error", "error: x is not available in this version of Carom")
+    assert compare_runs(Run("steps"), unavailable).good
+    assert compare_runs(real, unavailable).good
     assert not compare_runs(Run("steps"), Run("crash")).good
 
 

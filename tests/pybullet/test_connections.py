@@ -157,6 +157,29 @@ def test_vendored_client_objects_talk_to_their_own_worlds() -> None:
     assert [world.getNumBodies() for world in worlds] == [0, 1, 2]  # pyright: ignore[reportCallIssue]
 
 
+def test_all_connections_search_what_one_was_told_but_their_own_directory_first(tmp_path: Path) -> None:
+    for folder, shapes in (("first", 1), ("second", 2)):
+        directory = tmp_path / folder
+        directory.mkdir()
+        collision = '<collision><geometry><sphere radius="1"/></geometry></collision>'
+        robot = f'<robot name="{folder}"><link name="ball">{collision * shapes}</link></robot>'
+        (directory / f"{folder}.urdf").write_text(robot)
+        (directory / "both.urdf").write_text(robot)
+    told, other = p.connect(p.DIRECT), p.connect(p.DIRECT)
+    p.setAdditionalSearchPath(str(tmp_path / "first"), physicsClientId=told)
+    assert p.loadURDF("first.urdf", physicsClientId=other) == 0
+    p.setAdditionalSearchPath(str(tmp_path / "second"), physicsClientId=other)
+    assert p.loadURDF("second.urdf", physicsClientId=told) == 0
+    for client, name in ((told, b"first"), (other, b"second")):
+        body = p.loadURDF("both.urdf", physicsClientId=client)
+        assert p.getBodyInfo(body, physicsClientId=client)[1] == name
+        p.disconnect(client)
+    late = p.connect(p.DIRECT)
+    assert p.loadURDF("second.urdf", physicsClientId=late) == 0
+    with pytest.raises(p.error, match=r"Cannot load URDF file\."):
+        p.loadURDF("first.urdf", physicsClientId=late)
+
+
 def test_versions() -> None:
     assert p.getAPIVersion() == 202010061
     assert p.isNumpyEnabled() == 1

@@ -133,3 +133,10 @@ def test_a_base_that_may_move_again_collides_with_fixed_ones(client: int, masses
     for _ in range(120):
         p.stepSimulation()
     assert p.getBasePositionAndOrientation(upper)[0][2] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_whole_numbers_come_back_as_floats(client: int) -> None:
+    ball = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=1))
+    p.changeDynamics(ball, -1, mass=2, restitution=1, contactStiffness=1000, contactDamping=10)
+    info = p.getDynamicsInfo(ball, -1)
+    assert [type(info[field]) for field in (0, 5, 8, 9)] == [float] * 4

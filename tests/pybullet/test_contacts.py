@@ -251,3 +251,26 @@ def test_links_below_minus_one_stand_for_all(client: int) -> None:
     for link in (-2, -3, -7):
         assert len(p.getContactPoints(linkIndexA=link, linkIndexB=link)) == 1
         assert len(p.getClosestPoints(first, second, 1.0, link, link)) == 1
+
+
+@pytest.mark.parametrize(
+    ("half", "turn", "normal"),
+    [
+        ((0.1, 0.1, 0.1), (0, 0, 0, 1), (-1, 0, 0)),
+        ((0.1, 0.1, 0.2), (0, 0, 0, 1), (-1, 0, 0)),
+        ((0.2, 0.1, 0.1), (0, 0, 0, 1), (0, -1, 0)),
+        ((0.1, 0.2, 0.1), (0, 0, 0, 1), (-1, 0, 0)),
+        ((0.1, 0.1, 0.1), (0.5, 0.5, 0.5, 0.5), (-1, 0, 0)),
+    ],
+)
+def test_boxes_with_one_centre_part_along_the_first_of_their_shortest_axes(
+    client: int, half: tuple[float, ...], turn: tuple[float, ...], normal: tuple[float, ...]
+) -> None:
+    for orientation in ((0, 0, 0, 1), turn):
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=half, physicsClientId=client)
+        p.createMultiBody(1.0, shape, baseOrientation=orientation, physicsClientId=client)
+    p.performCollisionDetection(physicsClientId=client)
+    points = p.getContactPoints(physicsClientId=client)
+    assert points
+    for point in points:
+        assert point[7] == pytest.approx(normal, abs=1e-9)

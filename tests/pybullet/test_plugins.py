@@ -1,5 +1,6 @@
 """Plugins: ids and answers are PyBullet's; files are found in zip archives."""
 
+import pkgutil
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -100,3 +101,13 @@ def test_other_plugins_say_what_they_are(archive: Path, caplog: pytest.LogCaptur
     assert "getCameraImage" in caplog.records[-1].message
     assert p.loadPlugin("/somewhere/libmine.so") == -1
     assert "PyBullet's engine" in caplog.records[-1].message
+
+
+def test_the_renderer_that_scripts_look_for_is_found_and_loaded(client: int) -> None:
+    found = pkgutil.get_loader("eglRenderer")
+    assert found is not None
+    plugin = p.loadPlugin(found.get_filename(), "_eglRendererPlugin")  # type: ignore[attr-defined]
+    assert plugin == 4
+    image = p.getCameraImage(8, 8, renderer=p.ER_BULLET_HARDWARE_OPENGL)
+    assert image[:2] == (8, 8)
+    p.unloadPlugin(plugin)

@@ -61,6 +61,10 @@ LOADED_WITH_FLAGS = [(name, key) for name in NAMES for key in FLAGS if key in fa
 WITH_BOUNDS = [name for name in NAMES if not facts(name)["file"].endswith(".xml")]
 """Of MJCF files `getAABB` tells of swept spheres, with margins of 4 cm, that stand for capsules."""
 
+URDFS = [name for name in NAMES if facts(name)["file"].endswith(".urdf")]
+CHILDREN_FIRST = ("quadruped__microtaur__microtaur", "racecar__racecar_differential")
+"""In these files links come before their parents; here every link comes after its parent."""
+
 WITH_COLLISIONS = [name for name in NAMES if "collisions" in facts(name)]
 """PyBullet crashes when it is asked for the shapes of the others."""
 
@@ -122,6 +126,15 @@ def joint_view(spec: BodySpec, link: LinkSpec) -> dict[str, Any]:
         "parent_frame_position": exactly(in_parent.position),
         "parent": link.parent,
     }
+
+
+@pytest.mark.parametrize("name", [name for name in URDFS if name not in CHILDREN_FIRST])
+def test_links_stand_in_the_file_in_the_order_of_the_original(name: str) -> None:
+    original = facts(name)
+    order = original.get("file_order", [joint["link"] for joint in original["joints"]])
+    robot = robots(original["file"])[0].robot
+    spec = assemble(robot, flags=LoadFlags.MAINTAIN_LINK_ORDER)
+    assert [link.name for link in spec.links] == order
 
 
 @pytest.mark.parametrize("name", NAMES)

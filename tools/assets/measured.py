@@ -123,7 +123,16 @@ def dressed(file: str, about: str, dress: Dress, number: int = 0) -> Robot:
     frames = [_inertial_frame(fact) for fact in facts["default"]]
     links = tuple(_link(facts, dress, i, name) for i, name in enumerate(names))
     joints = tuple(_joint(fact, names, frames, i) for i, fact in enumerate(facts["joints"], start=1))
-    return Robot(facts["robot"], about, links, joints)
+    return Robot(facts["robot"], about, _as_in_file(links, facts), joints)
+
+
+def _as_in_file(links: tuple[Link, ...], facts: Mapping[str, Any]) -> tuple[Link, ...]:
+    """Links in the order of the original's file, which is that of URDF_MAINTAIN_LINK_ORDER."""
+    order = facts.get("file_order")
+    if order is None:
+        return links
+    places = {name: place for place, name in enumerate(order)}
+    return tuple(sorted(links, key=lambda link: places.get(link.name, -1)))
 
 
 def place(file: str, number: int = 0) -> Pose:

@@ -225,6 +225,11 @@ def description_facts(body: int) -> dict[str, Any]:
     }
 
 
+def link_names(body: int) -> list[str]:
+    """Names of the links after the base."""
+    return [p.getJointInfo(body, joint)[12].decode() for joint in range(p.getNumJoints(body))]
+
+
 def facts_of(path: str, name: str) -> list[dict[str, Any]]:
     """Everything recorded of each body of a file."""
     facts = [{"file": name, "pybullet": p.getAPIVersion()} | description_facts(b) for b in loaded(path, 0)]
@@ -233,6 +238,11 @@ def facts_of(path: str, name: str) -> list[dict[str, Any]]:
         p.resetSimulation()
         for body, fact in zip(loaded(path, flags), facts, strict=True):
             fact[key] = [dynamics_facts(body, link) for link in links_of(body)]
+    p.resetSimulation()
+    if is_urdf:
+        (fact,), (body,) = facts, loaded(path, p.URDF_MAINTAIN_LINK_ORDER)
+        if (names := link_names(body)) != [joint["link"] for joint in fact["joints"]]:
+            fact["file_order"] = names
     p.resetSimulation()
     if not path.endswith(".xml"):  # PyBullet crashes when it is asked for the shapes of these
         for body, fact in zip(loaded(path, p.URDF_USE_IMPLICIT_CYLINDER), facts, strict=True):

@@ -42,7 +42,8 @@ def box_axis(
 
     Returns:
         What it is (see `FACE_A`), the unit axis from b towards a in world axes, and the distance
-        along it, negative where they overlap.
+        along it, negative where they overlap. Where the centres coincide along the axis, it is the
+        negative one.
     """
     turn = wp.transpose(frame_a) * frame_b
     t = wp.transpose(frame_a) * offset
@@ -64,12 +65,12 @@ def box_axis(
     if gaps_a[2] > best:
         best = gaps_a[2]
         axis = Int32(2)
-    normal = column(frame_a, axis) * toward(-t[axis], 1.0)
+    normal = column(frame_a, axis) * -toward(t[axis], 1.0)
     for i in range(3):
         if gaps_b[i] > best + FACE_SHARE * wp.abs(best):
             best = gaps_b[i]
             code = Int32(FACE_B)
-            normal = column(frame_b, i) * toward(-t_in_b[i], 1.0)
+            normal = column(frame_b, i) * -toward(t_in_b[i], 1.0)
     if best > reach + TOUCHING_SHARE * (wp.max(wp.abs(t)) + wp.max(half_a) + wp.max(half_b)):
         return Int32(APART), normal, best
 
@@ -95,7 +96,7 @@ def box_axis(
                 best = gap
                 code = EDGES + pair
                 cross = wp.cross(column(frame_a, i), column(frame_b, j))
-                normal = cross * (toward(-along, 1.0) / wp.sqrt(length_sq))
+                normal = cross * (-toward(along, 1.0) / wp.sqrt(length_sq))
         pair += 1
     if code >= EDGES and best > reach:
         return Int32(APART), normal, best
