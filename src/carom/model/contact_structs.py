@@ -23,6 +23,7 @@ from carom.model.real import (
     RealRows,
     Reals,
     Transforms,
+    Vector3,
     Vector3Rows,
     Vector4,
     Vector4Rows,
@@ -31,6 +32,7 @@ from carom.model.real import (
     Vector8Rows,
     Vectors3,
     Vectors4,
+    real,
 )
 
 
@@ -220,10 +222,33 @@ class Patch:
     friction_wanted: Vector8
 
 
+@wp.struct
+class ContactTerms:
+    """A contact as its rows need it, in world axes."""
+
+    ends: Index4  # tree and link of a, then of b
+    point_a: Vector3
+    point_b: Vector3
+    normal: Vector3
+    lateral1: Vector3  # friction directions, scaled where friction is anisotropic
+    lateral2: Vector3
+    rolling1: Vector3  # directions as they were found
+    rolling2: Vector3
+    drift: Vector3  # since it began to stick, where it has a friction anchor
+    distance: real
+    friction: Vector3  # coefficients: lateral, rolling, spinning
+    softness: real
+    erp: real
+    start: Vector3  # impulses to start from
+    ignored: Int32  # 1: too far apart to be solved
+
+
 if TYPE_CHECKING:
     Patches = Any
+    TermsRows = Any
 else:
     Patches = wp.array2d(dtype=Patch)
+    TermsRows = wp.array2d(dtype=ContactTerms)
 
 
 @wp.struct
@@ -251,6 +276,7 @@ class Couplings:
     )
     unit_code: IntRows  # what an island's sweep relaxes, in order: a contact, or -1 - patch
 
+    terms: TermsRows  # of the contacts of the patch that is being written
     patch: Patches
     run_block: Vector4Rows  # see `physics.long_patches`
     entry_run: RealRows

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.model.contact_structs import Contacts, Shapes
+from carom.model.contact_structs import Contacts, ContactTerms, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Settings, State
 
@@ -116,27 +116,6 @@ def starting_impulse(settings: Settings, last: Vector4) -> Vector3:
         return Vector3(0.0, 0.0, 0.0)
     share = normal / last[0]
     return Vector3(normal, share * last[1], share * last[2])
-
-
-@wp.struct
-class ContactTerms:
-    """A contact as its rows need it, in world axes."""
-
-    ends: Index4  # tree and link of a, then of b
-    point_a: Vector3
-    point_b: Vector3
-    normal: Vector3
-    lateral1: Vector3  # friction directions, scaled where friction is anisotropic
-    lateral2: Vector3
-    rolling1: Vector3  # directions as they were found
-    rolling2: Vector3
-    drift: Vector3  # since it began to stick, where it has a friction anchor
-    distance: real
-    friction: Vector3  # coefficients: lateral, rolling, spinning
-    softness: real
-    erp: real
-    start: Vector3  # impulses to start from
-    ignored: Int32  # 1: too far apart to be solved
 
 
 @func

@@ -1,87 +1,50 @@
-"""Writing the rows of patches of small trees; see `patches`."""
+"""Writing the rows of patches of rigid bodies; see `patches`."""
 
 import warp as wp
 
-from carom.model.contact_structs import Couplings, Shapes
-from carom.model.real import (
-    Int32,
-    Vector3,
-    Vector4,
-    Vector8,
-    func,
-    real,
-)
+from carom.model.contact_structs import Contacts, ContactTerms, Couplings, Shapes
+from carom.model.real import Int32, Matrix8, Vector3, Vector4, Vector8, func, real
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.contact_terms import (
-    ContactTerms,
-    friction_change,
-    normal_change,
-)
-from carom.physics.couplings import tree_blocks
-from carom.physics.patches import (
-    add_change,
-    combination,
-)
+from carom.physics.contact_terms import contact_terms, friction_change, normal_change
+from carom.physics.patches import add_change, combination, push_of_normals
 from carom.physics.rows import inverse_or_off
 
 
 @func
-def small_jacobian(
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    world: Int32,
-    tree: Int32,
-    link: Int32,
-    point: Vector3,
-    direction: Vector3,
-) -> Vector8:
-    """How dofs of a small tree, -1 for none, move a point of a link along a direction, in world axes."""
-    result = Vector8(0.0)
-    if tree >= 0:
-        reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
-        moment = wp.cross(point - reference, direction)
-        first = model.tree[tree].first_dof
-        dof = model.link[link].nearest_dof
-        while dof >= 0:
-            result[dof - first] = wp.dot(scratch.dof[world, dof].linear, direction) + wp.dot(
-                scratch.dof[world, dof].angular, moment
-            )
-            dof = model.dof[dof].parent
-    return result
+def is_rigid(model: Model, tree: Int32) -> bool:
+    """Whether a tree, -1 for none, is a rigid body, free to move or not to be moved at all."""
+    if tree < 0:
+        return True
+    dofs = model.tree[tree].dof_count
+    return dofs == 0 or (dofs == 6 and model.tree[tree].fixed == 0)
+
+
+@wp.struct
+class RigidBody:
+    """A rigid body about the reference point of its tree; all zero where it cannot be moved."""
+
+    reference: Vector3
+    velocity: Vector8  # angular before linear, in world axes
+    inverse_mass: Matrix8  # its last two rows and columns are zero
 
 
 @func
-def small_response(model: Model, scratch: Scratch, world: Int32, tree: Int32, jacobian: Vector8) -> Vector8:
-    """What an impulse along a Jacobian does to the velocity of a small tree."""
-    result = Vector8(0.0)
-    blocks = tree_blocks(model, tree)
-    if blocks > 0:
+def rigid_body(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32) -> RigidBody:
+    """The rigid body that a tree, -1 for none, is."""
+    body = RigidBody()
+    body.reference = Vector3(0.0, 0.0, 0.0)
+    body.velocity = Vector8(0.0)
+    body.inverse_mass = Matrix8()
+    if tree >= 0 and model.tree[tree].dof_count > 0:
+        body.reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+        first = model.tree[tree].first_dof
         block = model.tree[tree].first_block
-        first = Vector4(0.0, 0.0, 0.0, 0.0)
-        second = Vector4(0.0, 0.0, 0.0, 0.0)
-        dof = Int32(0)
-        while dof < model.tree[tree].dof_count:
-            first += jacobian[dof] * scratch.block_inverse_mass[world, block]
-            if blocks > 1:
-                second += jacobian[dof] * scratch.block_inverse_mass[world, block + 1]
-            block += blocks
-            dof += 1
-        result = Vector8(first[0], first[1], first[2], first[3], second[0], second[1], second[2], second[3])
-    return result
-
-
-@func
-def small_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vector8:
-    """Velocity of a small tree, -1 for none."""
-    result = Vector8(0.0)
-    if tree >= 0:
-        first = model.tree[tree].first_dof
-        dof = Int32(0)
-        while dof < model.tree[tree].dof_count:
-            result[dof] = state.dof_velocity[world, first + dof]
-            dof += 1
-    return result
+        for i in range(6):
+            left = scratch.block_inverse_mass[world, block + 2 * i]
+            right = scratch.block_inverse_mass[world, block + 2 * i + 1]
+            body.velocity[i] = state.dof_velocity[world, first + i]
+            body.inverse_mass[i] = Vector8(left[0], left[1], left[2], left[3], right[0], right[1], 0.0, 0.0)
+    return body
 
 
 @func
@@ -154,96 +117,181 @@ def write_row_numbers(
 
 
 @func
-def write_small_matrices(
-    couplings: Couplings,
-    world: Int32,
-    patch: Int32,
-    contact: Int32,
-    row: Int32,
-    mass: real,
-    jacobian_a: Vector8,
-    jacobian_b: Vector8,
-    response_a: Vector8,
-    response_b: Vector8,
-):
-    """Write the weighted Jacobian and the response of a row of effective mass `mass`."""
-    if row == 0:
-        couplings.patch[world, patch].normal_response_a[contact] = response_a
-        couplings.patch[world, patch].normal_response_b[contact] = response_b
-        for dof in range(8):
-            couplings.patch[world, patch].normal_weighted_a[dof, contact] = mass * jacobian_a[dof]
-            couplings.patch[world, patch].normal_weighted_b[dof, contact] = mass * jacobian_b[dof]
-    else:
-        i = 2 * contact + row - 1
-        couplings.patch[world, patch].friction_response_a[i] = response_a
-        couplings.patch[world, patch].friction_response_b[i] = response_b
-        for dof in range(8):
-            couplings.patch[world, patch].friction_weighted_a[dof, i] = mass * jacobian_a[dof]
-            couplings.patch[world, patch].friction_weighted_b[dof, i] = mass * jacobian_b[dof]
+def rigid_jacobian(arm: Vector3, direction: Vector3) -> Vector8:
+    """How the velocities of a rigid body move the end of an arm along a direction, in world axes."""
+    moment = wp.cross(arm, direction)
+    return Vector8(
+        moment[0], moment[1], moment[2], direction[0], direction[1], direction[2], real(0.0), real(0.0)
+    )
 
 
 @func
-def write_small_contact(
+def write_small_jacobians(
+    couplings: Couplings,
+    terms: ContactTerms,
+    reference_a: Vector3,
+    reference_b: Vector3,
+    world: Int32,
+    patch: Int32,
+    contact: Int32,
+):
+    """Write the Jacobians of a contact between rigid bodies in place of responses and weighted Jacobians."""
+    row = Int32(0)
+    while row < 3:
+        direction = row_direction(terms, row)
+        jacobian_a = rigid_jacobian(terms.point_a - reference_a, direction)
+        jacobian_b = rigid_jacobian(terms.point_b - reference_b, -direction)
+        i = 2 * contact + row - 1
+        if row == 0:
+            couplings.patch[world, patch].normal_response_a[contact] = jacobian_a
+            couplings.patch[world, patch].normal_response_b[contact] = jacobian_b
+            for dof in range(6):
+                couplings.patch[world, patch].normal_weighted_a[dof, contact] = jacobian_a[dof]
+                couplings.patch[world, patch].normal_weighted_b[dof, contact] = jacobian_b[dof]
+        else:
+            couplings.patch[world, patch].friction_response_a[i] = jacobian_a
+            couplings.patch[world, patch].friction_response_b[i] = jacobian_b
+            for dof in range(6):
+                couplings.patch[world, patch].friction_weighted_a[dof, i] = jacobian_a[dof]
+                couplings.patch[world, patch].friction_weighted_b[dof, i] = jacobian_b[dof]
+        row += 1
+
+
+@func
+def write_responses_a(couplings: Couplings, world: Int32, patch: Int32, body: RigidBody):
+    """Turn the Jacobians of body a into responses, and add up what rows are to know of both bodies.
+
+    Until masses are known gains hold products of Jacobians and responses, shares the present velocities.
+    """
+    normal = couplings.patch[world, patch].normal_weighted_a
+    friction = couplings.patch[world, patch].friction_weighted_a
+    normal_response = couplings.patch[world, patch].normal_response_a * body.inverse_mass
+    friction_response = couplings.patch[world, patch].friction_response_a * body.inverse_mass
+    couplings.patch[world, patch].normal_response_a = normal_response
+    couplings.patch[world, patch].friction_response_a = friction_response
+    couplings.patch[world, patch].normal_gain += normal_response * normal
+    couplings.patch[world, patch].friction_gain += friction_response * friction
+    couplings.patch[world, patch].normal_share = couplings.patch[world, patch].normal_share + combination(
+        normal, body.velocity
+    )
+    couplings.patch[world, patch].friction_share = couplings.patch[world, patch].friction_share + combination(
+        friction, body.velocity
+    )
+
+
+@func
+def write_responses_b(couplings: Couplings, world: Int32, patch: Int32, body: RigidBody):
+    """As `write_responses_a`, for body b."""
+    normal = couplings.patch[world, patch].normal_weighted_b
+    friction = couplings.patch[world, patch].friction_weighted_b
+    normal_response = couplings.patch[world, patch].normal_response_b * body.inverse_mass
+    friction_response = couplings.patch[world, patch].friction_response_b * body.inverse_mass
+    couplings.patch[world, patch].normal_response_b = normal_response
+    couplings.patch[world, patch].friction_response_b = friction_response
+    couplings.patch[world, patch].normal_gain += normal_response * normal
+    couplings.patch[world, patch].friction_gain += friction_response * friction
+    couplings.patch[world, patch].normal_share = couplings.patch[world, patch].normal_share + combination(
+        normal, body.velocity
+    )
+    couplings.patch[world, patch].friction_share = couplings.patch[world, patch].friction_share + combination(
+        friction, body.velocity
+    )
+
+
+@func
+def weigh(couplings: Couplings, world: Int32, patch: Int32, normal_mass: Vector4, friction_mass: Vector8):
+    """Multiply Jacobians and gains by the effective masses of their rows."""
+    for dof in range(6):
+        couplings.patch[world, patch].normal_weighted_a[dof] = wp.cw_mul(
+            normal_mass, couplings.patch[world, patch].normal_weighted_a[dof]
+        )
+        couplings.patch[world, patch].normal_weighted_b[dof] = wp.cw_mul(
+            normal_mass, couplings.patch[world, patch].normal_weighted_b[dof]
+        )
+        couplings.patch[world, patch].friction_weighted_a[dof] = wp.cw_mul(
+            friction_mass, couplings.patch[world, patch].friction_weighted_a[dof]
+        )
+        couplings.patch[world, patch].friction_weighted_b[dof] = wp.cw_mul(
+            friction_mass, couplings.patch[world, patch].friction_weighted_b[dof]
+        )
+    for i in range(4):
+        couplings.patch[world, patch].normal_gain[i] = wp.cw_mul(
+            normal_mass, couplings.patch[world, patch].normal_gain[i]
+        )
+    for i in range(8):
+        couplings.patch[world, patch].friction_gain[i] = wp.cw_mul(
+            friction_mass, couplings.patch[world, patch].friction_gain[i]
+        )
+
+
+@func
+def write_small_rows(
     settings: Settings,
     model: Model,
     state: State,
     scratch: Scratch,
     shapes: Shapes,
+    contacts: Contacts,
     couplings: Couplings,
-    terms: ContactTerms,
     world: Int32,
     patch: Int32,
-    contact: Int32,
+    tree_a: Int32,
+    tree_b: Int32,
 ):
-    """Write the three rows of a contact between small trees."""
+    """Write all rows of a patch of rigid bodies."""
+    body_a = rigid_body(model, state, scratch, world, tree_a)
+    body_b = rigid_body(model, state, scratch, world, tree_b)
+    first = couplings.patch[world, patch].first_contact
+    count = couplings.patch[world, patch].count
+    contact = Int32(0)
+    while contact < count:
+        terms = contact_terms(settings, state, shapes, contacts, world, first + contact)
+        couplings.terms[world, contact] = terms
+        write_small_jacobians(couplings, terms, body_a.reference, body_b.reference, world, patch, contact)
+        contact += 1
     place = couplings.patch[world, patch].place
-    velocity_a = small_velocity(model, state, world, terms.ends[0])
-    velocity_b = small_velocity(model, state, world, terms.ends[2])
+    if place[1] > 0:
+        write_responses_a(couplings, world, patch, body_a)
+    if place[3] > 0:
+        write_responses_b(couplings, world, patch, body_b)
+    normal_mass = Vector4(0.0, 0.0, 0.0, 0.0)
+    friction_mass = Vector8(0.0)
     row = Int32(0)
-    while row < 3:
-        direction = row_direction(terms, row)
-        jacobian_a = small_jacobian(
-            model, state, scratch, world, terms.ends[0], terms.ends[1], terms.point_a, direction
-        )
-        jacobian_b = small_jacobian(
-            model, state, scratch, world, terms.ends[2], terms.ends[3], terms.point_b, -direction
-        )
-        response_a = small_response(model, scratch, world, terms.ends[0], jacobian_a)
-        response_b = small_response(model, scratch, world, terms.ends[2], jacobian_b)
-        velocity = wp.dot(jacobian_a, velocity_a) + wp.dot(jacobian_b, velocity_b)
-        inverse_mass = wp.dot(jacobian_a, response_a) + wp.dot(jacobian_b, response_b)
+    while row < 3 * count:
+        contact = row // 3
+        part = row % 3
+        i = 2 * contact + part - 1
+        velocity = couplings.patch[world, patch].normal_share[contact]
+        inverse_mass = couplings.patch[world, patch].normal_gain[contact, contact]
+        if part > 0:
+            velocity = couplings.patch[world, patch].friction_share[i]
+            inverse_mass = couplings.patch[world, patch].friction_gain[i, i]
         numbers = write_row_numbers(
-            settings, shapes, couplings, terms, world, patch, contact, row, velocity, inverse_mass
-        )
-        write_small_matrices(
-            couplings, world, patch, contact, row, numbers[0], jacobian_a, jacobian_b, response_a, response_b
-        )
-        if numbers[1] != 0.0:
-            if place[1] > 0:
-                add_change(scratch, world, place[0], numbers[1] * response_a)
-            if place[3] > 0:
-                add_change(scratch, world, place[2], numbers[1] * response_b)
+            settings, shapes, couplings, couplings.terms[world, contact], world, patch, contact, part, velocity,
+            inverse_mass,
+        )  # fmt: skip
+        if part > 0:
+            friction_mass[i] = numbers[0]
+        else:
+            normal_mass[contact] = numbers[0]
         row += 1
+    weigh(couplings, world, patch, normal_mass, friction_mass)
+    start_small_patch(scratch, couplings, world, patch)
 
 
 @func
-def write_small_gains(couplings: Couplings, world: Int32, patch: Int32):
-    """Write by how much each impulse of a patch lowers those wanted along the rows after it."""
-    for i in range(4):
-        couplings.patch[world, patch].normal_gain[i] = combination(
-            couplings.patch[world, patch].normal_weighted_a,
-            couplings.patch[world, patch].normal_response_a[i],
-        ) + combination(
-            couplings.patch[world, patch].normal_weighted_b,
-            couplings.patch[world, patch].normal_response_b[i],
+def start_small_patch(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32):
+    """Give the bodies of a patch the impulses that it starts from."""
+    place = couplings.patch[world, patch].place
+    normal = couplings.patch[world, patch].normal_impulse
+    friction = couplings.patch[world, patch].friction_impulse
+    if place[1] > 0:
+        moved = push_of_normals(couplings.patch[world, patch].normal_response_a, normal) + combination(
+            couplings.patch[world, patch].friction_response_a, friction
         )
-    row = Int32(0)
-    while row < 8:
-        couplings.patch[world, patch].friction_gain[row] = combination(
-            couplings.patch[world, patch].friction_weighted_a,
-            couplings.patch[world, patch].friction_response_a[row],
-        ) + combination(
-            couplings.patch[world, patch].friction_weighted_b,
-            couplings.patch[world, patch].friction_response_b[row],
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = push_of_normals(couplings.patch[world, patch].normal_response_b, normal) + combination(
+            couplings.patch[world, patch].friction_response_b, friction
         )
-        row += 1
+        add_change(scratch, world, place[2], moved)

@@ -6,7 +6,7 @@ from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_terms import contact_terms, keep_contact_impulse
 from carom.physics.couplings import tree_blocks
 from carom.physics.long_patch_rows import clear_run, write_long_contact
-from carom.physics.patch_rows import write_small_contact, write_small_gains
+from carom.physics.patch_rows import write_small_rows
 
 
 @func
@@ -48,22 +48,19 @@ def write_patch(
     couplings.patch[world, patch].run = run
     couplings.patch[world, patch].first_contact = first_contact
     couplings.patch[world, patch].count = count
-    if run >= 0:
-        clear_run(couplings, world, patch)
+    if run < 0:
+        write_small_rows(
+            settings, model, state, scratch, shapes, contacts, couplings, world, patch, a, b
+        )
+        return
+    clear_run(couplings, world, patch)
     contact = Int32(0)
     while contact < count:
         terms = contact_terms(settings, state, shapes, contacts, world, first_contact + contact)
-        if run >= 0:
-            write_long_contact(
-                settings, model, state, scratch, shapes, couplings, terms, world, patch, contact, temporary
-            )
-        else:
-            write_small_contact(
-                settings, model, state, scratch, shapes, couplings, terms, world, patch, contact
-            )
+        write_long_contact(
+            settings, model, state, scratch, shapes, couplings, terms, world, patch, contact, temporary
+        )
         contact += 1
-    if run < 0:
-        write_small_gains(couplings, world, patch)
 
 
 @func

@@ -9,7 +9,7 @@ from carom.physics.contact_terms import contact_friction, contact_terms
 from carom.physics.couplings import has_room, tree_blocks
 from carom.physics.long_patches import RUN_PER_BLOCK
 from carom.physics.patch_writing import keep_patch_impulses, write_patch
-from carom.physics.patches import SMALL
+from carom.physics.patch_rows import is_rigid
 
 
 @func
@@ -54,7 +54,7 @@ def write_units(
         if count > 1 and not twists:
             blocks = tree_blocks(model, a) + tree_blocks(model, b)
             run = Int32(-1)
-            if tree_blocks(model, a) > SMALL or tree_blocks(model, b) > SMALL:
+            if not is_rigid(model, a) or not is_rigid(model, b):
                 run = next_run + 0
                 next_run += RUN_PER_BLOCK * blocks
                 if next_run > couplings.run_block.shape[1] or not has_room(model, couplings, place, a, b):
