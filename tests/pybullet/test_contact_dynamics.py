@@ -52,7 +52,8 @@ def test_the_axes_are_those_of_the_link(client: int) -> None:
 
 def creep(**dynamics: Any) -> float:
     """Speed at which a box that friction holds creeps down its slope, nearly slipping."""
-    box = box_on_floor(2.4, **dynamics)
+    # With rolling friction the solver does not start from what held the box before.
+    box = box_on_floor(2.4, rollingFriction=1e-9, **dynamics)
     step(1200)
     before = p.getBasePositionAndOrientation(box)[0][0]
     step(1200)

@@ -153,9 +153,8 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    contact_impulse: (
-        Vector4Rows  # of the last substep: normal, along directions 1 and 2; normal of the one before
-    )
+    # Of the last substep: normal, along directions 1 and 2; substeps for which no step starts from them.
+    contact_impulse: Vector4Rows
     contact_age: IntRows  # substeps
     count_contacts: IntRows  # see its columns in `collision.manifold`
 
@@ -197,7 +196,11 @@ class Patch:
     count: Int32
     friction: Vector4  # coefficients
 
-    # Of small trees.
+    # Of rigid bodies: impulses before a sweep, and the direction in which they go on after it.
+    normal_before: Vector4
+    normal_search: Vector4
+    friction_before: Vector8
+    friction_search: Vector8
     normal_weighted_a: Matrix84
     normal_weighted_b: Matrix84
     normal_response_a: Matrix48
@@ -266,7 +269,8 @@ class Couplings:
 
     tree_first_constraint: IntRows  # islands as linked lists that start at their root
     tree_first_contact: IntRows
-    tree_touches: IntRows  # whether it has contacts itself
+    tree_touches: IntRows  # whether it has contacts itself, and which: see `physics.calm`
+    tree_restless: IntRows  # of the root of an island: whether it is not calm, see `physics.calm`
     constraint_next: IntRows
     contact_next: IntRows
     run_first: IntRows  # first contact of each manifold, in the order in which they are relaxed

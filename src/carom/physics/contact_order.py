@@ -1,8 +1,7 @@
 """The order in which an island's manifolds are relaxed.
 
 A sweep that stops early depends on the order of its rows, so Bullet's motion needs Bullet's order: it
-sorts all manifolds by island with a quicksort that does not keep the order of equals. Contacts that start
-from their last impulses, which Bullet's never do, are left in order: stacks then tremble less.
+sorts all manifolds by island with a quicksort that does not keep the order of equals.
 """
 
 import warp as wp
@@ -116,8 +115,7 @@ def list_contacts(
         if can_move(model, tree):
             couplings.tree_first_contact[world, state.tree_island[world, tree]] = tree
     run = gather_runs(model, state, shapes, contacts, couplings, world)
-    if settings.contact_warm_starting == 0.0:
-        sort_runs(couplings, world, run)
+    sort_runs(couplings, world, run)
     for tree in range(settings.tree_count):
         couplings.tree_first_contact[world, tree] = NONE
     while run > 0:

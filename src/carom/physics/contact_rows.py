@@ -17,7 +17,7 @@ from carom.physics.contact_terms import (
     keep_contact_impulse,
     normal_change,
 )
-from carom.physics.couplings import begin_with, write_pair_jacobian, write_row
+from carom.physics.couplings import write_pair_jacobian, write_row
 
 _UNBOUNDED = real(1e10)
 
@@ -93,8 +93,6 @@ def add_contact_rows(
             softness = terms.softness
         write_row(couplings, world, place, inverse_mass, change, softness, lower, upper, coefficient)
         couplings.coupling_bound[world, place] = row
-        if place < row + 3 and terms.start[0] > 0.0:
-            begin_with(scratch, couplings, world, place, terms.start[place - row])
     return Index4(end, block, 0, 0)
 
 
@@ -110,4 +108,5 @@ def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32
         couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
         couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
         couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
+        Int32(1),
     )

@@ -9,6 +9,8 @@ from carom.model.structs import Settings, State
 # A contact slides whose friction is at least this share of the greatest, squared.
 _SLIDING = real(1.0 - 1e-9)
 _GREATEST_FRICTION = real(10.0)
+# Substeps after one that left a calm island unsolved in which nothing starts from its last impulses.
+COLD_SUBSTEPS = real(60.0)
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
 # Damping of links for which none is set, in contact with soft ones [N s/m].
 _DEFAULT_DAMPING = 0.1
@@ -105,24 +107,25 @@ def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32,
 
 
 @func
-def starting_impulse(settings: Settings, last: Vector4) -> Vector3:
-    """Impulses along the normal and both friction directions that the solver starts from.
-
-    A contact starts from the lesser of its last two normal impulses: at rest they are alike, and the
-    impulse of an impact, which will not be needed again, is not among them.
-    """
-    normal = settings.contact_warm_starting * wp.min(last[0], last[3])
-    if normal <= 0.0:
-        return Vector3(0.0, 0.0, 0.0)
-    share = normal / last[0]
-    return Vector3(normal, share * last[1], share * last[2])
+def starting_impulse(share: real, last: Vector4) -> Vector3:
+    """A share of the last impulses along the normal and both friction directions."""
+    return Vector3(share * last[0], share * last[1], share * last[2])
 
 
 @func
 def contact_terms(
-    settings: Settings, state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
+    settings: Settings,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    world: Int32,
+    contact: Int32,
+    share: real,
 ) -> ContactTerms:
-    """Everything about a contact that its rows depend on; its friction directions become scaled ones."""
+    """Everything about a contact that its rows depend on; its friction directions become scaled ones.
+
+    It starts from a `share` of its last impulses.
+    """
     pair = contacts.contact_shapes[world, contact]
     a = pair[2]
     b = pair[3]
@@ -147,7 +150,7 @@ def contact_terms(
     terms.friction = contact_friction(shapes, a, b)
     terms.softness = soft[0]
     terms.erp = soft[1]
-    terms.start = starting_impulse(settings, contacts.contact_impulse[world, contact])
+    terms.start = starting_impulse(share, contacts.contact_impulse[world, contact])
     terms.ignored = Int32(0)
     if terms.distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
         terms.ignored = Int32(1)
@@ -162,14 +165,31 @@ def friction_change(settings: Settings, velocity: real, drift: Vector3, directio
 
 @func
 def keep_contact_impulse(
-    contacts: Contacts, world: Int32, contact: Int32, normal: real, first: real, second: real, friction: real
+    contacts: Contacts,
+    world: Int32,
+    contact: Int32,
+    normal: real,
+    first: real,
+    second: real,
+    friction: real,
+    solved: Int32,
 ):
     """Report the impulses of a contact; one that slides begins to stick where it is now.
 
-    `first` and `second` are those along the friction directions, `friction` is the lateral coefficient.
+    Args:
+        contacts: The contacts.
+        world: The world.
+        contact: The contact.
+        normal: Impulse along the normal.
+        first: That along the first friction direction.
+        second: That along the second.
+        friction: Coefficient of lateral friction.
+        solved: 0 if the solver had to leave off before a calm island was solved.
     """
-    before = contacts.contact_impulse[world, contact][0]
-    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, before)
+    rest = wp.max(contacts.contact_impulse[world, contact][3] - 1.0, 0.0)
+    if solved == 0:
+        rest = real(0.0) + COLD_SUBSTEPS
+    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, rest)
     bound = normal * friction
     if first * first + second * second >= bound * bound * _SLIDING:
         contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]

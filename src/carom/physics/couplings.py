@@ -211,15 +211,6 @@ def relax_within(
 
 
 @func
-def begin_with(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, impulse: real):
-    """Let a row that has just been written start from an impulse."""
-    if couplings.coupling_terms[world, row][ROW_EFFECTIVE_MASS] > 0.0:
-        couplings.coupling_terms[world, row][ROW_IMPULSE] = impulse
-        place = couplings.coupling_place[world, row]
-        push_row(scratch, couplings, world, place, couplings.coupling_start[world, row], impulse)
-
-
-@func
 def relax_coupling(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
     """As `relax_within`, with the row's own bounds."""
     terms = couplings.coupling_terms[world, row]

@@ -10,6 +10,7 @@ from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstra
 from carom.model.real import Int32, func
 from carom.model.structs import Model, Settings, State
 from carom.physics.activity import can_move, is_asleep, link_moves
+from carom.physics.calm import TOUCHES, TOUCHES_BADLY, find_calm, is_plain
 from carom.physics.contact_order import list_contacts
 
 _NONE = wp.constant(-1)
@@ -36,6 +37,12 @@ def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
 
 
 @func
+def note_touch(couplings: Couplings, world: Int32, tree: Int32, touches: Int32):
+    """Note that a tree has a contact."""
+    couplings.tree_touches[world, tree] = wp.max(couplings.tree_touches[world, tree], touches)
+
+
+@func
 def build_islands(
     settings: Settings,
     model: Model,
@@ -58,10 +65,13 @@ def build_islands(
         pair = contacts.contact_shapes[world, contact]
         moves_a = link_moves(model, pair[2])
         moves_b = link_moves(model, pair[3])
+        touches = Int32(TOUCHES)
+        if not is_plain(shapes, contacts, world, contact):
+            touches = Int32(TOUCHES_BADLY)
         if moves_a:
-            couplings.tree_touches[world, shapes.shape_tree[pair[0]]] = 1
+            note_touch(couplings, world, shapes.shape_tree[pair[0]], touches)
         if moves_b:
-            couplings.tree_touches[world, shapes.shape_tree[pair[1]]] = 1
+            note_touch(couplings, world, shapes.shape_tree[pair[1]], touches)
         if moves_a and moves_b:
             unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
     for user in range(settings.user_count):
@@ -79,6 +89,7 @@ def build_islands(
             couplings.tree_first_constraint[world, root] = constraint
         constraint -= 1
     list_contacts(settings, model, state, shapes, contacts, couplings, world)
+    find_calm(settings, model, state, couplings, world)
 
 
 @func

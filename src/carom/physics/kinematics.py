@@ -60,6 +60,20 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
 
 
 @func
+def base_subspace(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """What one unit of each dof of a free base does: it turns about an axis, then moves along one."""
+    zero = Vector3(0.0, 0.0, 0.0)
+    first = model.tree[tree].first_velocity
+    for axis in range(3):
+        unit = Vector3(0.0, 0.0, 0.0)
+        unit[axis] = 1.0
+        scratch.dof[world, first + axis].angular = unit
+        scratch.dof[world, first + axis].linear = zero
+        scratch.dof[world, first + 3 + axis].angular = zero
+        scratch.dof[world, first + 3 + axis].linear = unit
+
+
+@func
 def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world: Int32, tree: Int32):
     """What one unit of each active dof does to its link: angular and linear velocity.
 
@@ -70,14 +84,7 @@ def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world
     zero = Vector3(0.0, 0.0, 0.0)
 
     if model.tree[tree].fixed == 0:
-        first = model.tree[tree].first_velocity
-        for axis in range(3):
-            unit = Vector3(0.0, 0.0, 0.0)
-            unit[axis] = 1.0
-            scratch.dof[world, first + axis].angular = unit
-            scratch.dof[world, first + axis].linear = zero
-            scratch.dof[world, first + 3 + axis].angular = zero
-            scratch.dof[world, first + 3 + axis].linear = unit
+        base_subspace(model, scratch, world, tree)
 
     for link in range(base, base + model.tree[tree].link_count):
         pose = poses[world, link]

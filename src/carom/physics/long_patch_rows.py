@@ -1,6 +1,6 @@
 """Writing the rows of patches of trees of any size; see `long_patches`."""
 
-from carom.model.blocks import add_multiple, combine4, combine8, fill_zero
+from carom.model.blocks import combine4, combine8, fill_zero
 from carom.model.contact_structs import Couplings, Shapes
 from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
@@ -120,10 +120,9 @@ def write_long_contact(
             model, state, scratch, couplings, world, terms.ends, terms.point_a, terms.point_b, direction,
             0.0 * direction, start,
         )  # fmt: skip
-        numbers = write_row_numbers(
+        mass = write_row_numbers(
             settings, shapes, couplings, terms, world, patch, contact, row, moved[1], moved[0]
         )
-        mass = numbers[0]
         if row == 0:
             write_normal_matrices(couplings, world, part_a, place[1], contact, mass, start)
             write_normal_matrices(couplings, world, part_b, place[3], contact, mass, start_b)
@@ -133,15 +132,4 @@ def write_long_contact(
             write_friction_matrices(couplings, world, part_a, place[1], line, mass, start)
             write_friction_matrices(couplings, world, part_b, place[3], line, mass, start_b)
             write_friction_gains(couplings, world, patch, line, mass, start)
-        if numbers[1] != 0.0:
-            if place[1] > 0:
-                add_multiple(
-                    scratch.delta_velocity, place[0], numbers[1], couplings.jacobian_response, start, world,
-                    place[1],
-                )  # fmt: skip
-            if place[3] > 0:
-                add_multiple(
-                    scratch.delta_velocity, place[2], numbers[1], couplings.jacobian_response, start_b, world,
-                    place[3],
-                )  # fmt: skip
         row += 1

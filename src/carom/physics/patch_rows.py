@@ -6,17 +6,8 @@ from carom.model.contact_structs import Contacts, ContactTerms, Couplings, Shape
 from carom.model.real import Int32, Matrix8, Vector3, Vector4, Vector8, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_terms import contact_terms, friction_change, normal_change
-from carom.physics.patches import add_change, combination, push_of_normals
+from carom.physics.patches import combination, push_patch
 from carom.physics.rows import inverse_or_off
-
-
-@func
-def is_rigid(model: Model, tree: Int32) -> bool:
-    """Whether a tree, -1 for none, is a rigid body, free to move or not to be moved at all."""
-    if tree < 0:
-        return True
-    dofs = model.tree[tree].dof_count
-    return dofs == 0 or (dofs == 6 and model.tree[tree].fixed == 0)
 
 
 @wp.struct
@@ -70,7 +61,7 @@ def write_row_numbers(
     row: Int32,
     velocity: real,
     inverse_mass: real,
-) -> Vector3:
+) -> real:
     """Write everything about a row of a contact but its matrices.
 
     Args:
@@ -86,7 +77,7 @@ def write_row_numbers(
         inverse_mass: Velocity that a unit impulse gives it.
 
     Returns:
-        Effective mass of the row, the impulse it starts from, 0.
+        Effective mass of the row.
     """
     if terms.ignored != 0:
         inverse_mass = real(0.0)
@@ -113,7 +104,7 @@ def write_row_numbers(
         couplings.patch[world, patch].friction_share[i] = change * mass
         couplings.patch[world, patch].friction_inverse_mass[i] = inverse_mass
         couplings.patch[world, patch].friction_impulse[i] = impulse
-    return Vector3(mass, impulse, 0.0)
+    return mass
 
 
 @func
@@ -237,15 +228,16 @@ def write_small_rows(
     patch: Int32,
     tree_a: Int32,
     tree_b: Int32,
+    share: real,
 ):
-    """Write all rows of a patch of rigid bodies."""
+    """Write all rows of a patch of rigid bodies; contacts start from a `share` of their last impulses."""
     body_a = rigid_body(model, state, scratch, world, tree_a)
     body_b = rigid_body(model, state, scratch, world, tree_b)
     first = couplings.patch[world, patch].first_contact
     count = couplings.patch[world, patch].count
     contact = Int32(0)
     while contact < count:
-        terms = contact_terms(settings, state, shapes, contacts, world, first + contact)
+        terms = contact_terms(settings, state, shapes, contacts, world, first + contact, share)
         couplings.terms[world, contact] = terms
         write_small_jacobians(couplings, terms, body_a.reference, body_b.reference, world, patch, contact)
         contact += 1
@@ -266,32 +258,17 @@ def write_small_rows(
         if part > 0:
             velocity = couplings.patch[world, patch].friction_share[i]
             inverse_mass = couplings.patch[world, patch].friction_gain[i, i]
-        numbers = write_row_numbers(
-            settings, shapes, couplings, couplings.terms[world, contact], world, patch, contact, part, velocity,
-            inverse_mass,
+        mass = write_row_numbers(
+            settings, shapes, couplings, couplings.terms[world, contact], world, patch, contact, part,
+            velocity, inverse_mass,
         )  # fmt: skip
         if part > 0:
-            friction_mass[i] = numbers[0]
+            friction_mass[i] = mass
         else:
-            normal_mass[contact] = numbers[0]
+            normal_mass[contact] = mass
         row += 1
     weigh(couplings, world, patch, normal_mass, friction_mass)
-    start_small_patch(scratch, couplings, world, patch)
-
-
-@func
-def start_small_patch(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32):
-    """Give the bodies of a patch the impulses that it starts from."""
-    place = couplings.patch[world, patch].place
-    normal = couplings.patch[world, patch].normal_impulse
-    friction = couplings.patch[world, patch].friction_impulse
-    if place[1] > 0:
-        moved = push_of_normals(couplings.patch[world, patch].normal_response_a, normal) + combination(
-            couplings.patch[world, patch].friction_response_a, friction
-        )
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_normals(couplings.patch[world, patch].normal_response_b, normal) + combination(
-            couplings.patch[world, patch].friction_response_b, friction
-        )
-        add_change(scratch, world, place[2], moved)
+    push_patch(
+        scratch, couplings, world, patch, couplings.patch[world, patch].normal_impulse,
+        couplings.patch[world, patch].friction_impulse,
+    )  # fmt: skip

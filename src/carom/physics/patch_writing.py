@@ -1,7 +1,7 @@
 """Making patches of contacts, and reporting what they did; see `patches`."""
 
 from carom.model.contact_structs import Contacts, Couplings, Patch, Shapes
-from carom.model.real import Index4, Int32, func
+from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_terms import contact_terms, keep_contact_impulse
 from carom.physics.couplings import tree_blocks
@@ -32,11 +32,13 @@ def write_patch(
     count: Int32,
     run: Int32,
     temporary: Int32,
+    share: real,
 ):
     """Write the rows of `count` contacts of the same two shapes.
 
-    `run` is where in `Couplings.run_block` their matrices go, -1 if their trees are small; the blocks
-    from `temporary` on of a row over two trees are free.
+    `run` is where in `Couplings.run_block` their matrices go, -1 if they are rigid bodies; the
+    blocks from `temporary` on of a row over two trees are free. Contacts of rigid bodies start from a `share`
+    of their last impulses.
     """
     pair = contacts.contact_shapes[world, first_contact]
     a = shapes.shape_tree[pair[0]]
@@ -50,13 +52,13 @@ def write_patch(
     couplings.patch[world, patch].count = count
     if run < 0:
         write_small_rows(
-            settings, model, state, scratch, shapes, contacts, couplings, world, patch, a, b
+            settings, model, state, scratch, shapes, contacts, couplings, world, patch, a, b, share
         )
         return
     clear_run(couplings, world, patch)
     contact = Int32(0)
     while contact < count:
-        terms = contact_terms(settings, state, shapes, contacts, world, first_contact + contact)
+        terms = contact_terms(settings, state, shapes, contacts, world, first_contact + contact, real(0.0))
         write_long_contact(
             settings, model, state, scratch, shapes, couplings, terms, world, patch, contact, temporary
         )
@@ -64,13 +66,13 @@ def write_patch(
 
 
 @func
-def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, patch: Int32):
-    """Report the impulses of the contacts of a patch."""
+def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, patch: Int32, solved: Int32):
+    """Report the impulses of the contacts of a patch, and whether its island was `solved`."""
     normal = couplings.patch[world, patch].normal_impulse
     lateral = couplings.patch[world, patch].friction_impulse
     friction = couplings.patch[world, patch].friction
     first = couplings.patch[world, patch].first_contact
     for i in range(couplings.patch[world, patch].count):
         keep_contact_impulse(
-            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i]
+            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], solved
         )

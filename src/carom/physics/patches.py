@@ -61,6 +61,24 @@ def push_of_normals(response: Matrix48, impulse: Vector4) -> Vector8:
 
 
 @func
+def push_patch(
+    scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32, normal: Vector4, friction: Vector8
+):
+    """Apply impulses along the rows of a patch of rigid bodies."""
+    place = couplings.patch[world, patch].place
+    if place[1] > 0:
+        moved = push_of_normals(couplings.patch[world, patch].normal_response_a, normal) + combination(
+            couplings.patch[world, patch].friction_response_a, friction
+        )
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = push_of_normals(couplings.patch[world, patch].normal_response_b, normal) + combination(
+            couplings.patch[world, patch].friction_response_b, friction
+        )
+        add_change(scratch, world, place[2], moved)
+
+
+@func
 def greatest_square(change: Vector4) -> real:
     """The greatest of the squares."""
     square = wp.cw_mul(change, change)

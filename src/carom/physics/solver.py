@@ -9,6 +9,8 @@ from carom.model.codes import USER
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.calm import CALM_PRECISION, CALM_SWEEPS
+from carom.physics.conjugate import go_on, remember_impulses
 from carom.physics.couplings import has_room
 from carom.physics.joint_solver import joint_constraint_rows, keep_row_results
 from carom.physics.quarantine import OVERFLOW
@@ -82,29 +84,44 @@ def solve_island(
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
     units = Index4(0, 0, 0, 0)
+    share = real(0.0)
+    threshold = settings.residual_threshold
+    most = settings.iterations
+    if couplings.tree_restless[world, root] == 0:
+        share = settings.contact_warm_starting
+        threshold = threshold * CALM_PRECISION
+        most = most * CALM_SWEEPS
     if first_contact >= 0:
         units = write_units(
             model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
-            Index4(made[1], made[2], 0, 0),
+            Index4(made[1], made[2], 0, 0), share,
         )  # fmt: skip
     if visits < 0 or units[0] < 0:
         state.fault_tree[world, 0] = OVERFLOW
         return
 
     residual = real(0.0)
+    square = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
     if visits > 0 or first_contact >= 0:
         searching = Int32(1)
     while searching == 1:
+        if share > 0.0:
+            remember_impulses(couplings, world, units[1])
         residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
         if first_contact >= 0:
             residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
         sweep += 1
-        if residual <= settings.residual_threshold or sweep >= settings.iterations:
+        if residual <= threshold or sweep >= most:
             searching = Int32(0)
+        elif share > 0.0:
+            square = go_on(scratch, couplings, world, units[1], square)
     keep_row_results(model, settings, state, scratch, world, root, made[0], sweep, residual)
-    keep_unit_impulses(contacts, couplings, world, units[0])
+    solved = Int32(1)
+    if share > 0.0 and residual > settings.residual_threshold:
+        solved = Int32(0)
+    keep_unit_impulses(contacts, couplings, world, units[0], solved)
     keep_constraint_impulses(model, users, couplings, world, root)
 
 

@@ -23,6 +23,7 @@ from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd, joint_damping
 from carom.physics.quarantine import keep_start, return_to_start
+from carom.physics.single_body import is_single_body, move_single_body
 
 
 @func
@@ -32,6 +33,28 @@ def begin_step(settings: Settings, model: Model, state: State, scratch: Scratch,
     for tree in range(settings.tree_count):
         keep_start(model, state, scratch, world, tree)
         joint_damping(model, state, world, tree)
+
+
+@func
+def move_tree(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
+):
+    """As `free_motion`, for any tree that is awake."""
+    explicit_pd(model, state, world, tree)
+    forward_kinematics(model, state, state.link_pose, world, tree)
+    motion_subspaces(model, state.link_pose, scratch, world, tree)
+    link_inertias(model, scratch, world, tree)
+    link_bias_forces(model, settings, state, scratch, world, tree, FREE_MOTION)
+    generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
+    composite_inertia(model, scratch, world, tree)
+    factorise(model, scratch, world, tree)
+    solve(model, scratch, world, tree)
+    if model.tree[tree].sensor_count > 0:
+        measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
+        clear_constraint_forces(model, scratch, world, tree)
+    update_velocities(model, settings, state, scratch, world, tree)
+    if pushed:
+        invert(model, scratch, world, tree)
 
 
 @func
@@ -47,24 +70,13 @@ def free_motion(
     """Velocities after the substep if there were no constraints; what they need if something is `pushed`."""
     if is_asleep(state, world, tree):
         return
-    explicit_pd(model, state, world, tree)
-    forward_kinematics(model, state, state.link_pose, world, tree)
-    motion_subspaces(model, state.link_pose, scratch, world, tree)
-    link_inertias(model, scratch, world, tree)
-    link_bias_forces(model, settings, state, scratch, world, tree, FREE_MOTION)
-    generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
-    composite_inertia(model, scratch, world, tree)
-    factorise(model, scratch, world, tree)
-    solve(model, scratch, world, tree)
-    if model.tree[tree].sensor_count > 0:
-        measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
-        clear_constraint_forces(model, scratch, world, tree)
-    update_velocities(model, settings, state, scratch, world, tree)
+    if is_single_body(model, tree):
+        move_single_body(model, settings, state, scratch, world, tree, pushed)
+    else:
+        move_tree(model, settings, state, scratch, world, tree, pushed)
     if has_stirred(state, world, tree):
         # Gravity and forces act on it from the next substep on.
         stop(model, state, world, tree)
-    if pushed:
-        invert(model, scratch, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
 
 

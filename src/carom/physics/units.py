@@ -1,15 +1,15 @@
 """What the sweeps of an island relax, in order: patches, and contacts by themselves."""
 
 from carom.model.contact_structs import Contacts, Couplings, Shapes
-from carom.model.real import Index4, Int32, func
+from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.calm import is_rigid
 from carom.physics.contact_order import same_shapes
 from carom.physics.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.physics.contact_terms import contact_friction, contact_terms
 from carom.physics.couplings import has_room, tree_blocks
 from carom.physics.long_patches import RUN_PER_BLOCK
 from carom.physics.patch_writing import keep_patch_impulses, write_patch
-from carom.physics.patch_rows import is_rigid
 
 
 @func
@@ -24,10 +24,12 @@ def write_units(
     world: Int32,
     first_contact: Int32,
     place: Index4,
+    share: real,
 ) -> Index4:
     """Write the rows of an island's contacts, from the free place on.
 
-    Several contacts of two shapes that neither roll nor spin against friction make a patch.
+    Those of rigid bodies start from a `share` of their last impulses. Several contacts of two shapes that
+    neither roll nor spin against friction make a patch.
 
     Returns:
         Number of units, negative if some did not fit; number of patches; 1 if there is rolling or
@@ -61,7 +63,7 @@ def write_units(
                     return Index4(-1, patches, torsion, 0)
             write_patch(
                 settings, model, state, scratch, shapes, contacts, couplings, world, patches, contact, count,
-                run, place[1],
+                run, place[1], share,
             )  # fmt: skip
             couplings.unit_code[world, units] = -1 - patches
             patches += 1
@@ -71,7 +73,7 @@ def write_units(
             while i < count:
                 if not has_room(model, couplings, place, a, b):
                     return Index4(-1, patches, torsion, 0)
-                terms = contact_terms(settings, state, shapes, contacts, world, contact + i)
+                terms = contact_terms(settings, state, shapes, contacts, world, contact + i, real(0.0))
                 place = add_contact_rows(
                     settings, model, state, scratch, shapes, contacts, couplings, terms, world, contact + i,
                     place[0], place[1],
@@ -84,13 +86,13 @@ def write_units(
 
 
 @func
-def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32):
-    """Report the impulses of an island's contacts."""
+def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32, solved: Int32):
+    """Report the impulses of an island's contacts, and whether it was `solved`."""
     unit = Int32(0)
     while unit < units:
         code = couplings.unit_code[world, unit]
         if code < 0:
-            keep_patch_impulses(contacts, couplings, world, -1 - code)
+            keep_patch_impulses(contacts, couplings, world, -1 - code, solved)
         else:
             keep_contact_impulses(contacts, couplings, world, code)
         unit += 1
