@@ -113,7 +113,7 @@ def bequeath(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row:
     else:
         contacts.contact_anchor_a[world, row] = contacts.contact_local_a[world, row]
         contacts.contact_anchor_b[world, row] = contacts.contact_local_b[world, row]
-        contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 1.0)
+        contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
         contacts.contact_age[world, row] = 0
 
 

@@ -153,7 +153,7 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    # Of the last substep: normal, along directions 1 and 2; substeps for which no step starts from them.
+    # Of the last substep: normal, along directions 1 and 2; then what `calm.next_trust` says.
     contact_impulse: Vector4Rows
     contact_age: IntRows  # substeps
     count_contacts: IntRows  # see its columns in `collision.manifold`

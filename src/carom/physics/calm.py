@@ -5,13 +5,15 @@ instead of fifty. Bullet starts from nothing in every step, and gets nearly ther
 contacts are new, soft, alone or have rolling friction, or joints are involved, contacts start from nothing,
 and the motion is Bullet's.
 
-A start from impulses that were not quite right adds errors up over the steps, and stacks tremble. So an
-island that all sweeps were too few for goes on as in Bullet for a while.
+A start from impulses that were not quite right would add errors up over the steps, and stacks would tremble.
+So what could not be solved is done again as in Bullet, and the next attempt comes later.
 """
+
+import warp as wp
 
 from carom.collision.manifold import THERE
 from carom.model.contact_structs import Contacts, Couplings, Shapes
-from carom.model.real import Int32, func, real
+from carom.model.real import Int32, Vector3, func, real
 from carom.model.structs import Model, Settings, State
 from carom.physics.activity import is_asleep
 from carom.physics.contact_order import same_shapes
@@ -19,11 +21,25 @@ from carom.physics.contact_order import same_shapes
 # What `Couplings.tree_touches` says of a tree: it has contacts, and some of them are not plain.
 TOUCHES, TOUCHES_BADLY = 1, 2
 # Sum of squared velocities of a body at rest, at most [m²/s², rad²/s²].
-REST = real(0.05)
+REST = real(2e-4)
 # Share of `residual_threshold` that ends the sweeps of a calm island.
 CALM_PRECISION = real(1e-4)
 # How many times the usual sweeps it may take; a few are enough but for those after it has come to rest.
-CALM_SWEEPS = 2
+CALM_SWEEPS = 4
+
+
+# How the search for the impulses of a contact went: it was not in a calm island, or that was solved or not.
+NOT_CALM, SOLVED, UNSOLVED = 0, 1, 2
+# Steps without an attempt after one that failed.
+PAUSE = real(60.0)
+
+
+@func
+def next_trust(trust: real, outcome: Int32) -> real:
+    """Whether a step may start from the last impulses of a contact: if 1, to which each step adds one."""
+    if outcome == UNSOLVED:
+        return 1.0 - PAUSE
+    return wp.min(trust + 1.0, 1.0)
 
 
 @func
@@ -37,18 +53,19 @@ def is_rigid(model: Model, tree: Int32) -> bool:
 
 @func
 def has_plain_contacts(shapes: Shapes, link: Int32) -> bool:
-    """Whether a link is rigid in contact and knows no friction but lateral one."""
+    """Whether a link is rigid in contact and knows but lateral friction, alike in all directions."""
     return (
         shapes.link_stiffness[link] < 0.0
         and shapes.link_rolling_friction[link] == 0.0
         and shapes.link_spinning_friction[link] == 0.0
+        and shapes.link_anisotropy[link] == Vector3(1.0, 1.0, 1.0)
     )
 
 
 @func
 def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
     """Whether a contact was there before, in a patch that can be solved, and neither rolls nor gives."""
-    if contacts.contact_impulse[world, contact][3] > 0.0:
+    if contacts.contact_impulse[world, contact][3] < 1.0:
         return False
     pair = contacts.contact_shapes[world, contact]
     after = contact + 1

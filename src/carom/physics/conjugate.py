@@ -9,7 +9,7 @@ for interactive contact force problems, The Visual Computer 26, 2010).
 import warp as wp
 
 from carom.model.contact_structs import Couplings
-from carom.model.real import Int32, func, real
+from carom.model.real import Int32, Vector4, Vector8, func, real
 from carom.model.structs import Scratch
 from carom.physics.patches import push_patch
 
@@ -75,6 +75,9 @@ def go_on(scratch: Scratch, couplings: Couplings, world: Int32, patches: Int32, 
             push_patch(scratch, couplings, world, patch, further, aside)
             normal += further
             friction += aside
+        if share == 0.0 and last_square > 0.0:
+            normal = Vector4(0.0, 0.0, 0.0, 0.0)
+            friction = Vector8(0.0)
         couplings.patch[world, patch].normal_search = normal
         couplings.patch[world, patch].friction_search = friction
         patch += 1

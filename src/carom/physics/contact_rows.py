@@ -11,6 +11,7 @@ from carom.model.codes import (
 from carom.model.contact_structs import Contacts, Couplings, Shapes
 from carom.model.real import Index4, Int32, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.calm import NOT_CALM
 from carom.physics.contact_terms import (
     ContactTerms,
     friction_change,
@@ -108,5 +109,5 @@ def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32
         couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
         couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
         couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
-        Int32(1),
+        Int32(NOT_CALM),
     )

@@ -5,12 +5,11 @@ import warp as wp
 from carom.model.contact_structs import Contacts, ContactTerms, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Settings, State
+from carom.physics.calm import next_trust
 
 # A contact slides whose friction is at least this share of the greatest, squared.
 _SLIDING = real(1.0 - 1e-9)
 _GREATEST_FRICTION = real(10.0)
-# Substeps after one that left a calm island unsolved in which nothing starts from its last impulses.
-COLD_SUBSTEPS = real(60.0)
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
 # Damping of links for which none is set, in contact with soft ones [N s/m].
 _DEFAULT_DAMPING = 0.1
@@ -172,7 +171,7 @@ def keep_contact_impulse(
     first: real,
     second: real,
     friction: real,
-    solved: Int32,
+    outcome: Int32,
 ):
     """Report the impulses of a contact; one that slides begins to stick where it is now.
 
@@ -184,12 +183,10 @@ def keep_contact_impulse(
         first: That along the first friction direction.
         second: That along the second.
         friction: Coefficient of lateral friction.
-        solved: 0 if the solver had to leave off before a calm island was solved.
+        outcome: How the search for it went, see `calm.next_trust`.
     """
-    rest = wp.max(contacts.contact_impulse[world, contact][3] - 1.0, 0.0)
-    if solved == 0:
-        rest = real(0.0) + COLD_SUBSTEPS
-    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, rest)
+    trust = next_trust(contacts.contact_impulse[world, contact][3], outcome)
+    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, trust)
     bound = normal * friction
     if first * first + second * second >= bound * bound * _SLIDING:
         contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]

@@ -66,13 +66,13 @@ def write_patch(
 
 
 @func
-def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, patch: Int32, solved: Int32):
-    """Report the impulses of the contacts of a patch, and whether its island was `solved`."""
+def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, patch: Int32, outcome: Int32):
+    """Report the impulses of the contacts of a patch, and the `outcome` of the search for them."""
     normal = couplings.patch[world, patch].normal_impulse
     lateral = couplings.patch[world, patch].friction_impulse
     friction = couplings.patch[world, patch].friction
     first = couplings.patch[world, patch].first_contact
     for i in range(couplings.patch[world, patch].count):
         keep_contact_impulse(
-            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], solved
+            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], outcome
         )

@@ -9,10 +9,10 @@ from carom.model.codes import USER
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.calm import CALM_PRECISION, CALM_SWEEPS
+from carom.physics.calm import CALM_PRECISION, CALM_SWEEPS, NOT_CALM, SOLVED, UNSOLVED
 from carom.physics.conjugate import go_on, remember_impulses
 from carom.physics.couplings import has_room
-from carom.physics.joint_solver import joint_constraint_rows, keep_row_results
+from carom.physics.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.physics.quarantine import OVERFLOW
 from carom.physics.sweeps import contact_sweep, visit_sweep
 from carom.physics.units import keep_unit_impulses, write_units
@@ -67,6 +67,16 @@ def island_rows(
 
 
 @func
+def forget_changes(
+    settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, root: Int32
+):
+    """Take back all changes of velocity in an island."""
+    for tree in range(settings.tree_count):
+        if state.tree_island[world, tree] == root:
+            clear_delta_velocities(model, scratch, world, tree)
+
+
+@func
 def solve_island(
     model: Model,
     settings: Settings,
@@ -84,44 +94,53 @@ def solve_island(
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
     units = Index4(0, 0, 0, 0)
+    outcome = Int32(NOT_CALM)
     share = real(0.0)
-    threshold = settings.residual_threshold
-    most = settings.iterations
     if couplings.tree_restless[world, root] == 0:
         share = settings.contact_warm_starting
-        threshold = threshold * CALM_PRECISION
-        most = most * CALM_SWEEPS
-    if first_contact >= 0:
-        units = write_units(
-            model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
-            Index4(made[1], made[2], 0, 0), share,
-        )  # fmt: skip
-    if visits < 0 or units[0] < 0:
-        state.fault_tree[world, 0] = OVERFLOW
-        return
-
     residual = real(0.0)
-    square = real(0.0)
     sweep = Int32(0)
-    searching = Int32(0)
-    if visits > 0 or first_contact >= 0:
-        searching = Int32(1)
-    while searching == 1:
-        if share > 0.0:
-            remember_impulses(couplings, world, units[1])
-        residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
+    attempting = Int32(1)
+    while attempting == 1:
+        attempting = Int32(0)
         if first_contact >= 0:
-            residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
-        sweep += 1
-        if residual <= threshold or sweep >= most:
-            searching = Int32(0)
-        elif share > 0.0:
-            square = go_on(scratch, couplings, world, units[1], square)
+            units = write_units(
+                model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
+                Index4(made[1], made[2], 0, 0), share,
+            )  # fmt: skip
+        if visits < 0 or units[0] < 0:
+            state.fault_tree[world, 0] = OVERFLOW
+            return
+        threshold = settings.residual_threshold
+        most = settings.iterations
+        if share > 0.0:
+            threshold = threshold * CALM_PRECISION
+            most = most * CALM_SWEEPS
+        square = real(0.0)
+        sweep = Int32(0)
+        searching = Int32(0)
+        if visits > 0 or first_contact >= 0:
+            searching = Int32(1)
+        while searching == 1:
+            if share > 0.0:
+                remember_impulses(couplings, world, units[1])
+            residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
+            if first_contact >= 0:
+                residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
+            sweep += 1
+            if residual <= threshold or sweep >= most:
+                searching = Int32(0)
+            elif share > 0.0:
+                square = go_on(scratch, couplings, world, units[1], square)
+        if share > 0.0:
+            outcome = Int32(SOLVED)
+            if residual > settings.residual_threshold:
+                outcome = Int32(UNSOLVED)
+                share = real(0.0)
+                forget_changes(settings, model, state, scratch, world, root)
+                attempting = Int32(1)
     keep_row_results(model, settings, state, scratch, world, root, made[0], sweep, residual)
-    solved = Int32(1)
-    if share > 0.0 and residual > settings.residual_threshold:
-        solved = Int32(0)
-    keep_unit_impulses(contacts, couplings, world, units[0], solved)
+    keep_unit_impulses(contacts, couplings, world, units[0], outcome)
     keep_constraint_impulses(model, users, couplings, world, root)
 
 

@@ -86,13 +86,13 @@ def write_units(
 
 
 @func
-def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32, solved: Int32):
-    """Report the impulses of an island's contacts, and whether it was `solved`."""
+def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32, outcome: Int32):
+    """Report the impulses of an island's contacts, and the `outcome` of the search for them."""
     unit = Int32(0)
     while unit < units:
         code = couplings.unit_code[world, unit]
         if code < 0:
-            keep_patch_impulses(contacts, couplings, world, -1 - code, solved)
+            keep_patch_impulses(contacts, couplings, world, -1 - code, outcome)
         else:
             keep_contact_impulses(contacts, couplings, world, code)
         unit += 1
