@@ -123,9 +123,13 @@ def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
         total += size
     for i in range(count):
         pair = pairs.pair_found[world, i]
-        end = pairs.shape_pair_end[world, pair[0]]
-        pairs.shape_pair_end[world, pair[0]] = end + 1
-        place = end
+        place = pairs.shape_pair_end[world, pair[0]]
+        pairs.shape_pair_end[world, pair[0]] = place + 1
+        pairs.pair_shapes[world, place] = pair
+    # Only now is every row one of this step; those of a first shape are few.
+    for i in range(1, count):
+        pair = pairs.pair_shapes[world, i]
+        place = i + 0
         searching = place > 0
         while searching:
             before = pairs.pair_shapes[world, place - 1]
