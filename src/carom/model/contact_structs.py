@@ -132,7 +132,7 @@ class Pairs:
     previous_age: IntRows
     previous_taken: IntRows  # 1 once a contact has inherited from it
 
-    # Its first entries: pairs found, leaves of the hierarchy, shapes in it, planes.
+    # Its columns are in `collision.hierarchy`.
     count_pairs: IntRows
 
 

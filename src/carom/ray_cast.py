@@ -1,0 +1,92 @@
+"""Casting rays: the memory of the questions and of the answers."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.collision.ray_packets import Rays
+from carom.collision.rays import rays_kernel
+from carom.description.pose import Vector3
+from carom.model.arrays import ArrayTable
+from carom.model.launch import KernelStructs
+from carom.model.real import NUMPY_REAL
+from carom.question import Question
+
+Points = np.ndarray | Sequence[Sequence[float]]
+
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
+_VECTOR = struct.Struct(f"3{_TYPE_CODE}")
+
+
+class RayHits(NamedTuple):
+    """What rays hit, an item for each.
+
+    Attributes:
+        link: Row of the link in the world's arrays; -1 for none.
+        fraction: Where along the ray; 1 for none.
+        position: The same in world axes [m]; 0 for none.
+        normal: In world axes; 0 for none.
+    """
+
+    link: list[int]
+    fraction: list[float]
+    position: list[Vector3]
+    normal: list[Vector3]
+
+
+class RayCast:
+    """The rays of a world.
+
+    Args:
+        structs: Warp structs by the name kernels give them.
+        device: Warp device name.
+    """
+
+    def __init__(self, structs: KernelStructs, device: str) -> None:
+        self._cast = Question(
+            rays_kernel,
+            structs,
+            ("rays", ArrayTable(Rays, None)),
+            device,
+            world=0,
+            threads=1,
+            mask=-1,
+            hit_number=0,
+            separation=NUMPY_REAL(0.0),
+        )
+        self._view()
+
+    def __call__(self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float) -> RayHits:
+        """Cast rays; the arguments are those of `Queries.cast_rays`."""
+        count = len(starts)
+        if self._cast.reserve(count):
+            self._view()
+        size = count * _VECTOR.size
+        self._starts[:size] = _packed(starts)
+        self._ends[:size] = _packed(ends)
+        self._cast(count=count, mask=mask, hit_number=hit_number, separation=separation)
+        return RayHits(
+            self._links[:count].tolist(),
+            self._fractions[:count].tolist(),
+            list(_VECTOR.iter_unpack(self._positions[:size])),
+            list(_VECTOR.iter_unpack(self._normals[:size])),
+        )
+
+    def _view(self) -> None:
+        """Take the memory of the present arrays."""
+        arrays, memory = self._cast.table.numpy, self._cast.table.bytes_of
+        self._starts, self._ends = memory("ray_start"), memory("ray_end")
+        self._positions, self._normals = memory("ray_position"), memory("ray_normal")
+        self._links, self._fractions = memoryview(arrays["ray_link"]), memoryview(arrays["ray_fraction"])
+
+
+def _packed(points: Points) -> bytes:
+    """Points one after the other in memory."""
+    if isinstance(points, np.ndarray):
+        return points.astype(NUMPY_REAL, copy=False).tobytes()
+    return struct.pack(f"{3 * len(points)}{_TYPE_CODE}", *chain.from_iterable(points))
