@@ -68,9 +68,10 @@ class PairSearch:
         self._search = Question(
             closest_points_kernel,
             structs,
-            ("searches", ArrayTable(Searches, 1)),
+            "searches",
+            ArrayTable(Searches, 1),
             device,
-            reach=NUMPY_REAL(0.0),
+            {"reach": NUMPY_REAL(0.0)},
         )
         self._view()
 
@@ -86,11 +87,12 @@ class PairSearch:
     def __call__(self, pairs: ShapePairs, reach: float) -> list[tuple[int, int, NearestPoints]]:
         """The links and the nearest points of pairs of shapes that are no farther apart than `reach` [m]."""
         count = len(pairs.links)
-        if self._search.reserve(count):
+        if count > self._search.room:
+            self._search.reserve(count)
             self._view()
         size = count * _INDEX.itemsize
         self._first[:size], self._second[:size] = pairs.first, pairs.second
-        self._search(count=count, reach=reach)
+        self._search(count, reach)
         return [
             (a, b, _nearest_points(bx, by, bz, nx, ny, nz, distance))
             for (a, b), (bx, by, bz, nx, ny, nz, distance, found) in zip(
@@ -114,7 +116,7 @@ class PairSearch:
 
     def _view(self) -> None:
         """Take the memory of the present arrays."""
-        memory = self._search.table.bytes_of
+        memory = self._search.arrays.bytes_of
         self._first, self._second = memory("search_first"), memory("search_second")
         self._found = memory("search_found")
 

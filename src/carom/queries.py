@@ -10,10 +10,11 @@ import numpy as np
 from carom.collision.closest import place_shapes_kernel
 from carom.collision.hierarchy import IN_HIERARCHY, PLACED, READINESS
 from carom.collision.rays import prepare_rays_kernel
+from carom.description.pose import Vector3
 from carom.model.codes import PLANE
 from carom.model.launch import KernelStructs, launch
 from carom.pair_search import NearestPoints, PairSearch
-from carom.ray_cast import Points, RayCast, RayHits
+from carom.ray_cast import Points, RayCast, RayHit, RayHits
 from carom.touch_arrays import TouchArrays
 
 # A distance that counts as none.
@@ -75,6 +76,13 @@ class Queries:
         self._prepare(IN_HIERARCHY)
         return self._cast(starts, ends, mask, hit_number, separation)
 
+    def cast_ray(
+        self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
+    ) -> RayHit:
+        """What one ray hits; the arguments are those of `cast_rays` for it."""
+        self._prepare(IN_HIERARCHY)
+        return self._cast.one(start, end, mask, hit_number, separation)
+
     def nearest(
         self, first: Sequence[int], second: Sequence[int], reach: float
     ) -> list[tuple[int, int, NearestPoints]]:
@@ -116,7 +124,7 @@ class Queries:
         What steps leave is overwritten, and the other way round; everything else that could move a shape ends
         these `Queries`.
         """
-        wanted = (self._all_shapes.changes, bytes(self._positions))
+        wanted = (self._all_shapes.changes, self._positions.tobytes())
         if self._counts[READINESS] < readiness or wanted != self._ready_for:
             with self._present_poses():
                 self._make_ready[readiness]()

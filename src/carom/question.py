@@ -17,43 +17,57 @@ class Question:
 
     The kernel takes these arrays as one of its structs, and how many of their rows are in use as `count`.
 
+    Attributes:
+        arrays: The arrays; all have one axis.
+        room: How many rows they have.
+
     Args:
         kernel: The kernel.
         structs: Warp structs by the name kernels give them; that of the arrays is put there.
-        table: Name of the arrays among these structs, also of the axis of their rows, and the arrays.
+        name: Name of the arrays among these structs.
+        arrays: The arrays.
         device: Warp device name.
-        **scalars: The other arguments, as they are at first.
+        asked: The scalars that may differ from time to time, as they are at first.
+        **fixed: The other scalars.
     """
 
     def __init__(
-        self, kernel: Any, structs: KernelStructs, table: tuple[str, ArrayTable], device: str, **scalars: Any
+        self,
+        kernel: Any,
+        structs: KernelStructs,
+        name: str,
+        arrays: ArrayTable,
+        device: str,
+        asked: dict[str, Any],
+        **fixed: int,
     ) -> None:
+        self.arrays = arrays
         self._kernel = kernel
         self._structs = structs
-        self._name, self.table = table
+        self._name = name
         self._device = device
-        self._scalars = scalars
-        self._index = argument_indices(kernel)
+        self._scalars = {"count": 0, **asked, **fixed}
+        indices = argument_indices(kernel)
+        self._places = [indices[scalar] for scalar in ("count", *asked)]
         self._prepare()
 
-    def reserve(self, count: int) -> bool:
-        """Make room for `count` rows; true if arrays were replaced."""
-        grown = self.table.reserve(dict.fromkeys(self.table.capacity, count))
-        if grown:
+    def reserve(self, count: int) -> None:
+        """Make room for `count` rows; the arrays are replaced if they have fewer."""
+        if self.arrays.reserve(dict.fromkeys(self.arrays.capacity, count)):
             self._prepare()
-        return grown
 
-    def __call__(self, **scalars: Any) -> None:
-        """Run the kernel with other scalars, `count` among them."""
-        if scalars != self._asked:
-            for name, value in scalars.items():
-                self._launch.replace(self._index[name], value)
-            self._asked = scalars
-        (self._run_briefly if scalars["count"] <= _FEW else self._run)()
+    def __call__(self, *asked: float) -> None:
+        """Run the kernel with these scalars, the count before the others."""
+        if asked != self._asked:
+            self._asked = asked
+            for place, value in zip(self._places, asked, strict=True):
+                self._launch.replace(place, value)
+        (self._run_briefly if asked[0] <= _FEW else self._run)()
 
     def _prepare(self) -> None:
-        self._structs[self._name] = self.table.struct(self._device)
-        self._launch: Launch = launch(self._kernel, self._structs, self._device, count=0, **self._scalars)
-        self._asked: dict[str, Any] = {}
+        (self.room,) = self.arrays.capacity.values()
+        self._structs[self._name] = self.arrays.struct(self._device)
+        self._launch: Launch = launch(self._kernel, self._structs, self._device, **self._scalars)
         self._run: Callable[[], None] = self._launch.function
         self._run_briefly: Callable[[], None] = self._launch.brief_function
+        self._asked: tuple[float, ...] = ()

@@ -39,6 +39,15 @@ class RayHits(NamedTuple):
     normal: list[Vector3]
 
 
+class RayHit(NamedTuple):
+    """What one ray hits; see `RayHits`."""
+
+    link: int
+    fraction: float
+    position: Vector3
+    normal: Vector3
+
+
 class RayCast:
     """The rays of a world.
 
@@ -51,25 +60,25 @@ class RayCast:
         self._cast = Question(
             rays_kernel,
             structs,
-            ("rays", ArrayTable(Rays, None)),
+            "rays",
+            ArrayTable(Rays, None),
             device,
+            {"mask": -1, "hit_number": 0, "separation": NUMPY_REAL(0.0)},
             world=0,
             threads=1,
-            mask=-1,
-            hit_number=0,
-            separation=NUMPY_REAL(0.0),
         )
         self._view()
 
     def __call__(self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float) -> RayHits:
         """Cast rays; the arguments are those of `Queries.cast_rays`."""
         count = len(starts)
-        if self._cast.reserve(count):
+        if count > self._cast.room:
+            self._cast.reserve(count)
             self._view()
         size = count * _VECTOR.size
         self._starts[:size] = _packed(starts)
         self._ends[:size] = _packed(ends)
-        self._cast(count=count, mask=mask, hit_number=hit_number, separation=separation)
+        self._cast(count, mask, hit_number, separation)
         return RayHits(
             self._links[:count].tolist(),
             self._fractions[:count].tolist(),
@@ -77,9 +86,17 @@ class RayCast:
             list(_VECTOR.iter_unpack(self._normals[:size])),
         )
 
+    def one(self, start: Vector3, end: Vector3, mask: int, hit_number: int, separation: float) -> RayHit:
+        """Cast one ray."""
+        _VECTOR.pack_into(self._starts, 0, *start)
+        _VECTOR.pack_into(self._ends, 0, *end)
+        self._cast(1, mask, hit_number, separation)
+        position, normal = _VECTOR.unpack_from(self._positions), _VECTOR.unpack_from(self._normals)
+        return RayHit(self._links[0], self._fractions[0], position, normal)
+
     def _view(self) -> None:
         """Take the memory of the present arrays."""
-        arrays, memory = self._cast.table.numpy, self._cast.table.bytes_of
+        arrays, memory = self._cast.arrays.numpy, self._cast.arrays.bytes_of
         self._starts, self._ends = memory("ray_start"), memory("ray_end")
         self._positions, self._normals = memory("ray_position"), memory("ray_normal")
         self._links, self._fractions = memoryview(arrays["ray_link"]), memoryview(arrays["ray_fraction"])

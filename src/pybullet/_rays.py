@@ -69,7 +69,9 @@ def rayTest(
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    return _cast(world, [start], [end], mask, number, 0.0)
+    hit = world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
+    bodies, links = world.link_columns
+    return ((bodies[hit.link], links[hit.link], hit.fraction, hit.position, hit.normal),)
 
 
 @exported
