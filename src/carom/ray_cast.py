@@ -69,7 +69,9 @@ class RayCast:
         )
         self._view()
 
-    def __call__(self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float) -> RayHits:
+    def __call__(
+        self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float
+    ) -> RayHits:
         """Cast rays; the arguments are those of `Queries.cast_rays`."""
         count = len(starts)
         if count > self._cast.room:

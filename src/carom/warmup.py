@@ -28,6 +28,7 @@ KERNEL_MODULES = (
     "carom.collision.rays",
     "carom.algorithms.tree.stable_pd",
     "carom.algorithms.tree.dynamics",
+    "carom.algorithms.tree.motion",
     "carom.render.kernels.draw",
 )
 # The stages of `World.profile` are compiled again, each on its own, when someone asks for a profile.

@@ -13,7 +13,19 @@ from carom.collision.hierarchy import (
     leaf_start,
     next_node,
 )
-from carom.collision.ray_packets import LANES, NOWHERE, Packet, Rays, any_within, length_within, lane_of, meets, packet_of, way_of, with_lane
+from carom.collision.ray_packets import (
+    LANES,
+    NOWHERE,
+    Packet,
+    Rays,
+    any_within,
+    lane_of,
+    length_within,
+    meets,
+    packet_of,
+    way_of,
+    with_lane,
+)
 from carom.collision.ray_solids import (
     MISS,
     ray_ball,
@@ -172,7 +184,7 @@ def first_hits(
     first = count
     end = count + pairs.count_pairs[world, PLANES]
     node = Int32(1)
-    searching = bool(True)
+    searching = True
     while searching:
         for place in range(first, end):
             shape = pairs.shape_order[world, place]
@@ -181,9 +193,7 @@ def first_hits(
             lengths = length_within(packet, limit, lower, upper)
             if lower[0] <= upper[0] and any_within(lengths):
                 if is_visible(shapes, shape, mask):
-                    limit = hit_shape(
-                        shapes, pairs, world, shape, rays, packet, limit, lengths, separation
-                    )
+                    limit = hit_shape(shapes, pairs, world, shape, rays, packet, limit, lengths, separation)
         node = next_leaf(pairs, world, packet, limit, leaf_count, node)
         searching = node > 0
         first = leaf_start(node - leaf_count, leaf_count, count)
