@@ -35,7 +35,7 @@ class Queries:
     def __init__(
         self,
         structs: KernelStructs,
-        positions: memoryview,
+        positions: memoryview[float],
         present_poses: Callable[[], AbstractContextManager[None]],
         touch: TouchArrays,
         device: str,
@@ -86,7 +86,7 @@ class Queries:
     def nearest(
         self, first: Sequence[int], second: Sequence[int], reach: float
     ) -> list[tuple[int, int, NearestPoints]]:
-        """The nearest points of all shapes of some links and of others, but for those farther apart than `reach`.
+        """The nearest points of all shapes of some links and of others, up to `reach` apart.
 
         Args:
             first: Rows of links in the world's arrays, as a range or tuple.

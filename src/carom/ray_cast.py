@@ -12,7 +12,7 @@ import numpy as np
 from carom.collision.ray_packets import Rays
 from carom.collision.rays import rays_kernel
 from carom.description.pose import Vector3
-from carom.model.arrays import ArrayTable
+from carom.model.arrays import ArrayTable, numbers_of
 from carom.model.launch import KernelStructs
 from carom.model.real import NUMPY_REAL
 from carom.question import Question
@@ -81,9 +81,10 @@ class RayCast:
         self._starts[:size] = _packed(starts)
         self._ends[:size] = _packed(ends)
         self._cast(count, mask, hit_number, separation)
+        arrays = self._cast.arrays.numpy
         return RayHits(
-            self._links[:count].tolist(),
-            self._fractions[:count].tolist(),
+            arrays["ray_link"][:count].tolist(),
+            arrays["ray_fraction"][:count].tolist(),
             list(_VECTOR.iter_unpack(self._positions[:size])),
             list(_VECTOR.iter_unpack(self._normals[:size])),
         )
@@ -101,7 +102,8 @@ class RayCast:
         arrays, memory = self._cast.arrays.numpy, self._cast.arrays.bytes_of
         self._starts, self._ends = memory("ray_start"), memory("ray_end")
         self._positions, self._normals = memory("ray_position"), memory("ray_normal")
-        self._links, self._fractions = memoryview(arrays["ray_link"]), memoryview(arrays["ray_fraction"])
+        self._links: memoryview[int] = arrays["ray_link"].data
+        self._fractions = numbers_of(arrays["ray_fraction"])
 
 
 def _packed(points: Points) -> bytes:

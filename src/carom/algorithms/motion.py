@@ -12,6 +12,7 @@ import warp as wp
 
 from carom.algorithms.tree.motion import POSE, motion_kernel
 from carom.description.pose import Vector3
+from carom.model.arrays import numbers_of
 from carom.model.codes import BASE_POSITIONS
 from carom.model.launch import Launch
 from carom.model.real import NUMPY_REAL, real
@@ -51,16 +52,16 @@ class Motion:
         self._rates = tree.dofs
         self._positions = tree.coordinates + (BASE_POSITIONS if tree.free else 0)
         count = self._positions + 2 * self._rates
-        numbers = np.zeros(int(POSE) + count, dtype=NUMPY_REAL)
+        numbers: np.ndarray = np.zeros(int(POSE) + count, dtype=NUMPY_REAL)
         question: Any = wp.array(numbers, dtype=real, device=_DEVICE, copy=False)
-        self._memory = memoryview(numbers).cast("B")
+        self._memory = numbers_of(numbers).cast("B")
         self._first = int(POSE) * numbers.itemsize
         self._pack = Struct(f"{count}{_TYPE_CODE}").pack_into
         self._gravity: Vector3 | None = None
         self._find = Launch(
             motion_kernel, 1, [*tree.structs, question, int(opposite_order)], _DEVICE
         ).brief_function
-        output = memoryview(tree.arrays["output"])
+        output = numbers_of(tree.arrays["output"])
         self._arriving = output[tree.dofs :]
         self._answer = output.cast("B")
         self._unpack = Struct(f"{tree.dofs}{_TYPE_CODE}").unpack_from

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from math import inf
 from struct import Struct
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from carom.algorithms.motion import Motion, Numbers
 from carom.algorithms.nodes import End, Node, body_nodes
 from carom.algorithms.tree.dynamics import inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
-from carom.model.arrays import ArrayTable
+from carom.model.arrays import ArrayTable, numbers_of
 from carom.model.codes import BASE_VELOCITIES, POSITION_COUNT
 from carom.model.launch import Launch
 from carom.model.real import NUMPY_REAL
@@ -211,11 +211,6 @@ class MovingTree:
             self.arrays["end_node"][index] = end.node
             self.arrays["end_turn"][index] = end.rotation
             self.arrays["end_origin"][index] = end.origin
-
-
-def numbers_of(numbers: np.ndarray) -> memoryview[float]:
-    """The memory of an array of numbers: quicker than NumPy for single ones."""
-    return cast("memoryview[float]", numbers.data)
 
 
 def moving_tree(body: Body) -> MovingTree:

@@ -10,7 +10,7 @@ from carom.collision.ray_surfaces import inverse_way
 from carom.model.real import Int32, Ints, Reals, Vector3, Vector4, Vectors3, func, real
 
 LANES = 4
-# Fraction after which nothing matters to a ray that is no ray.
+# Limit of a ray that is no ray.
 NOWHERE = real(-1.0)
 
 
@@ -52,7 +52,10 @@ def way_of(rays: Rays, ray: Int32) -> Vector3:
 
 @func
 def packet_of(rays: Rays, first: Int32, count: Int32):
-    """The rays from `first` on, and where they end: those that are missing or not finite end before they start."""
+    """The rays from `first` on, and their limits: fractions after which nothing matters to them.
+
+    Nothing at all matters to those that are missing or not finite.
+    """
     packet = Packet()
     limit = Vector4(NOWHERE, NOWHERE, NOWHERE, NOWHERE)
     packet.first = first

@@ -184,8 +184,8 @@ def first_hits(
     first = count
     end = count + pairs.count_pairs[world, PLANES]
     node = Int32(1)
-    searching = True
-    while searching:
+    searching = Int32(1)
+    while searching == 1:
         for place in range(first, end):
             shape = pairs.shape_order[world, place]
             lower = pairs.shape_lower[world, shape]
@@ -195,10 +195,10 @@ def first_hits(
                 if is_visible(shapes, shape, mask):
                     limit = hit_shape(shapes, pairs, world, shape, rays, packet, limit, lengths, separation)
         node = next_leaf(pairs, world, packet, limit, leaf_count, node)
-        searching = node > 0
+        searching = wp.min(node, 1)
         first = leaf_start(node - leaf_count, leaf_count, count)
         end = leaf_start(node - leaf_count + 1, leaf_count, count)
-        if searching:
+        if searching == 1:
             node = next_node(node)
     return limit
 

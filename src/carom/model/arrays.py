@@ -10,12 +10,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import warp as wp
 
 _FIRST_CAPACITY = 16
+
+
+def numbers_of(numbers: np.ndarray) -> memoryview[float]:
+    """The memory of an array of numbers: quicker than NumPy for single ones."""
+    return cast("memoryview[float]", numbers.data)
 
 
 @dataclass(frozen=True, slots=True)

@@ -61,11 +61,11 @@ def turned_back_in_opposite_order(q: Quaternion, v: Vector3) -> Vector3:
 
 @func
 def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
-    """Gravity along the axes of a free base; not finite if its quaternion has no length."""
+    """Gravity along the axes of a free base; not finite if its quaternion is no rotation."""
     gravity = vector_at(question, 0)
     q = POSE + 3
     turn = Quaternion(question[q], question[q + 1], question[q + 2], question[q + 3])
-    if wp.length_sq(turn) == 0.0:
+    if not wp.length_sq(turn) > 0.0:
         return Vector3(NOT_FINITE, NOT_FINITE, NOT_FINITE)
     if opposite_order == 1:
         return turned_back_in_opposite_order(turn, gravity)
