@@ -114,5 +114,6 @@ def nearest_points(
                 added.append(row)
             return tuple(added)
 
-        found = world.queries().nearest(rows(first), rows(second), reach)
+        sides = rows(first), rows(second)
+        found = world.queries().nearest(*sides, reach)
         return [(places[a], places[b], points) for a, b, points in found]
