@@ -56,25 +56,25 @@ class World(StateViews):
     """
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
-        self.parameters = EngineParameters(time_step=time_step)
+        self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: dict[int, Body] = {}
-        self.time = 0.0
+        self.time: float = 0.0
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
         self._stepper_type: Callable[..., Stepper] = Stepper
-        self.unspent_time = 0.0
+        self.unspent_time: float = 0.0
         self._start_empty()
 
     def _start_empty(self) -> None:
         self.bodies.clear()
-        self.arrays = WorldArrays()
+        self.arrays: WorldArrays = WorldArrays()
         self._kernels = KernelStructs()
-        self.touch = TouchArrays(self.arrays, _DEVICE)
-        self.constraints = JointConstraints()
-        self.user_constraints = UserConstraints()
-        self.user_data = UserData()
+        self.touch: TouchArrays = TouchArrays(self.arrays, _DEVICE)
+        self.constraints: JointConstraints = JointConstraints()
+        self.user_constraints: UserConstraints = UserConstraints()
+        self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
-        self.next_id = 0
+        self.next_id: int = 0
         self.unspent_time = 0.0
         self._step: Callable[[], None] | None = None
         # What the constraints in the arrays were grouped by; None if they are not those there are now.

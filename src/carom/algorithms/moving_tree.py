@@ -54,9 +54,9 @@ class MovingTree:
             free: The base moves.
         """
         self.free = free
-        self.joint_dofs = sum(len(node.axes) for node in nodes)
-        self.dofs = self.joint_dofs + (BASE_VELOCITIES if free else 0)
-        self.coordinates = sum(POSITION_COUNT[node.kind] for node in nodes)
+        self.joint_dofs: int = sum(len(node.axes) for node in nodes)
+        self.dofs: int = self.joint_dofs + (BASE_VELOCITIES if free else 0)
+        self.coordinates: int = sum(POSITION_COUNT[node.kind] for node in nodes)
         sizes: Any = TreeSizes()
         sizes.nodes = len(nodes)
         sizes.coordinates = self.coordinates
@@ -77,10 +77,10 @@ class MovingTree:
                 "matrix": self.dofs * self.dofs,
             }
         )
-        self.arrays = table.numpy
+        self.arrays: dict[str, Any] = table.numpy
         self._write_nodes(nodes, free=free)
         self._write_ends(ends)
-        self.structs = (sizes, table.struct(_DEVICE))
+        self.structs: tuple[Any, Any] = (sizes, table.struct(_DEVICE))
         self._jacobians: dict[int, Callable[[], None]] = {}
         self._links = range(-1, len(ends) - 1)
         self._put_base = self._writer(0, first_position)

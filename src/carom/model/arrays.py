@@ -80,7 +80,7 @@ class ArrayTable:
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
         self._world_count = world_count
-        self.capacity = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
+        self.capacity: dict[str, int] = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         self._made: dict[str, Any] = {}

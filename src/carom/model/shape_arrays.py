@@ -101,11 +101,11 @@ class ShapeArrays:
     """
 
     def __init__(self) -> None:
-        self.table = ArrayTable(Shapes, None)
-        self.filters = PairFilters(self.table)
+        self.table: ArrayTable = ArrayTable(Shapes, None)
+        self.filters: PairFilters = PairFilters(self.table)
         self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
-        self.breaking_fraction = BREAKING_FRACTION
-        self.changes = 0
+        self.breaking_fraction: float = BREAKING_FRACTION
+        self.changes: int = 0
         self._bodies: dict[int, BodyShapes] = {}
 
     @property
