@@ -39,6 +39,8 @@ class QuinticTrajectory:
         Raises:
             ValueError: Positions are not finite or differ in shape, or the duration is not positive.
         """
+        self.start: Array
+        self.goal: Array
         self.start, self.goal = _end_points(start, goal)
         self.duration: float = float(positive(duration, "duration"))
 
@@ -78,6 +80,8 @@ class TrapezoidalTrajectory:
         Raises:
             ValueError: Positions are not finite or differ in shape, or a bound is not positive.
         """
+        self.start: Array
+        self.goal: Array
         self.start, self.goal = _end_points(start, goal)
         velocity = positive(max_velocity, "max_velocity")
         acceleration = positive(max_acceleration, "max_acceleration")

@@ -118,6 +118,8 @@ class SceneArrays:
         self.part_links: np.ndarray = np.array(columns.links, dtype=np.int64)
         self.part_centres: np.ndarray = np.array(columns.centres).reshape(-1, 3)
         self.part_radii: np.ndarray = np.array(columns.radii)
+        self.struct: Any
+        self.chunk_count: int
         self.struct, self.chunk_count = _struct(columns)
         self._changes = appearance.changes
         self._take_textures(appearance.textures)

@@ -91,7 +91,7 @@ class Viewer:
         self._pictures = Pictures()
         # Pulling makes constraints, which only whoever steps can allow.
         self._pulls = lock is not None
-        self.lock = RLock() if lock is None else lock
+        self.lock: Any = RLock() if lock is None else lock
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
         self._world = world
