@@ -42,8 +42,8 @@ class Scripts:
 # Scripts that come to something else on purpose, or by chance, and why: docs/differences.md has it at length.
 KNOWN = {
     "biped2d_pybullet": "a ball lies with its centre on the axis of a box, and may leave by either side",
-    "minitaur_test": "the forces of eight feet on closed loops depend on the order in which contacts were found",
-    "quadruped": "the forces of eight feet on closed loops depend on the order in which contacts were found",
+    "minitaur_test": "the forces on feet of closed loops depend on which contacts were found first",
+    "quadruped": "the forces on feet of closed loops depend on which contacts were found first",
     "snake": "useMaximalCoordinates makes no links in PyBullet",
 }
 

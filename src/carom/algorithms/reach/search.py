@@ -201,7 +201,7 @@ def inverse_kinematics_kernel(
         iterations: Most steps of PyBullet's iteration.
         further: How many poses may be tried after that.
         threshold: Distance [m] and angle [rad] that are close enough.
-        patience: PyBullet's result is taken, arrived or not, if it leaves not more of the distance than this share.
+        patience: PyBullet's result is taken, arrived or not, if it leaves at most this share of the distance.
     """
     take_targets(sizes, search)
     for column in range(sizes.columns):
