@@ -25,6 +25,7 @@ KERNEL_MODULES = (
     "carom.collision.closest",
     "carom.physics.kinematics",
     "carom.physics.slumber",
+    "carom.physics.motor_commands",
     "carom.collision.rays",
     "carom.algorithms.tree.stable_pd",
     "carom.algorithms.tree.dynamics",
