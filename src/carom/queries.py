@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from functools import cached_property
 
 import numpy as np
 
 from carom.collision.closest import place_shapes_kernel
 from carom.collision.hierarchy import IN_HIERARCHY, PLACED, READINESS
+from carom.collision.manifold import THERE
 from carom.collision.rays import prepare_rays_kernel
+from carom.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.description.pose import Vector3
 from carom.model.codes import PLANE
-from carom.model.launch import KernelStructs, launch
+from carom.model.launch import KernelStructs, Launch, launch
 from carom.pair_search import NearestPoints, PairSearch
 from carom.ray_cast import Points, RayCast, RayHit, RayHits
 from carom.touch_arrays import TouchArrays
@@ -27,6 +30,7 @@ class Queries:
     Args:
         structs: Warp structs by the name kernels give them.
         positions: The memory of the coordinates of all bodies.
+        places: Body and link that each row of the link arrays stands for.
         present_poses: `World.present_poses`.
         touch: The arrays of shapes.
         device: Warp device name.
@@ -36,24 +40,43 @@ class Queries:
         self,
         structs: KernelStructs,
         positions: memoryview[float],
+        places: Sequence[tuple[int, int]],
         present_poses: Callable[[], AbstractContextManager[None]],
         touch: TouchArrays,
         device: str,
     ) -> None:
+        self._structs = structs
+        self._device = device
+        self._touch = touch
         self._positions = positions
+        self._places = places
         self._present_poses = present_poses
         self._all_shapes = touch.shapes
         self._shape_count = touch.shapes.shape_count
         self._shapes = touch.shapes.table.numpy
         self._pairs = touch.pairs.numpy
         self._counts = memoryview(touch.pairs.numpy["count_pairs"][0])
-        self._make_ready = {
-            PLACED: launch(place_shapes_kernel, structs, device),
-            IN_HIERARCHY: launch(prepare_rays_kernel, structs, device),
-        }
+        self._contact_counts = memoryview(touch.contacts.numpy["count_contacts"][0])
         self._ready_for: tuple[int, bytes] | None = None
-        self._cast = RayCast(structs, device)
-        self._search = PairSearch(structs, touch, device)
+
+    @cached_property
+    def _make_ready(self) -> dict[int, Launch]:
+        return {
+            PLACED: launch(place_shapes_kernel, self._structs, self._device),
+            IN_HIERARCHY: launch(prepare_rays_kernel, self._structs, self._device),
+        }
+
+    @cached_property
+    def _cast(self) -> RayCast:
+        return RayCast(self._structs, self._device)
+
+    @cached_property
+    def _search(self) -> PairSearch:
+        return PairSearch(self._structs, self._touch, self._device)
+
+    @cached_property
+    def _contacts(self) -> ContactSearch:
+        return ContactSearch(self._structs, self._places, self._device)
 
     def cast_rays(
         self,
@@ -101,6 +124,24 @@ class Queries:
             return []
         self._prepare(PLACED)
         return self._search(pairs, min(reach, _FAR))
+
+    def contacts(
+        self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
+    ) -> ContactColumns:
+        """The contacts of the last step, or detection, between two bodies or links.
+
+        Args:
+            body_a: Number of a body, which is then the first of each contact; negative for any.
+            link_a: Its link, -1 for the base, -2 and less for any.
+            body_b: Number of the second body; negative for any.
+            link_b: Its link.
+            time_step: Of a step [s]; makes forces of impulses.
+
+        Returns:
+            The contacts, to be read at once.
+        """
+        count = self._contact_counts[THERE]
+        return self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
 
     def overlapping(self, lower: Sequence[float], upper: Sequence[float]) -> list[int]:
         """Rows of the links whose bounds meet a box.

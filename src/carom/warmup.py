@@ -27,6 +27,7 @@ KERNEL_MODULES = (
     "carom.physics.slumber",
     "carom.physics.motor_commands",
     "carom.collision.rays",
+    "carom.collision.contact_report",
     "carom.algorithms.tree.stable_pd",
     "carom.algorithms.tree.dynamics",
     "carom.algorithms.tree.motion",

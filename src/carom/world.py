@@ -546,7 +546,12 @@ class World(StateViews):
         """Rays, nearest points and overlaps for the present coordinates."""
         if self._queries is None:
             self._queries = Queries(
-                self._kernel_structs(), self.position_memory, self.present_poses, self.touch, _DEVICE
+                self._kernel_structs(),
+                self.position_memory,
+                self.link_places,
+                self.present_poses,
+                self.touch,
+                _DEVICE,
             )
         return self._queries
 
