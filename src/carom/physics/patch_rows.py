@@ -130,9 +130,7 @@ def write_row_numbers(
     change = friction_change(settings, velocity, terms.drift, row_direction(terms, row))
     if row == 0:
         inverse_mass += terms.softness
-        change = normal_change(
-            settings, shapes, velocity, terms.distance, terms.erp, terms.ends[1], terms.ends[3]
-        )
+        change = normal_change(settings, shapes, terms, velocity)
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
