@@ -67,7 +67,7 @@ class Body:
         self.spec = spec
         self.rows = rows
         codes = [JOINT_CODE[link.joint_type] for link in spec.links]
-        self.joint_count = len(codes)
+        self.joint_count: int = len(codes)
         self.joint_types: tuple[int, ...] = tuple(int(code) for code in codes)
         self.position_count: tuple[int, ...] = tuple(POSITION_COUNT[code] for code in codes)
         self.velocity_count: tuple[int, ...] = tuple(DOF_COUNT[code] for code in codes)
@@ -76,7 +76,7 @@ class Body:
         self.first_velocity = 0
         self.position_index: tuple[int, ...] = ()
         self.velocity_index: tuple[int, ...] = ()
-        self.fixed_base = spec.fixed_base
+        self.fixed_base: bool = spec.fixed_base
         self.derived: dict[Any, Any] = {}
         self._dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
         if spec.fixed_base:
@@ -85,9 +85,9 @@ class Body:
 
     def relocate(self) -> None:
         """Take over the rows the body has in the flat arrays now."""
-        self.first_link = self.rows.first["link"]
-        self.first_position = self.rows.first["position"]
-        self.first_velocity = self.rows.first["dof"]
+        self.first_link: int = self.rows.first["link"]
+        self.first_position: int = self.rows.first["position"]
+        self.first_velocity: int = self.rows.first["dof"]
         self.position_index = _first_rows(self.first_position + BASE_POSITIONS, self.position_count)
         self.velocity_index = _first_rows(self.first_velocity + BASE_VELOCITIES, self.velocity_count)
 

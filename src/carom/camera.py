@@ -70,8 +70,10 @@ class CameraImage:
         self.colour = colour
         self.depth = depth
         nothing = label == NOTHING
-        self.body_ids = np.where(nothing, NOTHING, label & ((1 << LINK_SHIFT) - 1)).astype(np.int32)
-        self.link_indices = np.where(nothing, 0, label >> LINK_SHIFT).astype(np.int32) - 1
+        self.body_ids: np.ndarray = np.where(nothing, NOTHING, label & ((1 << LINK_SHIFT) - 1)).astype(
+            np.int32
+        )
+        self.link_indices: np.ndarray = np.where(nothing, 0, label >> LINK_SHIFT).astype(np.int32) - 1
         self.camera_pose = camera_pose
         self._intrinsics = intrinsics
         # Bodies may have gone by the time the image is looked at; their names may not.

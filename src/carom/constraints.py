@@ -59,7 +59,7 @@ class JointConstraints:
 
     def __init__(self) -> None:
         self.all: list[JointConstraint] = []
-        self.tags = IslandTags()
+        self.tags: IslandTags = IslandTags()
 
     def add_body(self, body: Body) -> None:
         """Append the limits, then the motors, of a new body."""

@@ -35,8 +35,8 @@ class Joint:
     __slots__ = ("body", "index")
 
     def __init__(self, body: Body, index: int) -> None:
-        self.body = body
-        self.index = index
+        self.body: Body = body
+        self.index: int = index
 
     def __repr__(self) -> str:
         return f"<Joint {self.index} {self.name!r} of {self.body.name!r}: {self.type.value}>"

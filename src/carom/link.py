@@ -57,8 +57,8 @@ class Link:
     __slots__ = ("body", "index")
 
     def __init__(self, body: Body, index: int) -> None:
-        self.body = body
-        self.index = index
+        self.body: Body = body
+        self.index: int = index
 
     def __repr__(self) -> str:
         return f"<Link {self.index} {self.name!r} of {self.body.name!r}>"

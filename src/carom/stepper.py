@@ -8,7 +8,7 @@ from typing import Any
 from carom.collision.collide import collide_kernel
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import WANTED
-from carom.model.launch import KernelStructs, argument_indices, launch
+from carom.model.launch import KernelStructs, Launch, argument_indices, launch
 from carom.physics.coupled_step import coupled_step_kernel
 from carom.physics.kinematics import link_poses_kernel
 from carom.physics.quarantine import OVERFLOW
@@ -55,8 +55,8 @@ class Slumber:
     """Who is asleep: looked at before and after each substep, in a world where bodies can be."""
 
     def __init__(self, structs: KernelStructs, device: str, *, touching: bool) -> None:
-        self.settle = launch(settle_kernel, structs, device, touching=int(touching))
-        self.watch = launch(watch_kernel, structs, device)
+        self.settle: Launch = launch(settle_kernel, structs, device, touching=int(touching))
+        self.watch: Launch = launch(watch_kernel, structs, device)
 
 
 class Stepper:
@@ -95,8 +95,8 @@ class Stepper:
         self._index: Mapping[str, Any] = argument_indices(kernel)
         self._touch = touch
         self._fault = fault
-        self.detection = Detection(structs, touch, device) if touching else None
-        self.slumber = Slumber(structs, device, touching=touching) if sleeping else None
+        self.detection: Detection | None = Detection(structs, touch, device) if touching else None
+        self.slumber: Slumber | None = Slumber(structs, device, touching=touching) if sleeping else None
         if not touching:
             touch.forget_contacts()
         self._substeps = substeps

@@ -21,11 +21,11 @@ class TouchArrays:
         self._arrays = arrays
         self._device = device
         worlds = arrays.world_count
-        self.shapes = ShapeArrays()
-        self.pairs = ArrayTable(Pairs, worlds)
-        self.contacts = ArrayTable(Contacts, worlds)
-        self.users = ArrayTable(UserConstraints, None)
-        self.couplings = ArrayTable(Couplings, worlds, COUPLING_ENTRY_VIEWS)
+        self.shapes: ShapeArrays = ShapeArrays()
+        self.pairs: ArrayTable = ArrayTable(Pairs, worlds)
+        self.contacts: ArrayTable = ArrayTable(Contacts, worlds)
+        self.users: ArrayTable = ArrayTable(UserConstraints, None)
+        self.couplings: ArrayTable = ArrayTable(Couplings, worlds, COUPLING_ENTRY_VIEWS)
         self.user_count = 0
 
     @property

@@ -72,7 +72,7 @@ class UserConstraints:
 
     def __init__(self) -> None:
         self._by_id: dict[int, UserConstraint] = {}
-        self.next_id = 1
+        self.next_id: int = 1
         self._next_hidden_id = -1
 
     def __len__(self) -> int:

@@ -25,9 +25,12 @@ KERNEL_MODULES = (
     "carom.collision.closest",
     "carom.physics.kinematics",
     "carom.physics.slumber",
+    "carom.physics.motor_commands",
     "carom.collision.rays",
+    "carom.collision.contact_report",
     "carom.algorithms.tree.stable_pd",
     "carom.algorithms.tree.dynamics",
+    "carom.algorithms.tree.motion",
     "carom.render.kernels.draw",
 )
 # The stages of `World.profile` are compiled again, each on its own, when someone asks for a profile.

@@ -56,31 +56,32 @@ class World(StateViews):
     """
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
-        self.parameters = EngineParameters(time_step=time_step)
+        self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: dict[int, Body] = {}
-        self.time = 0.0
+        self.time: float = 0.0
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
         self._stepper_type: Callable[..., Stepper] = Stepper
-        self.unspent_time = 0.0
+        self.unspent_time: float = 0.0
         self._start_empty()
 
     def _start_empty(self) -> None:
         self.bodies.clear()
-        self.arrays = WorldArrays()
+        self.arrays: WorldArrays = WorldArrays()
         self._kernels = KernelStructs()
-        self.touch = TouchArrays(self.arrays, _DEVICE)
-        self.constraints = JointConstraints()
-        self.user_constraints = UserConstraints()
-        self.user_data = UserData()
+        self.touch: TouchArrays = TouchArrays(self.arrays, _DEVICE)
+        self.constraints: JointConstraints = JointConstraints()
+        self.user_constraints: UserConstraints = UserConstraints()
+        self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
-        self.next_id = 0
+        self.next_id: int = 0
         self.unspent_time = 0.0
         self._step: Callable[[], None] | None = None
         # What the constraints in the arrays were grouped by; None if they are not those there are now.
         self._island_size: int | None = None
         self._layout: Layout | None = None
         self._link_places: list[tuple[int, int]] | None = None
+        self._link_columns: tuple[list[int], list[int]] | None = None
         self._take_arrays()
 
     def __enter__(self) -> World:
@@ -158,7 +159,7 @@ class World(StateViews):
                 self._take_arrays()
             raise
         self.bodies[body_id] = body
-        self._layout = self._link_places = None
+        self._layout = self._link_places = self._link_columns = None
         self.constraints.add_body(body)
         self.user_data.add_stated(body_id, spec)
         if grown:
@@ -253,7 +254,7 @@ class World(StateViews):
             KeyError: There is no such body.
         """
         body = self.bodies.pop(body_id)
-        self._layout = self._link_places = None
+        self._layout = self._link_places = self._link_columns = None
         self.constraints.remove_body(body)
         self.user_constraints.remove_body(body)
         self.user_data.remove_body(body_id)
@@ -318,6 +319,14 @@ class World(StateViews):
             bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
             self._link_places = [(body.id, link) for body in bodies for link in range(-1, body.joint_count)]
         return self._link_places
+
+    @property
+    def link_columns(self) -> tuple[list[int], list[int]]:
+        """The bodies and the links of `link_places`, and -1 for row -1, which stands for none."""
+        if self._link_columns is None:
+            places = [*self.link_places, (-1, -1)]
+            self._link_columns = [body for body, _ in places], [link for _, link in places]
+        return self._link_columns
 
     def snapshot(self) -> Snapshot:
         """The present state, to come back to by `restore` as often as needed.
@@ -536,7 +545,14 @@ class World(StateViews):
     def queries(self) -> Queries:
         """Rays, nearest points and overlaps for the present coordinates."""
         if self._queries is None:
-            self._queries = Queries(self._kernel_structs(), self.present_poses, self.touch, _DEVICE)
+            self._queries = Queries(
+                self._kernel_structs(),
+                self.position_memory,
+                self.link_places,
+                self.present_poses,
+                self.touch,
+                _DEVICE,
+            )
         return self._queries
 
     def _kernel_structs(self) -> KernelStructs:

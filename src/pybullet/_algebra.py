@@ -6,14 +6,13 @@ from math import inf
 from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
 
-from carom.description.transform import multiplied, quaternion_from_rpy
 from pybullet._arguments import Vector, integer, numbers, one_body, required
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail
 from pybullet._lookup import body_of
-from pybullet._maths import Quaternion, getEulerFromQuaternion, getQuaternionFromEuler
+from pybullet._maths import getQuaternionFromEuler
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -28,8 +27,6 @@ Matrix = tuple[tuple[float, ...], ...]
 
 _FULL_MODEL = 1
 _BASE_POSITIONS, _BASE_VELOCITIES = 7, 6
-# PyBullet takes the inertial frame of a fixed base to be parallel to the world, whatever it is.
-_NOT_TURNED = (0.0, 0.0, 0.0, 1.0)
 _INVERSE_DYNAMICS = "Error in calculateInverseDynamics, please check arguments."
 _INVERSE_DYNAMICS_SIZES = (
     "calculateInverseDynamics numDofs needs to be positive and [joint velocities] and[joint accelerations] "
@@ -109,11 +106,10 @@ def calculateInverseDynamics(
     try:
         client = clients[physicsClientId]
         tree = client.bodies[bodyUniqueId].tree
-        if tree is not None and not (flags or tree.free):
-            gravity = client.world.parameters.gravity
-            if gravity is not tree.gravity:
-                tree.set_resting_base(gravity)
-            return tree.forces(objPositions, objVelocities, objAccelerations)
+        if tree is not None and not flags:
+            return tree.motion_in_pybullet.forces(
+                objPositions, objVelocities, objAccelerations, client.world.parameters.gravity
+            )
     except (KeyError, TypeError, ValueError, StructError):
         pass
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
@@ -123,7 +119,8 @@ def calculateInverseDynamics(
         objVelocities=objVelocities,
         objAccelerations=objAccelerations,
     )
-    body = body_of(client_of(physicsClientId), body_id, _INVERSE_DYNAMICS)
+    client = client_of(physicsClientId)
+    body = body_of(client, body_id, _INVERSE_DYNAMICS)
     q = numbers(objPositions, _INVERSE_DYNAMICS, "objPositions")
     qd = numbers(objVelocities, _INVERSE_DYNAMICS, "objVelocities")
     qdd = numbers(objAccelerations, _INVERSE_DYNAMICS, "objAccelerations")
@@ -151,14 +148,14 @@ def calculateInverseDynamics(
         _check_extended(body, q, _INVERSE_DYNAMICS)
         return tuple(extended_bias_forces(body, q, qd).tolist())
 
-    from carom.algorithms import inverse_dynamics
+    from carom.algorithms.moving_tree import moving_tree
 
     base = q[: positions - sum(body.velocity_count)]
     joints = joint_coordinates(body, q[len(base) :])
     if floating:
         _check_rotation(base[3:], _INVERSE_DYNAMICS)
-        joints = (*base[:3], *_turned_in_opposite_order(base[3:]), *joints)
-    return tuple(inverse_dynamics(body, joints, qd, qdd, base_orientation=_NOT_TURNED).tolist())
+    motion, gravity = moving_tree(body).motion_in_pybullet, client.world.parameters.gravity
+    return motion.forces((*base, *joints), qd, qdd, gravity)
 
 
 @exported
@@ -200,7 +197,7 @@ def calculateJacobian(
     """
     try:
         tree = clients[physicsClientId].bodies[bodyUniqueId].tree
-        if tree is not None and len(objVelocities) == len(objAccelerations) == tree.joint_dofs:  # type: ignore[arg-type]
+        if tree is not None and len(objVelocities) == len(objAccelerations) == tree.joint_dofs > 0:  # type: ignore[arg-type]
             check = sum(localPosition) + sum(objPositions) + sum(objVelocities) + sum(objAccelerations)
             if -inf < check < inf:
                 return tree.jacobian(linkIndex, localPosition, objPositions)  # type: ignore[arg-type]
@@ -287,19 +284,6 @@ def calculateMassMatrix(
     from carom.algorithms import mass_matrix
 
     return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
-
-
-def _turned_in_opposite_order(quaternion: tuple[float, ...]) -> Quaternion:
-    """What PyBullet's inverse dynamics makes of the orientation of a floating base.
-
-    It takes it apart into roll, pitch and yaw and puts these together the other way round. Only gravity
-    feels it, and only if the base is turned about more than one axis.
-    """
-    roll, pitch, yaw = getEulerFromQuaternion(quaternion)
-    about_x, about_y, about_z = (
-        quaternion_from_rpy(*angles) for angles in ((roll, 0.0, 0.0), (0.0, pitch, 0.0), (0.0, 0.0, yaw))
-    )
-    return multiplied(multiplied(about_x, about_y), about_z)
 
 
 def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:

@@ -7,7 +7,6 @@ compared with, all of them fixed where they are now.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
@@ -18,7 +17,7 @@ from pybullet._errors import logger
 
 if TYPE_CHECKING:
     from carom.model.body_spec import BodySpec
-    from carom.queries import NearestPoints
+    from carom.pair_search import NearestPoints
     from pybullet._link_rows import Place
 
 BARE_LINK = -2
@@ -107,14 +106,14 @@ def nearest_points(
     with World() as world:
         places: dict[int, Place] = {}
 
-        def rows(things: list[Thing]) -> list[int]:
+        def rows(things: list[Thing]) -> tuple[int, ...]:
             added = []
             for thing in things:
                 row = world.load(thing.spec, thing.pose.position, thing.pose.orientation).first_link
                 places[row] = thing.place
                 added.append(row)
-            return added
+            return tuple(added)
 
-        pairs = list(product(rows(first), rows(second)))
-        found = world.queries().nearest(pairs, reach)
+        sides = rows(first), rows(second)
+        found = world.queries().nearest(*sides, reach)
         return [(places[a], places[b], points) for a, b, points in found]

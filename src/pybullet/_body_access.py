@@ -60,13 +60,12 @@ class BodyAccess:
 
     @cached_property
     def tree(self) -> MovingTree | None:
-        """Its equations of motion, if it has joints that move, all of one freedom each."""
+        """Its equations of motion, if none of its joints has more than one freedom."""
         if not {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_FIXED}.issuperset(self.body.joint_types):
             return None
         from carom.algorithms.moving_tree import moving_tree
 
-        tree = moving_tree(self.body)
-        return tree if tree.joint_dofs else None
+        return moving_tree(self.body)
 
     @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:

@@ -46,6 +46,9 @@ _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
 _DEFAULT_ITERATIONS = 20
 _DEFAULT_THRESHOLD = 1e-4
+# PyBullet is stuck where its steps leave more than this share of the distance.
+_STUCK = 0.5
+_STEPS_WHERE_STUCK = 200
 
 
 @overload
@@ -107,7 +110,8 @@ def calculateInverseKinematics(
     The search starts at the present pose, or at `currentPositions`. Where PyBullet's own iteration comes
     close enough, this is its result. Where it does not, the search goes on from there, and the result is
     the nearest that was found; save for a position with an orientation and neither
-    `maxNumIterations` nor `residualThreshold`: that is PyBullet's result, unless it violates limits.
+    `maxNumIterations` nor `residualThreshold`: that is PyBullet's result, unless it violates limits, or
+    leaves more than half of the distance, and more than 2 cm.
 
     With limits the result keeps them, in any case. With `lowerLimits`, `upperLimits`, `jointRanges` and
     `restPoses` joints are also drawn to their rest poses, a little with each call, as far as the link
@@ -170,8 +174,9 @@ def calculateInverseKinematics(
     )
     _check_link(body, link)
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
-        # Who says nothing of accuracy has learnt to live with PyBullet's, in trained policies for one.
-        options["further"] = 0
+        # Who says nothing of accuracy has learnt to live with PyBullet's, in trained policies for one, and
+        # comes nearer with each call; but not where PyBullet is stuck.
+        options |= {"further": _STEPS_WHERE_STUCK, "patience": _STUCK}
 
     with client.lock:
         found = _algorithm()(

@@ -1,40 +1,32 @@
 """Several joints of a body at once.
 
 Scripts name the same joints in every step of a control loop, so what is known of them is kept. When their
-rows follow each other in the state arrays, as they do for all joints of most arms, one loop reads or writes
-them all.
+rows follow each other in the state arrays, as they do for all joints of most arms, one loop reads them all.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from pybullet._constants import POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
-from pybullet._joint_access import (
-    NO_WRENCH,
-    AxisJoint,
-    JointAccess,
-    JointState,
-    write_target,
-    write_target_and_clamp,
-)
+from carom.motor_group import MotorGroup
+from pybullet._joint_access import NO_WRENCH, AxisJoint, JointAccess, JointState
+from pybullet._motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
     from pybullet._clients import Client
 
 # Groups of one body that are remembered.
 _MOST_GROUPS = 64
-_NO_CLAMP = -1.0
 
 
 class JointGroup:
-    """Any joints, one after the other. Consecutive axes build on it."""
+    """Any joints, one after the other. The other kinds build on it."""
 
-    def __init__(self, joints: Sequence[JointAccess]) -> None:
+    def __init__(self, client: Client, joints: Sequence[JointAccess]) -> None:
+        self.client = client
         self.joints = joints
-        self.count = len(joints)
 
     def states(self) -> tuple[JointState, ...]:
         """The state of each, as `getJointState` returns it."""
@@ -43,35 +35,64 @@ class JointGroup:
     def command(
         self,
         mode: int,
-        positions: Iterable[float],
-        velocities: Iterable[float],
-        forces: Iterable[float],
-        kps: Iterable[float],
-        kds: Iterable[float],
+        positions: Iterable[float] | None,
+        velocities: Iterable[float] | None,
+        forces: Iterable[float] | None,
+        kps: Iterable[float] | None,
+        kds: Iterable[float] | None,
     ) -> None:
-        """Sets the motor of each by numbers, as many as there are joints, as `setJointMotorControl2` does."""
-        for joint, position, velocity, force, kp, kd in zip(
-            self.joints, positions, velocities, forces, kps, kds, strict=True
-        ):
-            joint.command(mode, position, velocity, force, kp, kd, _NO_CLAMP)
+        """Sets the motor of each as `setJointMotorControl2` does; lists have a number for each, or are None.
+
+        Raises:
+            ValueError: Nothing has been set: the joints differ in kind, the mode is not one of the common
+                ones, or a number is not finite.
+            struct.error: Nothing has been set: a list does not fit.
+        """
+        raise ValueError("these motors are set one by one")
 
 
-class ConsecutiveAxes(JointGroup):
-    """Revolute and prismatic joints without sensors, in rows that follow each other."""
+class AxisGroup(JointGroup):
+    """Revolute and prismatic joints."""
 
     def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
-        super().__init__(joints)
+        super().__init__(client, joints)
+        self._axes = joints
+
+    @cached_property
+    def _motors(self) -> MotorGroup:
+        return MotorGroup(
+            self.client.world,
+            [joint.u for joint in self._axes],
+            [(joint.lower, joint.upper) for joint in self._axes],
+            DEFAULT_FORCE,
+            DEFAULT_POSITION_GAIN,
+            DEFAULT_VELOCITY_GAIN,
+        )
+
+    def command(
+        self,
+        mode: int,
+        positions: Iterable[float] | None,
+        velocities: Iterable[float] | None,
+        forces: Iterable[float] | None,
+        kps: Iterable[float] | None,
+        kds: Iterable[float] | None,
+    ) -> None:
+        self._motors.command(mode, positions, velocities, forces, kps, kds, self.client.time_step)
+
+
+class ConsecutiveAxes(AxisGroup):
+    """Such joints without sensors, in rows that follow each other."""
+
+    def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
+        super().__init__(client, joints)
         first, count = joints[0], len(joints)
-        self._client = client
         self._positions = first.positions[first.q : first.q + count]
         self._velocities = first.velocities[first.u : first.u + count]
         self._impulses = first.impulses[first.u : first.u + count]
-        self._torques = first.torques[first.u : first.u + count]
-        self._motors = first.motors
-        self._targets = [(joint.row_at, joint.lower, joint.upper) for joint in joints]
 
     def states(self) -> tuple[JointState, ...]:
-        time_step = self._client.time_step
+        time_step = self.client.time_step
         return tuple(
             [
                 (position, velocity, NO_WRENCH, impulse / time_step)
@@ -80,35 +101,6 @@ class ConsecutiveAxes(JointGroup):
                 )
             ]
         )
-
-    def command(
-        self,
-        mode: int,
-        positions: Iterable[float],
-        velocities: Iterable[float],
-        forces: Iterable[float],
-        kps: Iterable[float],
-        kds: Iterable[float],
-    ) -> None:
-        motors, time_step = self._motors, self._client.time_step
-        if mode == POSITION_CONTROL:
-            for (row_at, lower, upper), position, velocity, force, kp, kd in zip(
-                self._targets, positions, velocities, forces, kps, kds, strict=True
-            ):
-                if not lower <= position <= upper:
-                    position = lower if position < lower else upper
-                write_target(motors, row_at, position, velocity, kp, kd, force * time_step)
-        elif mode == VELOCITY_CONTROL:
-            for (row_at, _, _), velocity, force, kd in zip(
-                self._targets, velocities, forces, kds, strict=True
-            ):
-                write_target_and_clamp(motors, row_at, 0.0, velocity, 0.0, kd, force * time_step, inf)
-        elif mode == TORQUE_CONTROL:
-            torques = self._torques
-            for place, force in enumerate(forces):
-                torques[place] += force
-        else:
-            super().command(mode, positions, velocities, forces, kps, kds)
 
 
 class JointGroups(dict[tuple[int, ...], JointGroup]):
@@ -124,11 +116,13 @@ class JointGroups(dict[tuple[int, ...], JointGroup]):
 
     def __missing__(self, indices: tuple[int, ...]) -> JointGroup:
         joints = [self._joints[index] for index in indices]
-        axes = [joint for joint in joints if isinstance(joint, AxisJoint) and not joint.has_sensor]
-        if joints and len(axes) == len(joints) and _are_consecutive(axes):
+        axes = [joint for joint in joints if isinstance(joint, AxisJoint)]
+        if not axes or len(axes) < len(joints):
+            group = JointGroup(self._client, joints)
+        elif _are_consecutive(axes) and not any(joint.has_sensor for joint in axes):
             group = ConsecutiveAxes(self._client, axes)
         else:
-            group = JointGroup(joints)
+            group = AxisGroup(self._client, axes)
         if len(self) >= _MOST_GROUPS:
             self.clear()
         self[indices] = group

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf
 from struct import error as StructError
 from typing import Any, overload
@@ -14,16 +13,13 @@ from pybullet._constants import PD_CONTROL, POSITION_CONTROL, TORQUE_CONTROL, VE
 from pybullet._errors import error, fail
 from pybullet._joints import NO_INDICES
 from pybullet._lookup import joint_access
+from pybullet._motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 __all__ = [
     "setJointMotorControl",
     "setJointMotorControl2",
     "setJointMotorControlArray",
 ]
-
-DEFAULT_FORCE = 100000.0
-DEFAULT_POSITION_GAIN = 0.1
-DEFAULT_VELOCITY_GAIN = 1.0
 
 _ILLEGAL_MODE = "Illegal control mode."
 _UNPARSED = "Error parsing arguments in setJointControl."
@@ -214,16 +210,9 @@ def setJointMotorControlArray(
     """
     try:
         group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
-        count = group.count
-        positions = (0.0,) * count if targetPositions is None else _finite(targetPositions, count)
-        velocities = (0.0,) * count if targetVelocities is None else _finite(targetVelocities, count)
-        bounds = (DEFAULT_FORCE,) * count if forces is None else _finite(forces, count)
-        kps = (DEFAULT_POSITION_GAIN,) * count if positionGains is None else _finite(positionGains, count)
-        kds = (DEFAULT_VELOCITY_GAIN,) * count if velocityGains is None else _finite(velocityGains, count)
-        if controlMode in _MODES:
-            group.command(controlMode, positions, velocities, bounds, kps, kds)
-            return
-    except (KeyError, TypeError, ValueError, AttributeError, StructError):
+        group.command(controlMode, targetPositions, targetVelocities, forces, positionGains, velocityGains)
+        return
+    except (KeyError, TypeError, ValueError, StructError):
         pass
     _set_array_carefully(
         one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
@@ -232,14 +221,6 @@ def setJointMotorControlArray(
         (targetPositions, targetVelocities, forces, positionGains, velocityGains),
         physicsClientId,
     )
-
-
-def _finite(values: Any, count: int) -> Sequence[float]:
-    """As many finite numbers in a list or tuple; raises `ValueError` or `TypeError` for anything else."""
-    plain = values if isinstance(values, (list, tuple)) else values.tolist()
-    if len(plain) == count and -inf < sum(plain) < inf:
-        return plain
-    raise ValueError
 
 
 def _set_array_carefully(

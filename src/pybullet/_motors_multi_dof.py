@@ -13,7 +13,7 @@ from pybullet._constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL,
 from pybullet._errors import fail
 from pybullet._joints import NO_INDICES
 from pybullet._lookup import OUT_OF_RANGE, body_access, joint_access, no_joint
-from pybullet._motors import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+from pybullet._motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
     from pybullet._joint_access import JointAccess

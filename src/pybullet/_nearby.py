@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 from typing import TYPE_CHECKING
 
 from pybullet._arguments import bound, integer, vector3
@@ -13,7 +12,7 @@ from pybullet._contacts import ContactPoint
 from pybullet._link_rows import Place, places
 
 if TYPE_CHECKING:
-    from carom.queries import NearestPoints
+    from carom.pair_search import NearestPoints
     from carom.world import World
 
 __all__ = ["getClosestPoints", "getOverlappingObjects"]
@@ -88,7 +87,7 @@ def getClosestPoints(
         found = nearest_points(sides[0], sides[1], reach)
         return tuple(_contact_point(a, b, points) for a, b, points in found)
     links_a, links_b = _rows(world, body_a, link_a), _rows(world, body_b, link_b)
-    rows = world.queries().nearest(list(product(links_a, links_b)), reach)
+    rows = world.queries().nearest(links_a, links_b, reach)
     table = world.link_places
     return tuple([_contact_point(table[a], table[b], points) for a, b, points in rows])
 

@@ -4,15 +4,26 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from tests.physics.aba_reference import rotation
 from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulum, put_in_motion, random_tree
 
 from carom import Body, World
 from carom.algorithms import inverse_dynamics, mass_matrix
+from carom.algorithms.motion import Motion
+from carom.algorithms.moving_tree import moving_tree
+from carom.description.transform import quaternion_from_rpy, rpy_from_quaternion
 from carom.model.codes import MOTOR_MAX_IMPULSE
 
 GRAVITY = (0.4, -0.2, -9.81)
+COMPONENTS = st.floats(-1.0, 1.0)
+UNIT_QUATERNIONS = (
+    st.tuples(COMPONENTS, COMPONENTS, COMPONENTS, COMPONENTS)
+    .filter(lambda numbers: math.hypot(*numbers) > 0.1)
+    .map(lambda numbers: tuple(number / math.hypot(*numbers) for number in numbers))
+)
 
 
 def moving_body(seed: int, link_count: int, *, fixed_base: bool, is_chain: bool = False) -> Body:
@@ -164,3 +175,69 @@ def test_answers_stay_right_when_bodies_come_and_go():
     ask(newcomer)
     for body in bodies:
         np.testing.assert_array_equal(ask(body), expected[body.id])
+
+
+def gravity_turned_back(quaternion, *, opposite_order: bool) -> np.ndarray:
+    """Gravity seen from a base, by the forces that hold a free body up which is turned like this."""
+    world = World()
+    world.gravity = GRAVITY
+    body = world.load(random_tree(1, 1, fixed_base=False))
+    motion = Motion(moving_tree(body), opposite_order=opposite_order)
+    dofs = sum(body.velocity_count)
+    position = [0.1, 0.2, 0.3, *quaternion, *np.zeros(dofs)]
+    still = [0.0] * (6 + dofs)
+    mass = sum(link.mass for link in body.links)
+    return -np.array(motion.forces(position, still, still, world.parameters.gravity))[:3] / mass
+
+
+@given(turn=UNIT_QUATERNIONS)
+def test_gravity_of_a_free_base_is_turned_back(turn):
+    expected = rotation(np.array(turn)).T @ GRAVITY
+    assert_allclose(gravity_turned_back(turn, opposite_order=False), expected, atol=1e-9)
+
+
+@given(turn=UNIT_QUATERNIONS)
+@example((0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5)))
+@example((0.5, -0.5, 0.5, 0.5))
+@example((-0.3, math.sqrt(0.41), 0.3, math.sqrt(0.41)))
+@example((1.0, 0.0, 0.0, 0.0))
+def test_pybullet_puts_roll_pitch_and_yaw_together_the_other_way_round(turn):
+    angles = rpy_from_quaternion(turn)
+    about_x, about_y, about_z = (
+        rotation(np.array(quaternion_from_rpy(*np.where(np.arange(3) == axis, angles, 0.0))))
+        for axis in range(3)
+    )
+    expected = (about_x @ about_y @ about_z).T @ GRAVITY
+    assert_allclose(gravity_turned_back(turn, opposite_order=True), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("place", range(13))
+def test_a_free_base_takes_finite_numbers_only(place):
+    body = World().load(random_tree(2, 1, fixed_base=False))
+    dofs = sum(body.velocity_count)
+    position = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, *np.zeros(dofs)])
+    rates = np.zeros(6 + dofs)
+    (position if place < 7 else rates)[place if place < 7 else place - 7] = math.nan
+    with pytest.raises(ValueError, match="finite"):
+        inverse_dynamics(body, position, rates, np.zeros(6 + dofs))
+
+
+def test_a_quaternion_without_length_is_no_orientation():
+    body = World().load(random_tree(2, 1, fixed_base=False))
+    still = np.zeros(6 + sum(body.velocity_count))
+    with pytest.raises(ValueError, match="finite"):
+        inverse_dynamics(body, np.zeros(7 + len(still) - 6), still, still)
+
+
+@pytest.mark.parametrize("fixed_base", [True, False], ids=["fixed", "free"])
+def test_lists_have_to_fit_the_body(fixed_base):
+    body = World().load(random_tree(2, 3, fixed_base=fixed_base))
+    rates = np.zeros(sum(body.velocity_count) + (0 if fixed_base else 6))
+    positions = np.zeros(sum(body.position_count) + (0 if fixed_base else 7))
+    for more in ((1, 0, -1), (-1, 1, 0), (0, 1, -1), (0, 0, 1)):
+        q, qd, qdd = (
+            np.resize(values, len(values) + n)
+            for values, n in zip((positions, rates, rates), more, strict=True)
+        )
+        with pytest.raises(ValueError, match="fit"):
+            inverse_dynamics(body, q, qd, qdd)

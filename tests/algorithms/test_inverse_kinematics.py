@@ -14,6 +14,7 @@ import pybullet as p
 from carom import World
 from carom.algorithms import inverse_kinematics
 from carom.description import JointType
+from pybullet._clients import clients
 
 ORACLE = json.loads(Path(__file__).with_name("reach_oracle.json").read_text(encoding="utf-8"))
 ARRIVED = 1e-4
@@ -69,7 +70,39 @@ def test_where_pybullet_arrives_the_answer_is_the_same(reach, name, title):
 def test_an_orientation_without_a_word_about_accuracy_gets_pybullets_answer_arrived_or_not(reach, name):
     asked, way = ORACLE[name]["ways"]["oriented"]["answers"], Way(200, oriented=True)
     for target, answer in zip(reach.targets(len(asked)), asked, strict=True):
-        assert_allclose(reach.ask(way, target), answer, rtol=0, atol=1e-6)
+        if not is_stuck(reach, target, answer):
+            assert_allclose(reach.ask(way, target), answer, rtol=0, atol=1e-6)
+
+
+def is_stuck(reach, target, answer):
+    """Whether more than 2 cm and half of the way is left."""
+    left, first = reach.distances(target, answer)[0], reach.distances(target, reach.home)[0]
+    return left > 0.02 and left > 0.5 * first
+
+
+def test_an_orientation_is_reached_from_singular_poses_where_pybullet_is_stuck(panda):
+    """With all joints at 0, the 20 steps sometimes leave more than half of the way."""
+    random, way = np.random.RandomState(3), Way(1, oriented=True)
+    panda.home = np.zeros(len(panda.joints))
+    asked = arrived = 0
+    for _ in range(400):
+        joints = np.clip(0.3 * random.standard_normal(len(panda.joints)), panda.lower, panda.upper)
+        target = panda.place(joints)
+        panda.place(panda.home)
+        pybullets = inverse_kinematics(
+            clients[panda.client].world.bodies[panda.body],
+            [panda.arm.link],
+            [target[0]],
+            [target[1]],
+            iterations=20,
+            further=0,
+        )
+        if is_stuck(panda, target, pybullets):
+            asked += 1
+            distance, angle = panda.distances(target, panda.ask(way, target))
+            arrived += distance < CLOSE and angle < CLOSE
+    assert asked >= 5
+    assert arrived >= 0.9 * asked
 
 
 # With the others PyBullet has not come to rest when it stops.

@@ -11,8 +11,9 @@ import warp as wp
 from numpy.typing import ArrayLike
 
 from carom.collision.capacity import scratch_capacity
-from carom.collision.closest import closest_points_kernel, place_shapes_kernel
+from carom.collision.closest import Searches, closest_points_kernel, place_shapes_kernel
 from carom.collision.collide import collide_kernel
+from carom.collision.ray_packets import Rays
 from carom.collision.rays import prepare_rays_kernel, rays_kernel
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
@@ -20,7 +21,7 @@ from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierar
 from carom.model.arrays import ArrayTable
 from carom.model.codes import Rolling, ShapeKind
 from carom.model.contact_structs import Contacts, Pairs, Shapes
-from carom.model.real import NUMPY_REAL, Vector3, Vector8, real
+from carom.model.real import NUMPY_REAL
 from carom.model.structs import Model, Settings, State
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
@@ -92,11 +93,6 @@ def height_field(heights, spacing=(1.0, 1.0), **options):
     nothing = np.empty(0, dtype=np.int32)
     grid = Polyhedron(points, np.empty((0, 4)), nothing, nothing.copy(), nothing.copy())
     return Shape(ShapeKind.HEIGHTFIELD, (0, 0, 0), polyhedron=grid, columns=columns, static=True, **options)
-
-
-def numbers(array: Any) -> np.ndarray:
-    """A Warp array as a NumPy array."""
-    return array.numpy()
 
 
 class Scene:
@@ -212,14 +208,17 @@ class Scene:
             dim=1,
             inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
         )
-        found = wp.zeros((1, len(pairs)), dtype=Vector8)
-        first, second = (wp.array([pair[side] for pair in pairs], dtype=wp.int32) for side in range(2))
+        count = len(pairs)
+        table = ArrayTable(Searches, 1)
+        table.reserve({"search": count})
+        for side, name in enumerate(("search_first", "search_second")):
+            table.numpy[name][0, :count] = [pair[side] for pair in pairs]
         wp.launch(
             closest_points_kernel,
             dim=1,
-            inputs=[structs["shapes"], structs["pairs"], first, second, NUMPY_REAL(reach), found],
+            inputs=[structs["shapes"], structs["pairs"], table.struct("cpu"), count, NUMPY_REAL(reach)],
         )
-        return numbers(found)[0]
+        return table.numpy["search_found"][0, :count]
 
     def rays(self, starts, ends, mask: int = -1, hit_number: int = 0, separation: float = 0.0):
         """Shape (-1 for none), fraction and normal of each ray's hit."""
@@ -229,29 +228,18 @@ class Scene:
             dim=1,
             inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
         )
-        starts, ends = (wp.array(np.reshape(points, (-1, 3)), dtype=Vector3) for points in (starts, ends))
-        count = len(starts)
-        shape = wp.zeros(count, dtype=wp.int32)
-        fraction = wp.zeros(count, dtype=real)
-        normal = wp.zeros(count, dtype=Vector3)
+        starts, ends = (np.reshape(points, (-1, 3)) for points in (starts, ends))
+        count, threads = len(starts), 2
+        table = ArrayTable(Rays, None)
+        table.reserve({"ray": count})
+        table.numpy["ray_start"][:count], table.numpy["ray_end"][:count] = starts, ends
+        question = (0, count, threads, mask, hit_number, NUMPY_REAL(separation))
         wp.launch(
             rays_kernel,
-            dim=count,
-            inputs=[
-                structs["shapes"],
-                structs["pairs"],
-                0,
-                starts,
-                ends,
-                mask,
-                hit_number,
-                NUMPY_REAL(separation),
-                shape,
-                fraction,
-                normal,
-            ],
+            dim=threads,
+            inputs=[structs["shapes"], structs["pairs"], table.struct("cpu"), *question],
         )
-        return numbers(shape), numbers(fraction), numbers(normal)
+        return tuple(table.numpy[name][:count] for name in ("ray_shape", "ray_fraction", "ray_normal"))
 
     @property
     def pairs(self) -> list[tuple[int, int]]:

@@ -40,6 +40,20 @@ def test_pairs_are_those_whose_bounds_meet(seed, count, spread, sizes, flat):
     assert scene.pairs == brute_force_pairs(scene, count, 0.1)
 
 
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(3, 60))
+def test_pairs_do_not_depend_on_those_of_the_step_before(seed, count):
+    rng = np.random.default_rng(seed)
+    scene = Scene(
+        [sphere(0.5, breaking=0.1) for _ in range(count)], pair_room=count * count, contact_room=4000
+    )
+    for _ in range(6):
+        for row in range(count):
+            scene.place(row, rng.uniform(-2, 2, size=3))
+        scene.collide()
+        assert scene.pairs == brute_force_pairs(scene, count, 0.1)
+
+
 def test_bodies_that_fell_far_away_or_are_nowhere_do_not_disturb_the_others():
     rng = np.random.default_rng(3)
     positions = rng.uniform(0, 10, (200, 3))

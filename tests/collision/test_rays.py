@@ -130,3 +130,35 @@ def test_height_field_is_that_of_its_triangles():
     assert (by_mesh[0] == 0).sum() > 50
     assert_allclose(by_field[1], by_mesh[1], atol=1e-12)
     assert_allclose(by_field[2], by_mesh[2], atol=1e-9)
+
+
+def crowd_and_rays(count: int):
+    """A hundred shapes of all kinds, and rays in all directions among them."""
+    rng = np.random.default_rng(count)
+    makers, shapes = list(MAKERS.values()), []
+    for i in range(100):
+        turn = rng.normal(size=4)
+        maker = makers[i % len(makers)] if i < 20 else makers[i % 5]
+        shapes.append(maker(position=rng.uniform(-2, 2, 3), orientation=turn / np.linalg.norm(turn)))
+    return Scene(shapes), rng.uniform(-4, 4, (count, 3)), rng.uniform(-4, 4, (count, 3))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 7, 9, 30])
+@pytest.mark.parametrize("hit_number", [0, 2])
+def test_rays_do_not_mind_which_others_are_cast_with_them(count, hit_number):
+    scene, starts, ends = crowd_and_rays(count)
+    together = scene.rays(starts, ends, hit_number=hit_number)
+    alone = [scene.rays(start, end, hit_number=hit_number) for start, end in zip(starts, ends, strict=True)]
+    for mine, theirs in zip(together, zip(*alone, strict=True), strict=True):
+        assert np.array_equal(mine, np.concatenate(theirs))
+
+
+@pytest.mark.parametrize("bad", [0, 1, 2, 3, 6])
+def test_a_ray_of_no_number_does_not_harm_its_neighbours(bad):
+    scene, starts, ends = crowd_and_rays(7)
+    others = np.arange(7) != bad
+    expected = [values[others] for values in scene.rays(starts, ends)]
+    starts[bad, 1], ends[bad, 0] = np.nan, np.inf
+    shape, fraction, normal = scene.rays(starts, ends)
+    assert (shape[bad], fraction[bad], *normal[bad]) == (-1, 1.0, 0.0, 0.0, 0.0)
+    assert all(map(np.array_equal, (shape[others], fraction[others], normal[others]), expected))

@@ -66,7 +66,7 @@ def test_a_friction_anchor_holds_what_creeps(client: int) -> None:
     p.setPhysicsEngineParameter(numSolverIterations=5)
     free = creep()
     p.setPhysicsEngineParameter(numSolverIterations=5)
-    assert creep(frictionAnchor=1) < 0.5 * free
+    assert creep(frictionAnchor=1) < 0.8 * free
 
 
 def test_a_friction_anchor_lets_go_when_friction_is_overcome(client: int) -> None:

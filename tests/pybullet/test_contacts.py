@@ -1,5 +1,6 @@
 """getContactPoints and performCollisionDetection; the expected values are what PyBullet 3.2.7 answers."""
 
+from math import pi
 from typing import Any
 
 import pytest
@@ -274,3 +275,29 @@ def test_boxes_with_one_centre_part_along_the_first_of_their_shortest_axes(
     assert points
     for point in points:
         assert point[7] == pytest.approx(normal, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("floor", "turn", "places"),
+    [
+        ((1, 1, 0.5), (0, 0, 0.3), [(-0.036, -0.221), (-0.155, 0.162), (0.036, 0.221), (0.155, -0.162)]),
+        ((1, 1, 0.5), (pi, 0, 0.3), [(-0.155, 0.162), (-0.036, -0.221), (0.155, -0.162), (0.036, 0.221)]),
+        ((0.08, 1, 0.5), (0, 0, 0), [(-0.08, 0.2), (0.08, 0.2), (0.08, -0.2), (-0.08, -0.2)]),
+        ((1, 0.05, 0.5), (0, pi / 2, 0), [(0.05, -0.05), (0.05, 0.05), (-0.05, 0.05), (-0.05, -0.05)]),
+    ],
+)
+def test_the_corners_of_a_box_on_a_box_come_in_pybullets_order(
+    client: int, floor: tuple[float, ...], turn: tuple[float, ...], places: list[tuple[float, float]]
+) -> None:
+    ground = p.createCollisionShape(p.GEOM_BOX, halfExtents=floor)
+    p.createMultiBody(0, ground, basePosition=[0, 0, -0.5])
+    half = (0.1, 0.2, 0.05)
+    height = half[0] if turn[1] else half[2]
+    p.createMultiBody(
+        1,
+        p.createCollisionShape(p.GEOM_BOX, halfExtents=half),
+        basePosition=[0, 0, height - 1e-3],
+        baseOrientation=p.getQuaternionFromEuler(turn),
+    )
+    p.performCollisionDetection()
+    assert [point[5][:2] for point in p.getContactPoints()] == [pytest.approx(xy, abs=1e-3) for xy in places]

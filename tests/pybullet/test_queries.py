@@ -197,3 +197,64 @@ def test_questions_between_steps_change_nothing(things):
 
     quiet = run(ask=False)
     assert run(ask=True) == quiet
+
+
+def height_and_gap(box) -> tuple[float, float]:
+    """Where a ray from above hits the box, and how far it is from the plane."""
+    ((body, _, _, position, _),) = p.rayTest([0, 0, 9], [0, 0, -9])
+    assert body == box
+    return position[2], p.getClosestPoints(box, 0, 20)[0][8]
+
+
+def test_answers_follow_every_way_to_move_a_body(things):
+    _plane, box, sphere = things
+    assert height_and_gap(box) == pytest.approx((1.5, 0.5))
+    p.resetBasePositionAndOrientation(box, [0, 0, 3], [0, 0, 0, 1])
+    assert height_and_gap(box) == pytest.approx((3.5, 2.5))
+    saved = p.saveState()
+    p.setGravity(0, 0, -10)
+    z = 3.0
+    for _ in range(3):
+        p.stepSimulation()
+        before, z = z, p.getBasePositionAndOrientation(box)[0][2]
+        assert z < before
+        assert height_and_gap(box) == pytest.approx((z + 0.5, z - 0.5))
+        assert height_and_gap(box) == pytest.approx((z + 0.5, z - 0.5))
+    # Nothing moves here, but the places of the last step are found again.
+    p.performCollisionDetection()
+    assert height_and_gap(box) == pytest.approx((z + 0.5, z - 0.5))
+    p.restoreState(saved)
+    assert height_and_gap(box) == pytest.approx((3.5, 2.5))
+    p.removeBody(sphere)
+    assert height_and_gap(box) == pytest.approx((3.5, 2.5))
+
+
+def test_answers_follow_a_joint(turned):
+    def tip() -> float:
+        return p.getClosestPoints(turned, turned, 9, -1, 0)[0][8]
+
+    before = tip()
+    p.resetJointState(turned, 0, 2.0)
+    after = tip()
+    assert after < before - 0.1
+    assert tip() == after
+    p.resetJointState(turned, 0, 0.0)
+    assert tip() == before
+
+
+def test_answers_follow_a_margin(client):
+    corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    shape = p.createCollisionShape(p.GEOM_MESH, vertices=corners)
+    body = p.createMultiBody(1, shape)
+    at = [p.rayTest([0, 0, 9], [0, 0, -9])[0][3][2]]
+    p.changeDynamics(body, -1, collisionMargin=0.1)
+    at.append(p.rayTest([0, 0, 9], [0, 0, -9])[0][3][2])
+    assert at[1] > at[0] + 0.05
+
+
+def test_a_mask_of_rays_counts_when_it_changes(things):
+    box = things[1]
+    assert p.rayTest([0, 0, 9], [0, 0, 0.9])[0][0] == box
+    p.setCollisionFilterGroupMask(box, -1, 2, 1)
+    assert p.rayTest([0, 0, 9], [0, 0, 0.9], collisionFilterMask=1)[0][0] == -1
+    assert p.rayTest([0, 0, 9], [0, 0, 0.9], collisionFilterMask=2)[0][0] == box

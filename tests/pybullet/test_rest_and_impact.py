@@ -117,3 +117,80 @@ def test_collisions_keep_momentum_to_rounding(client: int, first: str, second: s
         for body in masses:
             p.removeBody(body)
     assert hits > 10
+
+
+TIME_STEP = 1e-3
+"""So short that the explicit gyroscopic torque, which adds energy in free flight, hardly does [s]."""
+
+
+def energy(body: int, gravity: float) -> float:
+    """What semi-implicit steps keep of the energy of a body in free fall [J]."""
+    mass, _, inertia, *_ = p.getDynamicsInfo(body, -1)
+    (_, _, height), turn = p.getBasePositionAndOrientation(body)
+    linear, angular = p.getBaseVelocity(body)
+    spin = np.reshape(p.getMatrixFromQuaternion(turn), (3, 3)).T @ angular
+    kinetic = 0.5 * mass * np.dot(linear, linear) + 0.5 * np.dot(inertia, spin * spin)
+    return float(kinetic + mass * gravity * (height - 0.5 * TIME_STEP * linear[2]))
+
+
+def throw(shape: int, position: list[float], velocity: list[float], chance: random.Random) -> int:
+    """A body that loses nothing, turned and spinning at random."""
+    body = p.createMultiBody(1, shape, basePosition=position, baseOrientation=turned(chance))
+    p.changeDynamics(body, -1, restitution=1, lateralFriction=0, linearDamping=0, angularDamping=0)
+    p.resetBaseVelocity(body, velocity, [chance.uniform(-3, 3) for _ in range(3)])
+    return body
+
+
+def most_gained(bodies: list[int], gravity: float, seconds: float) -> float:
+    """Share by which the energy of bodies is at most above that of the start."""
+    before = most = sum(energy(body, gravity) for body in bodies)
+    for step in range(round(seconds / TIME_STEP)):
+        p.stepSimulation()
+        if step % 5 == 0:
+            most = max(most, sum(energy(body, gravity) for body in bodies))
+    return most / before - 1.0
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_what_bounces_at_restitution_one_gains_no_energy(client: int, name: str) -> None:
+    p.setTimeStep(TIME_STEP)
+    p.setGravity(0, 0, -9.81)
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    p.changeDynamics(floor, -1, restitution=1, lateralFriction=0)
+    chance, shape = random.Random(name), SHAPES[name]()
+    for _ in range(8):
+        body = throw(shape, [0, 0, chance.uniform(0.3, 0.6)], [0.5, -0.3, chance.uniform(-2, 0)], chance)
+        assert most_gained([body], 9.81, 1.5) < 5e-3
+        p.removeBody(body)
+
+
+@pytest.mark.parametrize(("first", "second"), list(combinations_with_replacement(SHAPES, 2)))
+def test_collisions_at_restitution_one_gain_no_energy(client: int, first: str, second: str) -> None:
+    p.setTimeStep(TIME_STEP)
+    chance, shapes = random.Random(first + second), (SHAPES[first](), SHAPES[second]())
+    for _ in range(8):
+        bodies = [
+            throw(shape, [x, chance.uniform(-0.05, 0.05), 0], [-4.0 * x, 0, 0], chance)
+            for shape, x in zip(shapes, (-0.4, 0.4), strict=True)
+        ]
+        assert most_gained(bodies, 0.0, 0.4) < 5e-3
+        assert p.getBaseVelocity(bodies[0])[0][0] < 1.0, "they met"
+        for body in bodies:
+            p.removeBody(body)
+
+
+@pytest.mark.parametrize("speed", [0.5, 2.0, 5.0])
+def test_a_ball_at_restitution_one_bounces_no_higher_at_usual_steps(client: int, speed: float) -> None:
+    """At 240 Hz penetration is deep, and what takes it back would add a tenth to the energy."""
+    p.setGravity(0, 0, -9.81)
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    p.changeDynamics(floor, -1, restitution=1)
+    ball = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[0, 0, 1.0])
+    p.changeDynamics(ball, -1, restitution=1, linearDamping=0, angularDamping=0)
+    p.resetBaseVelocity(ball, [0, 0, -speed])
+    top = 1.0 + speed**2 / (2 * 9.81) + 0.5 * speed / 240
+    highest = 0.0
+    for _ in range(2400):
+        p.stepSimulation()
+        highest = max(highest, p.getBasePositionAndOrientation(ball)[0][2])
+    assert highest < top + 1e-4

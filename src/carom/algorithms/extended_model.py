@@ -34,7 +34,7 @@ class ExtendedModel:
 
     def __init__(self, nodes: Sequence[Node]) -> None:
         self._tree = MovingTree(nodes, free=True)
-        self.size = BASE_POSITIONS + self._tree.coordinates
+        self.size: int = BASE_POSITIONS + self._tree.coordinates
         # The coordinate of each dof of the tree, whose base has its angular dofs first.
         places = [3, 4, 5, 0, 1, 2]
         first = BASE_POSITIONS

@@ -10,7 +10,7 @@ import numpy as np
 from carom.algorithms.moving_tree import moving_tree
 from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotation_matrix
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.model.codes import BASE_POSITIONS
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -41,20 +41,12 @@ def inverse_dynamics(
         Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base
         along its own axes before them.
     """
-    tree = moving_tree(body)
+    gravity = body.world.parameters.gravity
     if body.fixed_base:
         first = body.first_position
         own = body.world.position[first + 3 : first + BASE_POSITIONS]
-        tree.set_resting_base(_gravity_seen_from(body, own if base_orientation is None else base_orientation))
-        return np.array(tree.forces(positions, velocities, accelerations))
-
-    gx, gy, gz = _gravity_seen_from(body, positions[3:BASE_POSITIONS])
-    ax, ay, az = accelerations[3:BASE_VELOCITIES]
-    tree.set_base_motion(*velocities[:3], *accelerations[:3], ax - gx, ay - gy, az - gz)
-    forces = tree.forces(
-        positions[BASE_POSITIONS:], velocities[BASE_VELOCITIES:], accelerations[BASE_VELOCITIES:]
-    )
-    return np.array((*forces[3:6], *forces[:3], *forces[6:]))
+        gravity = _gravity_seen_from(body, own if base_orientation is None else base_orientation)
+    return np.array(moving_tree(body).motion.forces(positions, velocities, accelerations, gravity))
 
 
 def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> Vector3:

@@ -59,6 +59,7 @@ def inverse_kinematics(
     iterations: int = DEFAULT_ITERATIONS,
     further: int | None = None,
     threshold: float = DEFAULT_THRESHOLD,
+    patience: float = 0.0,
 ) -> list[float]:
     """Joint positions at which links are where they ought to be.
 
@@ -86,6 +87,8 @@ def inverse_kinematics(
         iterations: Most steps of PyBullet's method.
         further: Most steps of the other one, unless a limit is violated: then, or where not given, as many.
         threshold: Distance [m] and angle [rad] that are close enough.
+        patience: The result of PyBullet's method is taken as it is if it keeps the limits and leaves not more
+            than this share of the first distance, or 2 cm; 0 takes it only where it arrives.
 
     Returns:
         Joint positions in order, a quaternion for each spherical joint; the best that were found, if
@@ -106,7 +109,7 @@ def inverse_kinematics(
         step = Step.NULL_SPACE
         solver.set_rest(ranges, rest)
     further = iterations if further is None else further
-    return solver.solve(orientations is not None, step, bounded, iterations, further, threshold)
+    return solver.solve(orientations is not None, step, bounded, iterations, further, threshold, patience)
 
 
 class _Solver:
@@ -150,7 +153,7 @@ class _Solver:
         self._launch = Launch(
             inverse_kinematics_kernel,
             1,
-            [sizes, chain.arrays.struct(_DEVICE), search.struct(_DEVICE), 0, 0, 0, 0, 0, 0.0],
+            [sizes, chain.arrays.struct(_DEVICE), search.struct(_DEVICE), 0, 0, 0, 0, 0, 0.0, 0.0],
             _DEVICE,
         )
 
@@ -199,10 +202,17 @@ class _Solver:
         self._rest[:] = rest
 
     def solve(
-        self, oriented: bool, step: Step, bounded: bool, iterations: int, further: int, threshold: float
+        self,
+        oriented: bool,
+        step: Step,
+        bounded: bool,
+        iterations: int,
+        further: int,
+        threshold: float,
+        patience: float,
     ) -> list[float]:
         most = _MOST_ITERATIONS
-        options = (oriented, step, bounded, min(iterations, most), min(further, most), threshold)
+        options = (oriented, step, bounded, min(iterations, most), min(further, most), threshold, patience)
         if options != self._options:
             for index, value in enumerate(options, start=_FIRST_OPTION):
                 self._launch.replace(index, value)

@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from math import inf
 from struct import Struct
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.algorithms.motion import Motion, Numbers
 from carom.algorithms.nodes import End, Node, body_nodes
 from carom.algorithms.tree.dynamics import inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
-from carom.description.pose import Vector3
-from carom.model.arrays import ArrayTable
+from carom.model.arrays import ArrayTable, numbers_of
 from carom.model.codes import BASE_VELOCITIES, POSITION_COUNT
 from carom.model.launch import Launch
 from carom.model.real import NUMPY_REAL
@@ -22,7 +22,6 @@ from carom.model.real import NUMPY_REAL
 if TYPE_CHECKING:
     from carom.body import Body
 
-Numbers = Sequence[float] | np.ndarray
 Rows = tuple[tuple[float, ...], ...]
 
 _DEVICE = "cpu"
@@ -42,7 +41,6 @@ class MovingTree:
         coordinates: Number of positions of the joints: a quaternion for each spherical one.
         joint_dofs: Number of their rates.
         dofs: The same with those of a free base, six before the others: angular, then linear.
-        gravity: What the base was last said to rest under, if it still is.
         structs: What kernels are given: the sizes and the arrays.
         arrays: The arrays by name.
     """
@@ -56,9 +54,9 @@ class MovingTree:
             free: The base moves.
         """
         self.free = free
-        self.joint_dofs = sum(len(node.axes) for node in nodes)
-        self.dofs = self.joint_dofs + (BASE_VELOCITIES if free else 0)
-        self.coordinates = sum(POSITION_COUNT[node.kind] for node in nodes)
+        self.joint_dofs: int = sum(len(node.axes) for node in nodes)
+        self.dofs: int = self.joint_dofs + (BASE_VELOCITIES if free else 0)
+        self.coordinates: int = sum(POSITION_COUNT[node.kind] for node in nodes)
         sizes: Any = TreeSizes()
         sizes.nodes = len(nodes)
         sizes.coordinates = self.coordinates
@@ -79,18 +77,16 @@ class MovingTree:
                 "matrix": self.dofs * self.dofs,
             }
         )
-        self.arrays = table.numpy
+        self.arrays: dict[str, Any] = table.numpy
         self._write_nodes(nodes, free=free)
         self._write_ends(ends)
-        self.structs = (sizes, table.struct(_DEVICE))
+        self.structs: tuple[Any, Any] = (sizes, table.struct(_DEVICE))
         self._jacobians: dict[int, Callable[[], None]] = {}
         self._links = range(-1, len(ends) - 1)
-        self.gravity: Vector3 | None = None
         self._put_base = self._writer(0, first_position)
         self._put_point = self._writer(0, 3)
         self._put_positions = self._writer(first_position, self.coordinates)
-        self._put_rates = self._writer(first_rate, self.joint_dofs)
-        self._put_accelerations = self._writer(first_rate + self.joint_dofs, self.joint_dofs)
+        self._put_motion = self._writer(first_position, self.coordinates + 2 * self.joint_dofs)
         self._arriving = numbers_of(self.arrays["output"])[self.dofs :]
         self._row = Struct(f"{self.dofs}{_TYPE_CODE}")
         used = {"output": _JACOBIAN_ROWS * self.dofs, "matrix": self.dofs * self.dofs}
@@ -98,19 +94,12 @@ class MovingTree:
             self.arrays[name].data[:count].cast("B") for name, count in used.items()
         )
 
-    def set_resting_base(self, gravity: Vector3) -> None:
-        """For later questions about forces: the base rests under gravity [m/s²]."""
-        x, y, z = gravity
-        self.set_base_motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -x, -y, -z)
-        self.gravity = gravity
-
     def set_base_motion(self, *motion: float) -> None:
         """For later questions about forces: how the base moves.
 
         Args:
             *motion: Angular velocity, angular acceleration, and acceleration less gravity.
         """
-        self.gravity = None
         self._put_base(*motion)
 
     def forces(self, positions: Numbers, rates: Numbers, accelerations: Numbers) -> tuple[float, ...]:
@@ -122,11 +111,15 @@ class MovingTree:
             accelerations: As many as `joint_dofs`.
 
         Raises:
-            ValueError: Something given is not finite, or too big for the forces to be.
+            ValueError: Something given is not finite, too big for the forces to be, or not as long as said.
         """
-        self._put_positions(*positions)
-        self._put_rates(*rates)
-        self._put_accelerations(*accelerations)
+        if not (
+            len(positions) == self.coordinates
+            and len(rates) == self.joint_dofs
+            and len(accelerations) == self.joint_dofs
+        ):
+            raise ValueError("the question does not fit the tree")
+        self._put_motion(*positions, *rates, *accelerations)
         self._find_forces()
         if not -inf < self._arriving[0] < inf:
             raise ValueError("the forces are not finite")
@@ -154,13 +147,21 @@ class MovingTree:
         if find is None:
             end = self._links.index(link)
             find = self._jacobians[link] = self._launch(jacobian_kernel, end)
-        # The point takes the place of the motion of the base.
-        self.gravity = None
         self._put_point(*point)
         self._put_positions(*positions)
         find()
         rows = self._rows(self._output)
         return rows[:3], rows[3:]
+
+    @cached_property
+    def motion(self) -> Motion:
+        """What is asked about the forces behind its motions."""
+        return Motion(self)
+
+    @cached_property
+    def motion_in_pybullet(self) -> Motion:
+        """The same with PyBullet's idea of where gravity points."""
+        return Motion(self, opposite_order=True)
 
     @cached_property
     def _find_forces(self) -> Callable[[], None]:
@@ -210,11 +211,6 @@ class MovingTree:
             self.arrays["end_node"][index] = end.node
             self.arrays["end_turn"][index] = end.rotation
             self.arrays["end_origin"][index] = end.origin
-
-
-def numbers_of(numbers: np.ndarray) -> memoryview[float]:
-    """The memory of an array of numbers: quicker than NumPy for single ones."""
-    return cast("memoryview[float]", numbers.data)
 
 
 def moving_tree(body: Body) -> MovingTree:

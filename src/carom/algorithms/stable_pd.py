@@ -15,10 +15,10 @@ import numpy as np
 
 from carom.algorithms.extended_model import base_motion
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.moving_tree import MovingTree, numbers_of
+from carom.algorithms.moving_tree import MovingTree
 from carom.algorithms.tree.stable_pd import Control, stable_pd_kernel
 from carom.algorithms.tree.structs import BASE_MOTION
-from carom.model.arrays import ArrayTable
+from carom.model.arrays import ArrayTable, numbers_of
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.model.launch import Launch, argument_indices
 from carom.model.real import NUMPY_REAL

@@ -26,6 +26,18 @@ def column(matrix: Matrix3, axis: Int32) -> Vector3:
     return Vector3(matrix[0, axis], matrix[1, axis], matrix[2, axis])
 
 
+@func
+def main_axis(direction: Vector3) -> Int32:
+    """The axis along which a vector is longest."""
+    size = wp.abs(direction)
+    axis = Int32(0)
+    if size[1] > size[axis]:
+        axis = Int32(1)
+    if size[2] > size[axis]:
+        axis = Int32(2)
+    return axis
+
+
 @shared_func
 def box_axis(
     frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, reach: real

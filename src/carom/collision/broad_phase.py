@@ -9,7 +9,17 @@ import warp as wp
 
 from carom.collision.bounds import boxes_meet, look_ahead, place_shapes
 from carom.collision.filters import may_touch
-from carom.collision.hierarchy import BOUNDED, LEAVES, PAIRS, PLANES, build_hierarchy, leaf_start, next_node
+from carom.collision.hierarchy import (
+    BOUNDED,
+    LEAVES,
+    PAIRS,
+    PLANES,
+    READINESS,
+    STALE,
+    build_hierarchy,
+    leaf_start,
+    next_node,
+)
 from carom.collision.reach import bounds_reach
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Index4, Int32, func, real
@@ -123,9 +133,13 @@ def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
         total += size
     for i in range(count):
         pair = pairs.pair_found[world, i]
-        end = pairs.shape_pair_end[world, pair[0]]
-        pairs.shape_pair_end[world, pair[0]] = end + 1
-        place = end
+        place = pairs.shape_pair_end[world, pair[0]]
+        pairs.shape_pair_end[world, pair[0]] = place + 1
+        pairs.pair_shapes[world, place] = pair
+    # Only now is every row one of this step; those of a first shape are few.
+    for i in range(1, count):
+        pair = pairs.pair_shapes[world, i]
+        place = i + 0
         searching = place > 0
         while searching:
             before = pairs.pair_shapes[world, place - 1]
@@ -144,6 +158,7 @@ def find_pairs(shapes: Shapes, model: Model, state: State, settings: Settings, p
         pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, pairs, world, shape)
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
+    pairs.count_pairs[world, READINESS] = STALE
     pairs.count_pairs[world, PAIRS] = 0
     leaf_count = pairs.count_pairs[world, LEAVES]
     count = pairs.count_pairs[world, BOUNDED]

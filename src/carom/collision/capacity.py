@@ -27,5 +27,5 @@ def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
         "polygon": CORNERS,
         "polytope": 2 * MOST_CORNERS,
         "previous": contact_capacity,
-        "count": 4,
+        "count": 5,
     }

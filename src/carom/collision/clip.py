@@ -2,7 +2,10 @@
 
 import warp as wp
 
+from carom.collision.boxes import column, main_axis
 from carom.collision.candidates import add_candidate
+from carom.collision.cores import Core
+from carom.model.codes import BOX
 from carom.model.real import Int32, Vector3, Vector3Rows, Vector8Rows, func, real, shared_func
 
 
@@ -41,8 +44,30 @@ def clip_by_side(
     return kept
 
 
+@func
+def clip_by_box(
+    core: Core, axis: Int32, polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32
+) -> Int32:
+    """Cut off what is not over a face of a box, across one of its axes; returns the corners left.
+
+    The sides come in Bullet's order, which decides with which corner the polygon begins.
+    """
+    left = count
+    for side in range(3):
+        if side != axis:
+            across = column(core.frame, side)
+            for way in range(2):
+                outward = across * (2.0 * real(way) - 1.0)
+                if left > 0:
+                    left = clip_by_side(
+                        polygon, clipped, world, left, core.position + outward * core.size[side], outward
+                    )
+    return left
+
+
 @shared_func
 def clip_faces(
+    core: Core,
     reference: Vector3Rows,
     reference_count: Int32,
     outward: Vector3,
@@ -61,6 +86,7 @@ def clip_faces(
     """Candidates where the incident face lies over the reference face and near it.
 
     Args:
+        core: Whose face the reference face is.
         reference: Corners of the reference face, counter-clockwise as seen from outside.
         reference_count: Their number, at least three.
         outward: Outward normal of the reference face.
@@ -81,11 +107,15 @@ def clip_faces(
     """
     count = incident_count
     p = reference[world, reference_count - 1]
-    for i in range(reference_count):
-        q = reference[world, i]
-        if count > 0:
-            count = clip_by_side(incident, clipped, world, count, p, wp.cross(q - p, outward))
-        p = q
+    if core.kind == BOX:
+        axis = main_axis(wp.transpose(core.frame) * outward)
+        count = clip_by_box(core, axis, incident, clipped, world, count)
+    else:
+        for i in range(reference_count):
+            q = reference[world, i]
+            if count > 0:
+                count = clip_by_side(incident, clipped, world, count, p, wp.cross(q - p, outward))
+            p = q
     slope = wp.abs(wp.dot(outward, normal))
     total = found
     for i in range(count):

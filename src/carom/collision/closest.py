@@ -6,11 +6,12 @@ from carom.collision.bounds import boxes_meet, place_shapes
 from carom.collision.candidates import add_candidate, candidate_distance, exchange, flip_candidates
 from carom.collision.convex import nearest_or_deepest
 from carom.collision.cores import Core, core_of
+from carom.collision.hierarchy import PLACED, READINESS
 from carom.collision.narrow_phase import in_order, touch_simple
 from carom.collision.surfaces import nearest_on_surface
 from carom.model.codes import PLANE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
-from carom.model.real import Int32, Ints, Vector8, Vector8Rows, func, kernel, real
+from carom.model.real import Int32, IntRows, Vector8, Vector8Rows, func, kernel, real
 from carom.model.structs import Settings, State
 
 
@@ -82,30 +83,31 @@ def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reac
     return count
 
 
+@wp.struct
+class Searches:
+    """Pairs of shapes, and their nearest points."""
+
+    search_first: IntRows
+    search_second: IntRows
+    # Rows as in `Pairs.candidate_terms`, the last column 1 for pairs within reach; all 0 for others.
+    search_found: Vector8Rows
+
+
 @kernel
-def closest_points_kernel(
-    shapes: Shapes,
-    pairs: Pairs,
-    first: Ints,
-    second: Ints,
-    reach: real,
-    found: Vector8Rows,
-):
+def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, count: Int32, reach: real):
     """Nearest points of given pairs of shapes, one pair after the other.
 
     Args:
         shapes: All shapes.
         pairs: Room for intermediate results, and the poses of the shapes, from `place_shapes_kernel`.
-        first: One shape of each pair.
-        second: The other.
+        searches: The pairs, and room for what is found.
+        count: How many there are.
         reach: Largest distance of interest [m].
-        found: For each pair of each world a row as in `Pairs.candidate_terms`, its last column 1 for
-            pairs within reach, and all 0 for others.
     """
     world = wp.tid()
-    for i in range(first.shape[0]):
-        a = first[i]
-        b = second[i]
+    for i in range(count):
+        a = searches.search_first[world, i]
+        b = searches.search_second[world, i]
         terms = Vector8()
         if boxes_meet(
             pairs.shape_lower[world, a],
@@ -117,10 +119,12 @@ def closest_points_kernel(
             if nearest(shapes, pairs, world, a, b, reach) == 1:
                 terms = pairs.candidate_terms[world, 0]
                 terms[7] = 1.0
-        found[world, i] = terms
+        searches.search_found[world, i] = terms
 
 
 @kernel
 def place_shapes_kernel(settings: Settings, shapes: Shapes, state: State, pairs: Pairs):
     """World poses and bounds of all shapes, for queries between steps."""
-    place_shapes(shapes, state, settings, pairs, wp.tid())
+    world = wp.tid()
+    place_shapes(shapes, state, settings, pairs, world)
+    pairs.count_pairs[world, READINESS] = PLACED

@@ -5,9 +5,10 @@ import warp as wp
 from carom.collision.candidates import add_candidate, candidate_distance
 from carom.collision.clip import clip_faces
 from carom.collision.cores import Core
-from carom.collision.faces import supporting_face
+from carom.collision.faces import arrange_box_corners, supporting_face
 from carom.collision.gjk import TOUCHING, nearest_points
 from carom.collision.polytope import overlap
+from carom.model.codes import BOX
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Vector3, Vector3Rows, func, real
 
@@ -91,13 +92,17 @@ def touch_faces(
         flat_b = real(0.0)
     count = found
     if flat_a >= flat_b and flat_a > FLAT_ON:
+        if core_b.kind == BOX:
+            arrange_box_corners(core_b, normal_b, pairs.polygon_b, world)
         count = clip_faces(
-            pairs.polygon_a, count_a, normal_a, pairs.polygon_b, count_b, pairs.polygon_clipped,
+            core_a, pairs.polygon_a, count_a, normal_a, pairs.polygon_b, count_b, pairs.polygon_clipped,
             normal, 1, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
         )  # fmt: skip
     elif flat_b > FLAT_ON:
+        if core_a.kind == BOX:
+            arrange_box_corners(core_a, normal_a, pairs.polygon_a, world)
         count = clip_faces(
-            pairs.polygon_b, count_b, normal_b, pairs.polygon_a, count_a, pairs.polygon_clipped,
+            core_b, pairs.polygon_b, count_b, normal_b, pairs.polygon_a, count_a, pairs.polygon_clipped,
             normal, 0, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
         )  # fmt: skip
     return count

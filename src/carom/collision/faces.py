@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.collision.boxes import column, main_axis
 from carom.collision.cores import Core, toward
 from carom.model.codes import BOX, CAPSULE, CYLINDER, HULL, TRIANGLES
 from carom.model.real import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
@@ -15,25 +16,42 @@ COS_45 = real(0.7071067811865476)
 def box_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32) -> Vector3:
     """Corners of the face of a box that looks most along `direction`; returns its outward normal."""
     local = wp.transpose(core.frame) * direction
-    size = wp.abs(local)
-    axis = Int32(0)
-    if size[1] > size[axis]:
-        axis = Int32(1)
-    if size[2] > size[axis]:
-        axis = Int32(2)
+    axis = main_axis(local)
     u = (axis + 1) % 3
     v = (axis + 2) % 3
     sign = toward(local[axis], 1.0)
-    normal = Vector3(core.frame[0, axis], core.frame[1, axis], core.frame[2, axis]) * sign
+    normal = column(core.frame, axis) * sign
     # Turning the second edge with the sign keeps the corners counter-clockwise from outside.
-    edge_u = Vector3(core.frame[0, u], core.frame[1, u], core.frame[2, u]) * core.size[u]
-    edge_v = Vector3(core.frame[0, v], core.frame[1, v], core.frame[2, v]) * (core.size[v] * sign)
+    edge_u = column(core.frame, u) * core.size[u]
+    edge_v = column(core.frame, v) * (core.size[v] * sign)
     center = core.position + normal * core.size[axis]
     polygon[world, 0] = center + edge_u + edge_v
     polygon[world, 1] = center - edge_u + edge_v
     polygon[world, 2] = center - edge_u - edge_v
     polygon[world, 3] = center + edge_u - edge_v
     return normal
+
+
+@func
+def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, world: Int32):
+    """Corners of the face of a box with a normal, in Bullet's order, which may be clockwise.
+
+    Where the forces of several points are not determined, those that come first bear more.
+    """
+    axis = main_axis(wp.transpose(core.frame) * outward)
+    u = Int32(0)
+    v = Int32(2)
+    if axis == 0:
+        u = Int32(1)
+    if axis == 2:
+        v = Int32(1)
+    edge_u = column(core.frame, u) * core.size[u]
+    edge_v = column(core.frame, v) * core.size[v]
+    center = core.position + outward * core.size[axis]
+    polygon[world, 0] = center - edge_u - edge_v
+    polygon[world, 1] = center - edge_u + edge_v
+    polygon[world, 2] = center + edge_u + edge_v
+    polygon[world, 3] = center + edge_u - edge_v
 
 
 @func

@@ -19,7 +19,10 @@ LEAF_SIZE = 4
 # As few shapes as this are not worth sorting: they make one leaf.
 ONE_LEAF = 32
 # Columns of `Pairs.count_pairs`.
-PAIRS, LEAVES, BOUNDED, PLANES = 0, 1, 2, 3
+PAIRS, LEAVES, BOUNDED, PLANES, READINESS = 0, 1, 2, 3, 4
+# What READINESS says of shapes between steps: they are where the last step saw them; they have been placed
+# since; and the hierarchy has been built over them.
+STALE, PLACED, IN_HIERARCHY = 0, 1, 2
 # Cells of the curve along each axis.
 CURVE_CELLS = real(1024.0)
 # The curve covers this many mean deviations on each side of the mean, ...

@@ -3,7 +3,29 @@
 import warp as wp
 
 from carom.collision.bounds import place_shapes
-from carom.collision.hierarchy import BOUNDED, LEAVES, PLANES, build_hierarchy, leaf_start, next_node
+from carom.collision.hierarchy import (
+    BOUNDED,
+    IN_HIERARCHY,
+    LEAVES,
+    PLANES,
+    READINESS,
+    build_hierarchy,
+    leaf_start,
+    next_node,
+)
+from carom.collision.ray_packets import (
+    LANES,
+    NOWHERE,
+    Packet,
+    Rays,
+    any_within,
+    lane_of,
+    length_within,
+    meets,
+    packet_of,
+    way_of,
+    with_lane,
+)
 from carom.collision.ray_solids import (
     MISS,
     ray_ball,
@@ -13,23 +35,14 @@ from carom.collision.ray_solids import (
     ray_hull,
     ray_plane,
 )
-from carom.collision.ray_surfaces import box_entry, comes_after, inverse_way, ray_field, ray_mesh
+from carom.collision.ray_surfaces import comes_after, ray_field, ray_mesh
 from carom.model.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
-from carom.model.real import Int32, Ints, Reals, Vector3, Vectors3, func, kernel, real
+from carom.model.real import Int32, Vector3, Vector4, func, kernel, real
 from carom.model.structs import Settings, State
 
 # The group that rays belong to: shapes whose mask leaves it out are not hit.
 RAY_GROUP = 1
-
-
-@wp.struct
-class Hit:
-    """What a ray hit first."""
-
-    shape: Int32  # -1: nothing
-    fraction: real
-    normal: Vector3  # in world axes
 
 
 @func
@@ -48,40 +61,43 @@ def ray_shape(
 
     The hit comes after `after`, or is there if `inclusive`, and not after `last`.
     """
-    frame = pairs.shape_frame[world, shape]
-    to_shape = wp.transpose(frame)
-    origin = to_shape * (start - pairs.shape_position[world, shape])
-    along = to_shape * way
+    position = pairs.shape_position[world, shape]
     kind = shapes.shape_kind[shape]
     size = shapes.shape_size[shape]
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
+    frame = pairs.shape_frame[world, shape]
     if kind == SPHERE:
-        fraction, normal = ray_ball(origin, along, Vector3(0.0, 0.0, 0.0), size[0])
-    elif kind == BOX:
-        fraction, normal = ray_box(origin, along, size)
-    elif kind == CAPSULE:
-        fraction, normal = ray_capsule(origin, along, size[0], size[1])
-    elif kind == CYLINDER:
-        fraction, normal = ray_cylinder(origin, along, size[0], size[1])
+        fraction, normal = ray_ball(start, way, position, size[0])
     elif kind == PLANE:
-        fraction, normal = ray_plane(origin, along, size)
-    elif kind == HULL:
-        fraction, normal = ray_hull(
-            origin,
-            along,
-            shapes.face_plane,
-            shapes.shape_first_face[shape],
-            shapes.shape_face_count[shape],
-            shapes.shape_margin[shape],
-        )
-    elif kind == TRIANGLES:
-        fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
+        fraction, normal = ray_plane(start - position, way, frame * size)
     else:
-        fraction, normal = ray_field(shapes, shape, origin, along, after, inclusive, last)
+        to_shape = wp.transpose(frame)
+        origin = to_shape * (start - position)
+        along = to_shape * way
+        if kind == BOX:
+            fraction, normal = ray_box(origin, along, size)
+        elif kind == CAPSULE:
+            fraction, normal = ray_capsule(origin, along, size[0], size[1])
+        elif kind == CYLINDER:
+            fraction, normal = ray_cylinder(origin, along, size[0], size[1])
+        elif kind == HULL:
+            fraction, normal = ray_hull(
+                origin,
+                along,
+                shapes.face_plane,
+                shapes.shape_first_face[shape],
+                shapes.shape_face_count[shape],
+                shapes.shape_margin[shape],
+            )
+        elif kind == TRIANGLES:
+            fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
+        else:
+            fraction, normal = ray_field(shapes, shape, origin, along, after, inclusive, last)
+        normal = frame * normal
     if not comes_after(fraction, after, inclusive) or fraction > last:
         fraction = real(MISS)
-    return fraction, frame * normal
+    return fraction, normal
 
 
 @func
@@ -92,89 +108,146 @@ def is_visible(shapes: Shapes, shape: Int32, mask: Int32) -> bool:
 
 
 @func
-def consider(
+def hit_shape(
     shapes: Shapes,
     pairs: Pairs,
     world: Int32,
     shape: Int32,
-    start: Vector3,
-    way: Vector3,
-    mask: Int32,
-    before: Hit,
+    rays: Rays,
+    packet: Packet,
+    given_limit: Vector4,
+    lengths: Vector4,
     separation: real,
-    best: Hit,
-) -> Hit:
-    """The better one of the best hit so far and that on a shape, of those that come after `before`.
+) -> Vector4:
+    """Keep the hits of those rays that meet the bounds of a shape, if they are better than the best so far.
 
     Hits on one link that are at most `separation` apart count once.
+
+    Returns:
+        Where the rays end now.
     """
-    after = before.fraction
-    if before.shape >= 0:
-        if shapes.shape_link[shape] == shapes.shape_link[before.shape]:
-            after += wp.max(separation, 0.0)
-    # Hits at the same place come in the order of the shapes.
-    inclusive = shape > before.shape and after == before.fraction
-    result = best
-    if is_visible(shapes, shape, mask):
-        fraction, normal = ray_shape(shapes, pairs, world, shape, start, way, after, inclusive, best.fraction)
-        if fraction < best.fraction or (fraction == best.fraction and shape < best.shape):
-            result.shape = shape
-            result.fraction = fraction
-            result.normal = normal
+    limit = given_limit
+    for ray in range(packet.first, packet.end):
+        lane = ray - packet.first
+        if lane_of(lengths, lane) >= 0.0:
+            last = rays.ray_last_shape[ray]
+            after = rays.ray_last_fraction[ray]
+            if last >= 0:
+                if shapes.shape_link[shape] == shapes.shape_link[last]:
+                    after += wp.max(separation, 0.0)
+            # Hits at the same place come in the order of the shapes.
+            inclusive = shape > last and after == rays.ray_last_fraction[ray]
+            start = rays.ray_start[ray]
+            way = way_of(rays, ray)
+            best = lane_of(limit, lane)
+            known = rays.ray_shape[ray]
+            fraction, normal = ray_shape(shapes, pairs, world, shape, start, way, after, inclusive, best)
+            if fraction < best or (fraction == best and (known < 0 or shape < known)):
+                limit = with_lane(limit, lane, fraction)
+                rays.ray_shape[ray] = shape
+                rays.ray_normal[ray] = normal
+    return limit
+
+
+@func
+def next_leaf(
+    pairs: Pairs, world: Int32, packet: Packet, limit: Vector4, leaf_count: Int32, node: Int32
+) -> Int32:
+    """The first leaf that any of the rays meets, from a node on; 0 if there is none."""
+    result = node
+    while result > 0:
+        if meets(packet, limit, pairs.node_lower[world, result], pairs.node_upper[world, result]):
+            if result >= leaf_count:
+                return result
+            result = 2 * result
+        else:
+            result = next_node(result)
     return result
 
 
 @func
-def first_hit(
+def first_hits(
     shapes: Shapes,
     pairs: Pairs,
     world: Int32,
-    start: Vector3,
-    way: Vector3,
+    rays: Rays,
+    packet: Packet,
+    given_limit: Vector4,
     mask: Int32,
-    before: Hit,
     separation: real,
-) -> Hit:
-    """The first hit of a ray that comes after `before`."""
-    best = Hit()
-    best.shape = Int32(-1)
-    best.fraction = real(MISS)
+) -> Vector4:
+    """Leave the first hits of four rays in `rays`: shape and normal; returns the fractions."""
+    limit = given_limit
     leaf_count = pairs.count_pairs[world, LEAVES]
     count = pairs.count_pairs[world, BOUNDED]
-    inverse = inverse_way(way)
-    # What follows the bounded shapes are the planes: they make a last leaf, which has no bounds.
+    # The planes come first, for most rays that hit nothing else hit the ground.
+    first = count
+    end = count + pairs.count_pairs[world, PLANES]
     node = Int32(1)
     searching = Int32(1)
     while searching == 1:
-        first = count
-        end = count
-        if node == 0:
-            end = count + pairs.count_pairs[world, PLANES]
-            searching = Int32(0)
-        elif (
-            box_entry(
-                start,
-                inverse,
-                pairs.node_lower[world, node],
-                pairs.node_upper[world, node],
-                wp.min(best.fraction, 1.0),
-            )
-            < MISS
-        ):
-            if node < leaf_count:
-                node = 2 * node
-                continue
-            first = leaf_start(node - leaf_count, leaf_count, count)
-            end = leaf_start(node - leaf_count + 1, leaf_count, count)
         for place in range(first, end):
             shape = pairs.shape_order[world, place]
             lower = pairs.shape_lower[world, shape]
             upper = pairs.shape_upper[world, shape]
-            if box_entry(start, inverse, lower, upper, wp.min(best.fraction, 1.0)) < MISS:
-                best = consider(shapes, pairs, world, shape, start, way, mask, before, separation, best)
-        if node > 0:
+            lengths = length_within(packet, limit, lower, upper)
+            if lower[0] <= upper[0] and any_within(lengths):
+                if is_visible(shapes, shape, mask):
+                    limit = hit_shape(shapes, pairs, world, shape, rays, packet, limit, lengths, separation)
+        node = next_leaf(pairs, world, packet, limit, leaf_count, node)
+        searching = wp.min(node, 1)
+        first = leaf_start(node - leaf_count, leaf_count, count)
+        end = leaf_start(node - leaf_count + 1, leaf_count, count)
+        if searching == 1:
             node = next_node(node)
-    return best
+    return limit
+
+
+@func
+def cast_packet(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    rays: Rays,
+    packet: Packet,
+    limit: Vector4,
+    mask: Int32,
+    hit_number: Int32,
+    separation: real,
+):
+    """Leave the hits of four rays that come after `hit_number` others: shape, normal and fraction."""
+    for ray in range(packet.first, packet.end):
+        rays.ray_shape[ray] = -1
+        rays.ray_fraction[ray] = NOWHERE
+    looking = limit
+    fractions = limit
+    remaining = hit_number
+    while remaining >= 0:
+        for ray in range(packet.first, packet.end):
+            rays.ray_last_shape[ray] = rays.ray_shape[ray]
+            rays.ray_last_fraction[ray] = rays.ray_fraction[ray]
+            rays.ray_shape[ray] = -1
+        fractions = first_hits(shapes, pairs, world, rays, packet, looking, mask, separation)
+        for ray in range(packet.first, packet.end):
+            lane = ray - packet.first
+            rays.ray_fraction[ray] = lane_of(fractions, lane)
+            if rays.ray_shape[ray] < 0:
+                looking = with_lane(looking, lane, NOWHERE)
+        remaining -= 1
+
+
+@func
+def tell_hit(shapes: Shapes, rays: Rays, ray: Int32):
+    """Write what a ray hit as users read it, from its shape, normal and fraction."""
+    shape = rays.ray_shape[ray]
+    if shape >= 0:
+        rays.ray_link[ray] = shapes.shape_link[shape]
+        rays.ray_position[ray] = rays.ray_start[ray] + way_of(rays, ray) * rays.ray_fraction[ray]
+    else:
+        rays.ray_link[ray] = -1
+        rays.ray_fraction[ray] = 1.0
+        rays.ray_position[ray] = Vector3(0.0, 0.0, 0.0)
+        rays.ray_normal[ray] = Vector3(0.0, 0.0, 0.0)
 
 
 @kernel
@@ -183,49 +256,36 @@ def prepare_rays_kernel(settings: Settings, shapes: Shapes, state: State, pairs:
     world = wp.tid()
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
+    pairs.count_pairs[world, READINESS] = IN_HIERARCHY
 
 
 @kernel
 def rays_kernel(
     shapes: Shapes,
     pairs: Pairs,
+    rays: Rays,
     world: Int32,
-    starts: Vectors3,
-    ends: Vectors3,
+    count: Int32,
+    threads: Int32,
     mask: Int32,
     hit_number: Int32,
     separation: real,
-    hit_shape: Ints,
-    hit_fraction: Reals,
-    hit_normal: Vectors3,
 ):
-    """Cast one ray per thread; `prepare_rays_kernel` must have run.
+    """Cast rays; `prepare_rays_kernel` must have run.
 
     Args:
         shapes: All shapes.
         pairs: Poses and hierarchy.
-        world: The world the rays are in.
-        starts: Start of each ray.
-        ends: End of each ray.
+        rays: The rays, and room for what they hit.
+        world: The world they are in.
+        count: How many there are.
+        threads: How many threads share them.
         mask: Groups of links that are hit.
         hit_number: 0 for the first hit, n for the n-th after it, in the order along the ray.
         separation: Later hits on the same link less than this fraction after one are passed over.
-        hit_shape: For each ray the shape it hits, -1 for none.
-        hit_fraction: Where, as a fraction of the ray; 1 for none.
-        hit_normal: Normal there, in world axes; 0 for none.
     """
-    ray = wp.tid()
-    start = starts[ray]
-    way = ends[ray] - start
-    hit = Hit()
-    hit.shape = Int32(-1)
-    hit.fraction = real(-1.0)
-    remaining = hit_number
-    while remaining >= 0:
-        hit = first_hit(shapes, pairs, world, start, way, mask, hit, separation)
-        remaining -= 1
-        if hit.shape < 0:
-            remaining = Int32(-1)
-    hit_shape[ray] = hit.shape
-    hit_fraction[ray] = wp.min(hit.fraction, 1.0)
-    hit_normal[ray] = hit.normal
+    for first in range(LANES * wp.tid(), count, LANES * threads):
+        packet, limit = packet_of(rays, first, count)
+        cast_packet(shapes, pairs, world, rays, packet, limit, mask, hit_number, separation)
+        for ray in range(packet.first, packet.end):
+            tell_hit(shapes, rays, ray)

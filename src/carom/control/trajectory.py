@@ -39,8 +39,10 @@ class QuinticTrajectory:
         Raises:
             ValueError: Positions are not finite or differ in shape, or the duration is not positive.
         """
+        self.start: Array
+        self.goal: Array
         self.start, self.goal = _end_points(start, goal)
-        self.duration = float(positive(duration, "duration"))
+        self.duration: float = float(positive(duration, "duration"))
 
     def sample(self, time: ArrayLike) -> Sample:
         """Position, velocity and acceleration at `time` [s]; at rest before 0 and after `duration`."""
@@ -78,6 +80,8 @@ class TrapezoidalTrajectory:
         Raises:
             ValueError: Positions are not finite or differ in shape, or a bound is not positive.
         """
+        self.start: Array
+        self.goal: Array
         self.start, self.goal = _end_points(start, goal)
         velocity = positive(max_velocity, "max_velocity")
         acceleration = positive(max_acceleration, "max_acceleration")
@@ -86,12 +90,11 @@ class TrapezoidalTrajectory:
         slowest = float(np.max(distance / velocity, initial=0.0))
         laziest = float(np.max(distance / acceleration, initial=0.0))
         if min(slowest, laziest) < np.finfo(np.float64).tiny:
-            self.ramp = self.duration = 0.0
-            self._acceleration = 0.0
+            self.ramp, self.duration, self._acceleration = 0.0, 0.0, 0.0
             return
-        self.ramp = min(laziest / slowest, float(np.sqrt(laziest)))
+        self.ramp: float = min(laziest / slowest, float(np.sqrt(laziest)))
         self._acceleration = 1.0 / laziest
-        self.duration = self.ramp + laziest / self.ramp
+        self.duration: float = self.ramp + laziest / self.ramp
 
     def sample(self, time: ArrayLike) -> Sample:
         """Position, velocity and acceleration at `time` [s]; at rest before 0 and after `duration`."""

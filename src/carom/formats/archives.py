@@ -30,7 +30,7 @@ class Archive:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._temporary = TemporaryDirectory(prefix="carom-zip-")
-        self.folder = Path(self._temporary.name)
+        self.folder: Path = Path(self._temporary.name)
         try:
             with zipfile.ZipFile(path) as archive:
                 members = archive.infolist()

@@ -34,11 +34,11 @@ class Element:
     __slots__ = ("attributes", "children", "line", "tag", "text")
 
     def __init__(self, tag: str, attributes: dict[str, str], line: int) -> None:
-        self.tag = tag
-        self.attributes = attributes
-        self.line = line
+        self.tag: str = tag
+        self.attributes: dict[str, str] = attributes
+        self.line: int = line
         self.children: list[Element] = []
-        self.text = ""
+        self.text: str = ""
 
     def first(self, tag: str) -> Element | None:
         """The first child of that name."""

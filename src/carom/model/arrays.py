@@ -10,12 +10,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import warp as wp
 
 _FIRST_CAPACITY = 16
+
+
+def numbers_of(numbers: np.ndarray) -> memoryview[float]:
+    """The memory of an array of numbers: quicker than NumPy for single ones."""
+    return cast("memoryview[float]", numbers.data)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +80,7 @@ class ArrayTable:
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
         self._world_count = world_count
-        self.capacity = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
+        self.capacity: dict[str, int] = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         self._made: dict[str, Any] = {}

@@ -68,9 +68,9 @@ class WorldArrays:
 
     def __init__(self, world_count: int = 1) -> None:
         self.world_count = world_count
-        self.model = ArrayTable(Model, None)
-        self.state = ArrayTable(State, world_count)
-        self.scratch = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
+        self.model: ArrayTable = ArrayTable(Model, None)
+        self.state: ArrayTable = ArrayTable(State, world_count)
+        self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.used: dict[str, int] = dict.fromkeys(
             ("tree", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
         )

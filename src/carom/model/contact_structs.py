@@ -134,7 +134,7 @@ class Pairs:
     previous_age: IntRows
     previous_taken: IntRows  # 1 once a contact has inherited from it
 
-    # Its first entries: pairs found, leaves of the hierarchy, shapes in it, planes.
+    # Its columns are in `collision.hierarchy`.
     count_pairs: IntRows
 
 
@@ -244,6 +244,7 @@ class ContactTerms:
     erp: real
     start: Vector3  # impulses to start from
     ignored: Int32  # 1: too far apart to be solved
+    gain: real  # velocity along the normal that forces gave it in this substep, where it can rebound
 
 
 if TYPE_CHECKING:

@@ -135,7 +135,7 @@ class KernelStructs(dict[str, Any]):
         super().__init__()
         self._launches: dict[Any, tuple[dict[str, Any], Launch]] = {}
 
-    def launch(self, kernel: Any, device: str, **scalars: int) -> Launch:
+    def launch(self, kernel: Any, device: str, **scalars: float) -> Launch:
         """A launch of a kernel with these structs and scalars.
 
         Those made before of the same kernel become this one, or may keep arguments of the past.
@@ -155,7 +155,7 @@ class KernelStructs(dict[str, Any]):
         return made
 
 
-def launch(kernel: Any, structs: KernelStructs, device: str, **scalars: int) -> Launch:
+def launch(kernel: Any, structs: KernelStructs, device: str, **scalars: float) -> Launch:
     """A launch of a kernel whose arguments are found by their names."""
     return structs.launch(kernel, device, **scalars)
 

@@ -90,13 +90,22 @@ class BodyShapes:
 
 
 class ShapeArrays:
-    """The shapes of all bodies of a world, in step with the rows of their links."""
+    """The shapes of all bodies of a world, in step with the rows of their links.
+
+    Attributes:
+        table: The arrays.
+        filters: Rules for pairs of links.
+        used: Rows in use, by axis.
+        breaking_fraction: See `BREAKING_FRACTION`.
+        changes: How often the bounds of a shape have changed in its link.
+    """
 
     def __init__(self) -> None:
-        self.table = ArrayTable(Shapes, None)
-        self.filters = PairFilters(self.table)
+        self.table: ArrayTable = ArrayTable(Shapes, None)
+        self.filters: PairFilters = PairFilters(self.table)
         self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
-        self.breaking_fraction = BREAKING_FRACTION
+        self.breaking_fraction: float = BREAKING_FRACTION
+        self.changes: int = 0
         self._bodies: dict[int, BodyShapes] = {}
 
     @property
@@ -262,6 +271,7 @@ class ShapeArrays:
             rows = link_row if field.startswith("link") else self._shapes_of(link_row)
             if field != "shape_margin" or body.own_margin[link]:
                 numpy[field][rows] = getattr(surface, name)
+                self.changes += field == "shape_margin"
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
         """Put a link in the group of fixed bases, which do not touch each other, or of the rest."""
@@ -307,6 +317,7 @@ class ShapeArrays:
             self._fits(placed.piece, row) for row, placed in enumerate(pieces, start=shapes.start)
         ):
             raise ValueError("its hull would have another number of corners")
+        self.changes += 1
         body.bounds[link] = link_bounds(
             spec.collisions,
             spec.inertial_frame,

@@ -86,9 +86,7 @@ def add_contact_rows(
         upper = coefficient
         softness = real(0.0)
         if place == row:
-            change = normal_change(
-                settings, shapes, found[1], terms.distance, terms.erp, terms.ends[1], terms.ends[3]
-            )
+            change = normal_change(settings, shapes, terms, found[1])
             lower = real(0.0)
             upper = real(0.0) + _UNBOUNDED
             softness = terms.softness

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.model.contact_structs import Contacts, ContactTerms, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
-from carom.model.structs import Settings, State
+from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.calm import next_trust
 
 # A contact slides whose friction is at least this share of the greatest, squared.
@@ -44,21 +44,9 @@ def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) ->
 
 
 @func
-def normal_change(
-    settings: Settings, shapes: Shapes, velocity: real, distance: real, erp: real, a: Int32, b: Int32
-) -> real:
-    """Change of the approaching velocity that keeps a contact from closing.
-
-    A gap may close within the step but not more. Penetration is taken back at the rate `erp`, on top
-    of what restitution asks for.
-    """
-    change = -velocity
-    if wp.abs(velocity) >= settings.restitution_threshold:
-        change += wp.max(-shapes.link_restitution[a] * shapes.link_restitution[b] * velocity, 0.0)
-    gap = distance + settings.contact_slop
-    if gap > 0.0:
-        return change - gap / settings.time_step
-    return change - gap * erp / settings.time_step
+def combined_restitution(shapes: Shapes, a: Int32, b: Int32) -> real:
+    """Share of the speed with which two links part after they collide."""
+    return shapes.link_restitution[a] * shapes.link_restitution[b]
 
 
 @func
@@ -112,9 +100,36 @@ def starting_impulse(share: real, last: Vector4) -> Vector3:
 
 
 @func
+def gained(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    direction: Vector3,
+) -> real:
+    """Velocity along a direction that forces gave a point of a link in this substep [m/s]."""
+    reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+    moment = wp.cross(point - reference, direction)
+    acceleration = real(0.0)
+    dof = model.link[link].nearest_dof
+    while dof >= 0:
+        along = wp.dot(scratch.dof[world, dof].linear, direction)
+        along += wp.dot(scratch.dof[world, dof].angular, moment)
+        acceleration += along * scratch.dof[world, dof].force
+        dof = model.dof[dof].parent
+    return settings.time_step * acceleration
+
+
+@func
 def contact_terms(
     settings: Settings,
+    model: Model,
     state: State,
+    scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
     world: Int32,
@@ -153,7 +168,33 @@ def contact_terms(
     terms.ignored = Int32(0)
     if terms.distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
         terms.ignored = Int32(1)
+    terms.gain = real(0.0)
+    if combined_restitution(shapes, a, b) > 0.0:
+        terms.gain = gained(
+            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
+        ) - gained(settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal)
     return terms
+
+
+@func
+def normal_change(settings: Settings, shapes: Shapes, terms: ContactTerms, velocity: real) -> real:
+    """Change of the velocity along the normal that keeps a contact from closing.
+
+    A gap may close within the step but not more. Penetration is taken back at the rate `terms.erp`, on top
+    of what restitution asks for. But neither that nor what forces did in this step makes anything rebound
+    faster than it came: at a restitution of 1 bodies would gain energy with every bounce.
+    """
+    gap = terms.distance + settings.contact_slop
+    parting = -gap / settings.time_step
+    if gap <= 0.0:
+        parting *= terms.erp
+    if wp.abs(velocity) < settings.restitution_threshold or velocity >= 0.0:
+        return parting - velocity
+    restitution = combined_restitution(shapes, terms.ends[1], terms.ends[3])
+    if restitution <= 0.0:
+        return parting - velocity
+    rebound = wp.max(restitution, 1.0) * (terms.gain - velocity)
+    return wp.min(parting - restitution * velocity, wp.max(rebound, parting)) - velocity
 
 
 @func

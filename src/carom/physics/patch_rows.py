@@ -84,9 +84,7 @@ def write_row_numbers(
     change = friction_change(settings, velocity, terms.drift, row_direction(terms, row))
     if row == 0:
         inverse_mass += terms.softness
-        change = normal_change(
-            settings, shapes, velocity, terms.distance, terms.erp, terms.ends[1], terms.ends[3]
-        )
+        change = normal_change(settings, shapes, terms, velocity)
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
@@ -237,7 +235,9 @@ def write_small_rows(
     count = couplings.patch[world, patch].count
     contact = Int32(0)
     while contact < count:
-        terms = contact_terms(settings, state, shapes, contacts, world, first + contact, share)
+        terms = contact_terms(
+            settings, model, state, scratch, shapes, contacts, world, first + contact, share
+        )
         couplings.terms[world, contact] = terms
         write_small_jacobians(couplings, terms, body_a.reference, body_b.reference, world, patch, contact)
         contact += 1

@@ -58,7 +58,9 @@ def write_patch(
     clear_run(couplings, world, patch)
     contact = Int32(0)
     while contact < count:
-        terms = contact_terms(settings, state, shapes, contacts, world, first_contact + contact, real(0.0))
+        terms = contact_terms(
+            settings, model, state, scratch, shapes, contacts, world, first_contact + contact, real(0.0)
+        )
         write_long_contact(
             settings, model, state, scratch, shapes, couplings, terms, world, patch, contact, temporary
         )

@@ -73,7 +73,9 @@ def write_units(
             while i < count:
                 if not has_room(model, couplings, place, a, b):
                     return Index4(-1, patches, torsion, 0)
-                terms = contact_terms(settings, state, shapes, contacts, world, contact + i, real(0.0))
+                terms = contact_terms(
+                    settings, model, state, scratch, shapes, contacts, world, contact + i, real(0.0)
+                )
                 place = add_contact_rows(
                     settings, model, state, scratch, shapes, contacts, couplings, terms, world, contact + i,
                     place[0], place[1],

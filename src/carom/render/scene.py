@@ -112,12 +112,14 @@ class SceneArrays:
                     for shape in shapes:
                         self._add_shape(columns, body, link, shape, len(rows))
                     rows.append(body.first_link + link - BASE)
-        self.link_rows = np.array(rows, dtype=np.int64)
-        self.vertex_count = sum(columns.vertex_counts)
-        self.triangle_count = sum(columns.triangle_counts)
-        self.part_links = np.array(columns.links, dtype=np.int64)
-        self.part_centres = np.array(columns.centres).reshape(-1, 3)
-        self.part_radii = np.array(columns.radii)
+        self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
+        self.vertex_count: int = sum(columns.vertex_counts)
+        self.triangle_count: int = sum(columns.triangle_counts)
+        self.part_links: np.ndarray = np.array(columns.links, dtype=np.int64)
+        self.part_centres: np.ndarray = np.array(columns.centres).reshape(-1, 3)
+        self.part_radii: np.ndarray = np.array(columns.radii)
+        self.struct: Any
+        self.chunk_count: int
         self.struct, self.chunk_count = _struct(columns)
         self._changes = appearance.changes
         self._take_textures(appearance.textures)

@@ -20,7 +20,7 @@ class Textures:
     """
 
     def __init__(self) -> None:
-        self.changes = 0
+        self.changes: int = 0
         self._images: dict[int, Texels] = {}
         self._next = 0
 

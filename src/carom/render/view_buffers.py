@@ -57,7 +57,7 @@ class ViewBuffers:
             for chunk in range(scene.chunk_count)
         ]
         count = min(BANDS_PER_WORKER * worker_count(), height)
-        self.bands = [height * band // count for band in range(count + 1)]
+        self.bands: list[int] = [height * band // count for band in range(count + 1)]
 
     def depth_tasks(self, scene: SceneArrays) -> list[Task]:
         """Tasks that find what is nearest in each pixel, to be run after those of `project`."""

@@ -40,8 +40,8 @@ class Writer:
     """
 
     def __init__(self) -> None:
-        self.blocks = Blocks()
-        self.files = FileTable(self.blocks)
+        self.blocks: Blocks = Blocks()
+        self.files: FileTable = FileTable(self.blocks)
         self._arrays: dict[int, tuple[np.ndarray, dict[str, Any]]] = {}
 
     def write(self, value: Any) -> Any:

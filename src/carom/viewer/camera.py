@@ -38,7 +38,7 @@ class SharedCamera:
 
     def __init__(self, board: Board, width: int, height: int) -> None:
         self._board = board
-        self.orbit = Orbit(width=width, height=height)
+        self.orbit: Orbit = Orbit(width=width, height=height)
         board.put("camera", self._message())
 
     def move(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:

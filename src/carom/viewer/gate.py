@@ -13,7 +13,7 @@ class Gate:
     """
 
     def __init__(self) -> None:
-        self.closed = False
+        self.closed: bool = False
         self._steps = 0
         self._changed = Condition()
 

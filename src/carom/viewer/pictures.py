@@ -14,7 +14,7 @@ class Pictures:
     """
 
     def __init__(self) -> None:
-        self.asked = 0
+        self.asked: int = 0
         self._changed = Condition()
         self._drawn: dict[int, int] = {}
         self._hidden: set[int] = set()

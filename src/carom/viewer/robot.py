@@ -55,7 +55,7 @@ class RobotView:
         ]
         if not bodies:
             raise DescriptionError("it holds no robot", file=file)
-        self.viewer = Viewer(self._world, host=host, port=port, title=file.name)
+        self.viewer: Viewer = Viewer(self._world, host=host, port=port, title=file.name)
         self.viewer.configure({"names": True})
         self._sliders: list[tuple[Body, int, Slider]] = []
         for body in bodies:

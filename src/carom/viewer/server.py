@@ -145,7 +145,7 @@ class PageServer:
         self._stopping = asyncio.Event()
         self._somebody = asyncio.Event()
         async with await self._listen() as server:
-            self.port = next(iter(server.sockets)).getsockname()[1]
+            self.port: int = next(iter(server.sockets)).getsockname()[1]
             self._loop = asyncio.get_running_loop()
             self._started.set()
             beat = asyncio.create_task(self._beat())

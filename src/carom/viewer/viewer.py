@@ -78,22 +78,22 @@ class Viewer:
         width: int = 1024,
         height: int = 768,
     ) -> None:
-        self.is_open = True
+        self.is_open: bool = True
         self.on_hold: Callable[[bool], None] = lambda held: None
         self._board = Board()
         self._board.put("title", {"type": "title", "title": title})
-        self.controls = Controls(self._board)
-        self.drawings = Drawings(self._board)
-        self.camera = SharedCamera(self._board, width, height)
-        self.keyboard = Keyboard()
-        self.mouse = Mouse()
-        self.gate = Gate()
+        self.controls: Controls = Controls(self._board)
+        self.drawings: Drawings = Drawings(self._board)
+        self.camera: SharedCamera = SharedCamera(self._board, width, height)
+        self.keyboard: Keyboard = Keyboard()
+        self.mouse: Mouse = Mouse()
+        self.gate: Gate = Gate()
         self._pictures = Pictures()
         # Pulling makes constraints, which only whoever steps can allow.
         self._pulls = lock is not None
-        self.lock = RLock() if lock is None else lock
+        self.lock: Any = RLock() if lock is None else lock
         self._feed = SceneFeed(world, self.lock, self._board)
-        self.previews = Previews(self._board)
+        self.previews: Previews = Previews(self._board)
         self._world = world
         self._hands = Hands(world, self.lock)
         self._probes = Probes(world)

@@ -28,6 +28,8 @@ _TRIES = wp.constant(6)
 # So many steps of so little progress mean a local minimum.
 _LITTLE_PROGRESS = real(0.999)
 _SLOW_STEPS = wp.constant(3)
+# Distance [m] that the patient do without: who asks again in each step comes nearer each time.
+_NEAR = real(0.02)
 # Share of the joints' ranges within which the first new start is drawn.
 _FIRST_SPREAD = real(0.05)
 
@@ -185,8 +187,22 @@ def inverse_kinematics_kernel(
     iterations: Int32,
     further: Int32,
     threshold: real,
+    patience: real,
 ):
-    """Leave in `coordinate_best` the joint positions found."""
+    """Leave in `coordinate_best` the joint positions found.
+
+    Args:
+        sizes: How many of everything there are.
+        chain: The chain.
+        search: The question.
+        oriented: 1 if the ends are to be turned as well.
+        step_kind: What follows PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
+        bounded: 1 if limits are to be kept.
+        iterations: Most steps of PyBullet's iteration.
+        further: How many poses may be tried after that.
+        threshold: Distance [m] and angle [rad] that are close enough.
+        patience: PyBullet's result is taken, arrived or not, if it leaves at most this share of the distance.
+    """
     take_targets(sizes, search)
     for column in range(sizes.columns):
         search.column_held[column] = 0
@@ -196,6 +212,11 @@ def inverse_kinematics_kernel(
     for dof in range(sizes.dofs):
         search.dof_step[dof] = real(0.0)
     copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
+    bearable = real(0.0)
+    if patience > 0.0:
+        place(sizes, chain, search, search.coordinate_now)
+        first = measure_errors(sizes, chain, search, oriented)
+        bearable = wp.max(patience * first[0], _NEAR)
     follow(sizes, chain, search, oriented, step_kind, iterations, threshold)
     outside = Int32(0)
     if bounded == 1:
@@ -205,6 +226,8 @@ def inverse_kinematics_kernel(
     copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
     goal = wp.max(threshold, _LEAST_THRESHOLD)
     if error[0] <= goal and error[1] <= goal:
+        return
+    if error[0] <= bearable and outside == 0:
         return
 
     # PyBullet looks at distances only. Where it is content, nothing but better angles will do.

@@ -50,7 +50,7 @@ class ColladaReader:
     def __init__(self, root: Element, file: Path) -> None:
         self.root = root
         self.file = file
-        self.geometries = {
+        self.geometries: dict[str, Element] = {
             element.attributes.get("id", ""): element
             for library in root.all("library_geometries")
             for element in library.all("geometry")

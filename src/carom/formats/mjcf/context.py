@@ -62,11 +62,11 @@ class MjcfContext(FileContext):
 
     def __init__(self, file: Path, root: Element, search: AssetSearch) -> None:
         super().__init__(file, root, 1.0, search)
-        self.compiler = CompilerOptions()
-        self.assets = Assets()
+        self.compiler: CompilerOptions = CompilerOptions()
+        self.assets: Assets = Assets()
         self.classes: dict[str, dict[str, dict[str, str]]] = {}
         self.origins: dict[int, Path] = {}
-        self.unnamed = 0
+        self.unnamed: int = 0
         self.colours = False
         self.implicit = False
 

@@ -1,0 +1,127 @@
+"""Inverse dynamics of a tree in the coordinates that users have."""
+
+import math
+
+import warp as wp
+
+from carom.algorithms.tree.dynamics import newton_euler, turned_back
+from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
+from carom.model.codes import BASE_POSITIONS
+from carom.model.real import Int32, Quaternion, Reals, Vector3, func, fuse_multiply_add, kernel, real
+from carom.physics.rotation import rotation_matrix
+
+fuse_multiply_add(__name__)
+
+NOT_FINITE = real(math.inf)
+# Sine of the pitch from which on Bullet takes the roll for 0.
+GIMBAL_LOCK = real(0.99999)
+# Where a question begins to be about the tree; gravity comes before.
+POSE = wp.constant(3)
+
+
+@func
+def vector_at(numbers: Reals, first: Int32) -> Vector3:
+    """Three numbers of an array."""
+    return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
+
+
+@func
+def direction(x: real, y: real):
+    """Cosine and sine of `atan2(y, x)`."""
+    length = wp.sqrt(x * x + y * y)
+    cosine, sine = real(1.0), real(0.0)
+    if length > 0.0:
+        cosine, sine = x / length, y / length
+    return cosine, sine
+
+
+@func
+def turned_back_in_opposite_order(q: Quaternion, v: Vector3) -> Vector3:
+    """A vector seen from a frame that is turned by a quaternion's yaw, pitch and roll in the wrong order.
+
+    PyBullet takes the orientation of a floating base apart like this, and puts it together the other way
+    round. Only a base that is turned about more than one axis is wrong by it.
+    """
+    x, y, z, w = q[0], q[1], q[2], q[3]
+    sp = -2.0 * (x * z - w * y)
+    cp = real(0.0)
+    cr, sr = real(1.0), real(0.0)
+    if wp.abs(sp) >= GIMBAL_LOCK:
+        sp = wp.sign(sp)
+        c, s = direction(sp * y, -sp * x)
+        cy, sy = c * c - s * s, 2.0 * c * s
+    else:
+        cp = wp.sqrt((1.0 - sp) * (1.0 + sp))
+        cr, sr = direction(w * w - x * x - y * y + z * z, 2.0 * (y * z + w * x))
+        cy, sy = direction(w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z))
+    unrolled = Vector3(v[0], cr * v[1] + sr * v[2], cr * v[2] - sr * v[1])
+    level = Vector3(cp * unrolled[0] - sp * unrolled[2], unrolled[1], sp * unrolled[0] + cp * unrolled[2])
+    return Vector3(cy * level[0] + sy * level[1], cy * level[1] - sy * level[0], level[2])
+
+
+@func
+def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
+    """Gravity along the axes of a free base; not finite if its quaternion is no rotation."""
+    gravity = vector_at(question, 0)
+    q = POSE + 3
+    turn = Quaternion(question[q], question[q + 1], question[q + 2], question[q + 3])
+    if not wp.length_sq(turn) > 0.0:
+        return Vector3(NOT_FINITE, NOT_FINITE, NOT_FINITE)
+    if opposite_order == 1:
+        return turned_back_in_opposite_order(turn, gravity)
+    return turned_back(rotation_matrix(wp.normalize(turn)), gravity)
+
+
+@func
+def put(tree: Tree, first: Int32, vector: Vector3):
+    """Three numbers for `newton_euler`."""
+    for axis in range(3):
+        tree.input[first + axis] = vector[axis]
+
+
+@kernel
+def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, opposite_order: Int32):
+    """Leave in `output` the forces that cause a motion; of a free base force, then torque.
+
+    Args:
+        sizes: Sizes of the tree.
+        tree: The tree.
+        question: Gravity along the axes of the base; positions; rates; accelerations. With a free base
+            gravity is in world axes; position and quaternion of the base come before the other positions,
+            its angular velocity and its velocity along its own axes before the other rates, and their
+            derivatives likewise.
+        opposite_order: 1: gravity at a free base as PyBullet has it.
+    """
+    positions = POSE + 0
+    acceleration = -vector_at(question, 0)
+    omega = Vector3(0.0, 0.0, 0.0)
+    alpha = Vector3(0.0, 0.0, 0.0)
+    unused = real(0.0)
+    if sizes.base_dofs > 0:
+        positions += BASE_POSITIONS
+        rates = positions + sizes.coordinates
+        accelerations = rates + sizes.dofs
+        omega = vector_at(question, rates)
+        alpha = vector_at(question, accelerations)
+        acceleration = vector_at(question, accelerations + 3) - gravity_in_base(question, opposite_order)
+        # What has no influence has to be finite, too.
+        idle = vector_at(question, POSE) + vector_at(question, rates + 3)
+        unused = 0.0 * (idle[0] + idle[1] + idle[2])
+    put(tree, 0, omega)
+    put(tree, 3, alpha)
+    put(tree, 6, acceleration)
+    joint_dofs = sizes.dofs - sizes.base_dofs
+    for i in range(sizes.coordinates):
+        tree.input[BASE_MOTION + i] = question[positions + i]
+    first = positions + sizes.coordinates + sizes.base_dofs
+    to = BASE_MOTION + sizes.coordinates
+    for i in range(joint_dofs):
+        tree.input[to + i] = question[first + i]
+        tree.input[to + joint_dofs + i] = question[first + sizes.dofs + i]
+    newton_euler(sizes, tree, 1)
+    if sizes.base_dofs > 0:
+        tree.output[sizes.dofs] += unused
+        for axis in range(3):
+            torque = tree.output[axis]
+            tree.output[axis] = tree.output[3 + axis]
+            tree.output[3 + axis] = torque

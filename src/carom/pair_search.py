@@ -1,0 +1,128 @@
+"""The nearest points of links: the memory of the questions and of the answers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from struct import Struct
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.collision.closest import Searches, closest_points_kernel
+from carom.description.pose import Vector3
+from carom.model.arrays import ArrayTable
+from carom.model.launch import KernelStructs
+from carom.model.real import NUMPY_REAL
+from carom.question import Question
+from carom.touch_arrays import TouchArrays
+
+_ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
+_INDEX = np.dtype(np.int32)
+# Pairs of links whose shapes are remembered: scripts ask for the same ones step by step.
+_MOST_REMEMBERED = 64
+
+
+class NearestPoints(NamedTuple):
+    """The nearest points of two links.
+
+    Attributes:
+        on_a: Point on the first link, in world axes [m].
+        on_b: Point on the second link.
+        normal: On the second link, towards the first.
+        distance: Between them [m]; negative if they overlap.
+    """
+
+    on_a: Vector3
+    on_b: Vector3
+    normal: Vector3
+    distance: float
+
+
+class ShapePairs(NamedTuple):
+    """All pairs of shapes of pairs of links.
+
+    Attributes:
+        links: Rows of the links of each.
+        first: Rows of the shapes of the first links, as they are in memory.
+        second: The same of the second links.
+    """
+
+    links: list[tuple[int, int]]
+    first: bytes
+    second: bytes
+
+
+class PairSearch:
+    """The searches of a world.
+
+    Args:
+        structs: Warp structs by the name kernels give them.
+        touch: The arrays of shapes.
+        device: Warp device name.
+    """
+
+    def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str) -> None:
+        self._shapes = touch.shapes.table.numpy
+        self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
+        self._search = Question(
+            closest_points_kernel,
+            structs,
+            "searches",
+            ArrayTable(Searches, 1),
+            device,
+            {"reach": NUMPY_REAL(0.0)},
+        )
+        self._view()
+
+    def shape_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
+        """All pairs of a shape of one of some links, and of one of others."""
+        known = self._remembered.get((first, second))
+        if known is None:
+            if len(self._remembered) >= _MOST_REMEMBERED:
+                self._remembered.clear()
+            known = self._remembered[first, second] = self._find_pairs(first, second)
+        return known
+
+    def __call__(self, pairs: ShapePairs, reach: float) -> list[tuple[int, int, NearestPoints]]:
+        """The links and the nearest points of pairs of shapes that are no farther apart than `reach` [m]."""
+        count = len(pairs.links)
+        if count > self._search.room:
+            self._search.reserve(count)
+            self._view()
+        size = count * _INDEX.itemsize
+        self._first[:size], self._second[:size] = pairs.first, pairs.second
+        self._search(count, reach)
+        return [
+            (a, b, _nearest_points(bx, by, bz, nx, ny, nz, distance))
+            for (a, b), (bx, by, bz, nx, ny, nz, distance, found) in zip(
+                pairs.links, _ROW.iter_unpack(self._found[: count * _ROW.size]), strict=True
+            )
+            if found
+        ]
+
+    def _find_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
+        links, shapes = [], []
+        for a, b in product(first, second):
+            for pair in product(self._shapes_of(a), self._shapes_of(b)):
+                links.append((a, b))
+                shapes.append(pair)
+        sides = np.array(shapes, dtype=_INDEX).reshape(-1, 2).T
+        return ShapePairs(links, sides[0].tobytes(), sides[1].tobytes())
+
+    def _shapes_of(self, link: int) -> range:
+        first = int(self._shapes["link_first_shape"][link])
+        return range(first, first + int(self._shapes["link_shape_count"][link]))
+
+    def _view(self) -> None:
+        """Take the memory of the present arrays."""
+        memory = self._search.arrays.bytes_of
+        self._first, self._second = memory("search_first"), memory("search_second")
+        self._found = memory("search_found")
+
+
+def _nearest_points(
+    bx: float, by: float, bz: float, nx: float, ny: float, nz: float, distance: float
+) -> NearestPoints:
+    on_a = (bx + distance * nx, by + distance * ny, bz + distance * nz)
+    return NearestPoints(on_a, (bx, by, bz), (nx, ny, nz), distance)

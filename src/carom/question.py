@@ -1,0 +1,73 @@
+"""A kernel that is asked about a world again and again, with as many items to ask about as there may be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from carom.model.arrays import ArrayTable
+from carom.model.launch import KernelStructs, Launch, argument_indices, launch
+
+# A kernel is done with as many items as this before another thread would have had its turn.
+_FEW = 64
+
+
+class Question:
+    """A launch over arrays that belong to the question alone, which grow as needed.
+
+    The kernel takes these arrays as one of its structs, and how many of their rows are in use as `count`.
+
+    Attributes:
+        arrays: The arrays; all have one axis.
+        room: How many rows they have.
+
+    Args:
+        kernel: The kernel.
+        structs: Warp structs by the name kernels give them; that of the arrays is put there.
+        name: Name of the arrays among these structs.
+        arrays: The arrays.
+        device: Warp device name.
+        asked: The scalars that may differ from time to time, as they are at first.
+        **fixed: The other scalars.
+    """
+
+    def __init__(
+        self,
+        kernel: Any,
+        structs: KernelStructs,
+        name: str,
+        arrays: ArrayTable,
+        device: str,
+        asked: dict[str, Any],
+        **fixed: int,
+    ) -> None:
+        self.arrays = arrays
+        self._kernel = kernel
+        self._structs = structs
+        self._name = name
+        self._device = device
+        self._scalars = {"count": 0, **asked, **fixed}
+        indices = argument_indices(kernel)
+        self._places = [indices[scalar] for scalar in ("count", *asked)]
+        self._prepare()
+
+    def reserve(self, count: int) -> None:
+        """Make room for `count` rows; the arrays are replaced if they have fewer."""
+        if self.arrays.reserve(dict.fromkeys(self.arrays.capacity, count)):
+            self._prepare()
+
+    def __call__(self, *asked: float) -> None:
+        """Run the kernel with these scalars, the count before the others."""
+        if asked != self._asked:
+            self._asked = asked
+            for place, value in zip(self._places, asked, strict=True):
+                self._launch.replace(place, value)
+        (self._run_briefly if asked[0] <= _FEW else self._run)()
+
+    def _prepare(self) -> None:
+        (self.room,) = self.arrays.capacity.values()
+        self._structs[self._name] = self.arrays.struct(self._device)
+        self._launch: Launch = launch(self._kernel, self._structs, self._device, **self._scalars)
+        self._run: Callable[[], None] = self._launch.function
+        self._run_briefly: Callable[[], None] = self._launch.brief_function
+        self._asked: tuple[float, ...] = ()
