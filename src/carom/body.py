@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Sequence
 from functools import cached_property
 from math import sqrt
+from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 # Of the squared length of a unit quaternion.
 _ROUNDING = 1e-15
-_TYPE_CODE = np.dtype(NUMPY_REAL).char
+_NUMBER = np.dtype(NUMPY_REAL)
+_POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 _WHOLE_BODY = (
     "linear_damping",
     "angular_damping",
@@ -129,15 +130,17 @@ class Body:
         squared = x * x + y * y + z * z + w * w
         # A pose that was read and is written back stays the same to the last digit.
         scale = 1.0 if abs(squared - 1.0) < _ROUNDING else 1.0 / sqrt(squared)
-        pose = (*position, x * scale, y * scale, z * scale, w * scale)
-        first = self.first_position
-        self.world.position_memory[first : first + BASE_POSITIONS] = array(_TYPE_CODE, pose)
+        _POSE.pack_into(
+            self.world.position_memory,
+            self.first_position * _NUMBER.itemsize,
+            *position, x * scale, y * scale, z * scale, w * scale,
+        )  # fmt: skip
         self.update_link_poses()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s]."""
-        first = self.first_velocity
-        self.world.velocity_memory[first : first + BASE_VELOCITIES] = array(_TYPE_CODE, (*angular, *linear))
+        first = self.first_velocity * _NUMBER.itemsize
+        _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
 
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None

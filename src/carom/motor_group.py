@@ -85,23 +85,23 @@ class MotorGroup:
     def command(
         self,
         mode: int,
-        positions: Iterable[float] | None,
-        velocities: Iterable[float] | None,
-        forces: Iterable[float] | None,
-        kps: Iterable[float] | None,
-        kds: Iterable[float] | None,
         time_step: float,
+        positions: Iterable[float] | None = None,
+        velocities: Iterable[float] | None = None,
+        forces: Iterable[float] | None = None,
+        kps: Iterable[float] | None = None,
+        kds: Iterable[float] | None = None,
     ) -> None:
         """Set the motors by one number for each joint, or by the default numbers where there is None.
 
         Args:
             mode: `VELOCITY`, `TORQUE` or `POSITION` of `physics.motor_commands`.
+            time_step: Of a step [s].
             positions: Targets [rad or m], taken to the nearest bound when they are beyond; 0 by default.
             velocities: Targets [rad/s or m/s]; 0 by default.
             forces: Greatest forces of the motors, or torques [N m or N].
             kps: Gains.
             kds: Gains.
-            time_step: Of a step [s].
 
         Raises:
             ValueError: The mode is none of these, or something given is not finite; nothing is set.

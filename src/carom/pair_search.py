@@ -23,20 +23,9 @@ _INDEX = np.dtype(np.int32)
 _MOST_REMEMBERED = 64
 
 
-class NearestPoints(NamedTuple):
-    """The nearest points of two links.
-
-    Attributes:
-        on_a: Point on the first link, in world axes [m].
-        on_b: Point on the second link.
-        normal: On the second link, towards the first.
-        distance: Between them [m]; negative if they overlap.
-    """
-
-    on_a: Vector3
-    on_b: Vector3
-    normal: Vector3
-    distance: float
+NearestPoints = tuple[int, int, Vector3, Vector3, Vector3, float]
+"""Rows of two links, point on the first one, on the second one (in world axes [m]), normal on the second one
+towards the first, distance (negative if they overlap)."""
 
 
 class ShapePairs(NamedTuple):
@@ -65,6 +54,7 @@ class PairSearch:
     def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str) -> None:
         self._shapes = touch.shapes.table.numpy
         self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
+        self._asked: ShapePairs | None = None
         self._search = Question(
             closest_points_kernel,
             structs,
@@ -84,19 +74,28 @@ class PairSearch:
             known = self._remembered[first, second] = self._find_pairs(first, second)
         return known
 
-    def __call__(self, pairs: ShapePairs, reach: float) -> list[tuple[int, int, NearestPoints]]:
-        """The links and the nearest points of pairs of shapes that are no farther apart than `reach` [m]."""
+    def __call__(self, pairs: ShapePairs, reach: float) -> list[NearestPoints]:
+        """The nearest points of pairs of shapes that are no farther apart than `reach` [m]."""
         count = len(pairs.links)
-        if count > self._search.room:
-            self._search.reserve(count)
-            self._view()
-        size = count * _INDEX.itemsize
-        self._first[:size], self._second[:size] = pairs.first, pairs.second
+        if pairs is not self._asked:
+            if count > self._search.room:
+                self._search.reserve(count)
+                self._view()
+            size = count * _INDEX.itemsize
+            self._first[:size], self._second[:size] = pairs.first, pairs.second
+            self._asked = pairs
         self._search(count, reach)
         return [
-            (a, b, _nearest_points(bx, by, bz, nx, ny, nz, distance))
-            for (a, b), (bx, by, bz, nx, ny, nz, distance, found) in zip(
-                pairs.links, _ROW.iter_unpack(self._found[: count * _ROW.size]), strict=True
+            (
+                a,
+                b,
+                (x + distance * nx, y + distance * ny, z + distance * nz),
+                (x, y, z),
+                (nx, ny, nz),
+                distance,
+            )
+            for (a, b), (x, y, z, nx, ny, nz, distance, found) in zip(
+                pairs.links, _ROW.iter_unpack(self._found), strict=False
             )
             if found
         ]
@@ -119,10 +118,3 @@ class PairSearch:
         memory = self._search.arrays.bytes_of
         self._first, self._second = memory("search_first"), memory("search_second")
         self._found = memory("search_found")
-
-
-def _nearest_points(
-    bx: float, by: float, bz: float, nx: float, ny: float, nz: float, distance: float
-) -> NearestPoints:
-    on_a = (bx + distance * nx, by + distance * ny, bz + distance * nz)
-    return NearestPoints(on_a, (bx, by, bz), (nx, ny, nz), distance)

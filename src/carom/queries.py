@@ -106,9 +106,7 @@ class Queries:
         self._prepare(IN_HIERARCHY)
         return self._cast.one(start, end, mask, hit_number, separation)
 
-    def nearest(
-        self, first: Sequence[int], second: Sequence[int], reach: float
-    ) -> list[tuple[int, int, NearestPoints]]:
+    def nearest(self, first: Sequence[int], second: Sequence[int], reach: float) -> list[NearestPoints]:
         """The nearest points of all shapes of some links and of others, up to `reach` apart.
 
         Args:
@@ -117,7 +115,7 @@ class Queries:
             reach: Largest distance [m].
 
         Returns:
-            The links and the points, in the order of `first`, then of `second`, then of the shapes of each.
+            The points, in the order of `first`, then of `second`, then of the shapes of each.
         """
         pairs = self._search.shape_pairs(first, second)
         if not pairs.links:

@@ -16,8 +16,8 @@ from pybullet._clients import Client
 from pybullet._errors import logger
 
 if TYPE_CHECKING:
+    from carom.description.pose import Vector3
     from carom.model.body_spec import BodySpec
-    from carom.pair_search import NearestPoints
     from pybullet._link_rows import Place
 
 BARE_LINK = -2
@@ -99,8 +99,12 @@ def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
 
 def nearest_points(
     first: list[Thing], second: list[Thing], reach: float
-) -> list[tuple[Place, Place, NearestPoints]]:
-    """The nearest points of all shapes of pairs of things that are no farther apart than `reach` [m]."""
+) -> list[tuple[Place, Place, Vector3, Vector3, Vector3, float]]:
+    """The nearest points of all shapes of pairs of things that are no farther apart than `reach` [m].
+
+    Returns:
+        As `Queries.nearest` gives them, with what is reported in place of links.
+    """
     from carom.world import World
 
     with World() as world:
@@ -116,4 +120,7 @@ def nearest_points(
 
         sides = rows(first), rows(second)
         found = world.queries().nearest(*sides, reach)
-        return [(places[a], places[b], points) for a, b, points in found]
+        return [
+            (places[a], places[b], on_a, on_b, normal, distance)
+            for a, b, on_a, on_b, normal, distance in found
+        ]

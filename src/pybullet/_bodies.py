@@ -225,9 +225,7 @@ def resetBasePositionAndOrientation(
     problem = "orientation needs a 4 coordinates, quaternion [x,y,z,w]."
     orientation = rotation(ornObj, problem, "ornObj")
     if body is not None:
-        with client.lock:
-            body.set_base_pose(position, orientation)
-            body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        client.bodies[body.id].place_base(position, orientation)
 
 
 @exported

@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from pybullet._clients import Client
     from pybullet._link_box import LinkBox
 
-_read_pose = Struct("7d").unpack_from
-_read_velocity = Struct("6d").unpack_from
+_POSE, _SPATIAL = Struct("7d"), Struct("6d")
+_read_pose = _POSE.unpack_from
+_read_spatial, _write_spatial = _SPATIAL.unpack_from, _SPATIAL.pack_into
+_AT_REST = (0.0,) * 6
 
 
 class BodyAccess:
@@ -79,8 +81,26 @@ class BodyAccess:
 
     def base_velocity(self) -> tuple[Vector3, Vector3]:
         """Velocity of the base's centre of mass and its angular velocity, in world axes."""
-        wx, wy, wz, vx, vy, vz = _read_velocity(self._velocities, self._velocity_at)
+        wx, wy, wz, vx, vy, vz = _read_spatial(self._velocities, self._velocity_at)
         return ((vx, vy, vz), (wx, wy, wz))
+
+    def inertial_frame(self, link: int) -> tuple[Vector3, Quaternion]:
+        """World pose of the inertial frame of a link, -1 for the base."""
+        return self.base_pose() if link < 0 else self.links[link].pose()
+
+    def place_base(self, position: Vector3, orientation: Quaternion) -> None:
+        """Puts the base at rest somewhere, as `resetBasePositionAndOrientation` does."""
+        with self._client.lock:
+            _write_spatial(self._velocities, self._velocity_at, *_AT_REST)
+            self.body.set_base_pose(position, orientation)
+
+    def push(self, link: int, force: Vector3, torque: Vector3) -> None:
+        """Adds to the force and the torque on a link, -1 for the base, about its centre of mass [N, N m]."""
+        wrenches = self._client.world.link_force_memory
+        at = (self.body.first_link + 1 + link) * _SPATIAL.size
+        fx, fy, fz, tx, ty, tz = _read_spatial(wrenches, at)
+        (x, y, z), (rx, ry, rz) = force, torque
+        _write_spatial(wrenches, at, fx + x, fy + y, fz + z, tx + rx, ty + ry, tz + rz)
 
 
 class BodyTable(dict[int, BodyAccess]):

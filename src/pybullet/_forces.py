@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from carom.description.pose import Pose, Vector3
 from pybullet._arguments import Vector, integer, vector3
 from pybullet._builtin import exported
 from pybullet._camera_maths import cross, subtracted
@@ -15,6 +14,7 @@ from pybullet._lookup import no_body
 from pybullet._rotations import turned
 
 if TYPE_CHECKING:
+    from pybullet._body_access import BodyAccess
     from pybullet._clients import Client
 
 __all__ = [
@@ -62,14 +62,15 @@ def applyExternalForce(
     force = vector3(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
     point = vector3(posObj, "position needs a 3 coordinates [x,y,z].", "posObj")
     frame = _frame(flags)
-    pose, row = _link(client, objectUniqueId, linkIndex, "applyExternalForce")
-    if pose is None:
+    access = _body(client, objectUniqueId, linkIndex, "applyExternalForce")
+    if access is None:
         return
+    position, orientation = access.inertial_frame(linkIndex)
     if frame == LINK_FRAME:
-        force, arm = turned(pose.orientation, force), turned(pose.orientation, point)
+        force, arm = turned(orientation, force), turned(orientation, point)
     else:
-        arm = subtracted(point, pose.position)
-    _add(client, row, force, cross(arm, force))
+        arm = subtracted(point, position)
+    access.push(linkIndex, force, cross(arm, force))
 
 
 @exported
@@ -100,12 +101,12 @@ def applyExternalTorque(
     if integer(linkIndex, "linkIndex") < _BASE:
         fail(_WRONG_LINK, f"It is {linkIndex}.")
     frame = _frame(flags)
-    pose, row = _link(client, objectUniqueId, linkIndex, "applyExternalTorque")
-    if pose is None:
+    access = _body(client, objectUniqueId, linkIndex, "applyExternalTorque")
+    if access is None:
         return
     if frame == LINK_FRAME:
-        torque = turned(pose.orientation, torque)
-    _add(client, row, (0.0, 0.0, 0.0), torque)
+        torque = turned(access.inertial_frame(linkIndex)[1], torque)
+    access.push(linkIndex, (0.0, 0.0, 0.0), torque)
 
 
 def _frame(flags: int) -> int:
@@ -115,21 +116,13 @@ def _frame(flags: int) -> int:
     return frame
 
 
-def _link(client: Client, body_id: int, link_index: int, function: str) -> tuple[Pose | None, int]:
-    """World pose of the inertial frame of a link, None when there is no such body, and its row."""
+def _body(client: Client, body_id: int, link_index: int, function: str) -> BodyAccess | None:
+    """Access to a body that has a link, None when there is no such body."""
     body = client.body(body_id)
     link = integer(link_index, "linkIndex")
     if body is None:
         logger.warning("%s: %s", function, no_body(body_id))
-        return None, 0
+        return None
     if not _BASE <= link < body.joint_count:
         fail(_WRONG_LINK, f"It is {link}, and body {body.id} ({body.name}) has {body.joint_count} links.")
-    access = client.bodies[body.id]
-    pose = Pose(*access.base_pose()) if link == _BASE else access.links[link].pose()
-    return pose, body.first_link + 1 + link
-
-
-def _add(client: Client, row: int, force: Vector3, torque: Vector3) -> None:
-    wrenches = client.world.link_force_memory
-    for column, value in enumerate((*force, *torque), start=6 * row):
-        wrenches[column] += value
+    return client.bodies[body.id]

@@ -32,16 +32,13 @@ class JointGroup:
         """The state of each, as `getJointState` returns it."""
         return tuple([joint.state() for joint in self.joints])
 
-    def command(
-        self,
-        mode: int,
-        positions: Iterable[float] | None,
-        velocities: Iterable[float] | None,
-        forces: Iterable[float] | None,
-        kps: Iterable[float] | None,
-        kds: Iterable[float] | None,
-    ) -> None:
-        """Sets the motor of each as `setJointMotorControl2` does; lists have a number for each, or are None.
+    def command(self, mode: int, *lists: Iterable[float] | None) -> None:
+        """Sets the motor of each as `setJointMotorControl2` does.
+
+        Args:
+            mode: The mode.
+            *lists: Positions, velocities, forces, position gains and velocity gains; a number for each joint,
+                or None.
 
         Raises:
             ValueError: Nothing has been set: the joints differ in kind, the mode is not one of the common
@@ -69,16 +66,8 @@ class AxisGroup(JointGroup):
             DEFAULT_VELOCITY_GAIN,
         )
 
-    def command(
-        self,
-        mode: int,
-        positions: Iterable[float] | None,
-        velocities: Iterable[float] | None,
-        forces: Iterable[float] | None,
-        kps: Iterable[float] | None,
-        kds: Iterable[float] | None,
-    ) -> None:
-        self._motors.command(mode, positions, velocities, forces, kps, kds, self.client.time_step)
+    def command(self, mode: int, *lists: Iterable[float] | None) -> None:
+        self._motors.command(mode, self.client.time_step, *lists)
 
 
 class ConsecutiveAxes(AxisGroup):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING
 
-from carom.description.pose import Pose, Quaternion, Vector3
+from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import inverse, multiplied
 from pybullet._rotations import canonical, turned
 
@@ -59,7 +59,7 @@ class LinkAccess:
         vx, vy, vz, wx, wy, wz = _read_velocity(self.velocities, self.velocity_at)
         return ((vx, vy, vz), (wx, wy, wz))
 
-    def pose(self) -> Pose:
+    def pose(self) -> tuple[Vector3, Quaternion]:
         """World pose of the inertial frame."""
         x, y, z, qx, qy, qz, qw = _read_pose(self.poses, self.pose_at)
-        return Pose((x, y, z), (qx, qy, qz, qw))
+        return (x, y, z), (qx, qy, qz, qw)

@@ -108,6 +108,18 @@ def getLinkStates(
         >>> [round(state[4][2], 3) for state in p.getLinkStates(arm, [5, 6])]
         [1.18, 1.261]
     """
+    try:
+        access = clients[physicsClientId].bodies[bodyUniqueId]
+        links = [access.links[index] for index in linkIndices]
+        if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
+            if computeForwardKinematics:
+                access.body.update_link_poses()
+            if not computeLinkVelocity:
+                return tuple([link.state() for link in links])
+            access.body.update_link_velocities()
+            return tuple([link.state() + link.velocity() for link in links])
+    except (KeyError, TypeError):
+        pass
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(linkIndices, "expected a sequence of joint indices", "linkIndices")
     with_velocity = _prepare(access, computeLinkVelocity, computeForwardKinematics)

@@ -12,7 +12,7 @@ from pybullet._contacts import ContactPoint
 from pybullet._link_rows import Place, places
 
 if TYPE_CHECKING:
-    from carom.pair_search import NearestPoints
+    from carom.description.pose import Vector3
     from carom.world import World
 
 __all__ = ["getClosestPoints", "getOverlappingObjects"]
@@ -84,12 +84,20 @@ def getClosestPoints(
         ):
             bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
             sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
-        found = nearest_points(sides[0], sides[1], reach)
-        return tuple(_contact_point(a, b, points) for a, b, points in found)
+        return tuple(
+            [
+                _contact_point(*a, *b, on_a, on_b, normal, gap)
+                for a, b, on_a, on_b, normal, gap in nearest_points(sides[0], sides[1], reach)
+            ]
+        )
     links_a, links_b = _rows(world, body_a, link_a), _rows(world, body_b, link_b)
-    rows = world.queries().nearest(links_a, links_b, reach)
-    table = world.link_places
-    return tuple([_contact_point(table[a], table[b], points) for a, b, points in rows])
+    bodies, links = world.link_columns
+    return tuple(
+        [
+            _contact_point(bodies[a], links[a], bodies[b], links[b], on_a, on_b, normal, gap)
+            for a, b, on_a, on_b, normal, gap in world.queries().nearest(links_a, links_b, reach)
+        ]
+    )
 
 
 def _rows(world: World, body_id: int, link: int) -> range:
@@ -103,9 +111,17 @@ def _rows(world: World, body_id: int, link: int) -> range:
     return every[link + 1 : link + 2] if link >= -1 else range(0)
 
 
-def _contact_point(a: Place, b: Place, points: NearestPoints) -> ContactPoint:
-    on_a, on_b, normal, distance = points
-    return 0, a[0], b[0], a[1], b[1], on_a, on_b, normal, distance, 0.0, 0.0, _NONE, 0.0, _NONE
+def _contact_point(
+    body_a: int,
+    link_a: int,
+    body_b: int,
+    link_b: int,
+    on_a: Vector3,
+    on_b: Vector3,
+    normal: Vector3,
+    distance: float,
+) -> ContactPoint:
+    return 0, body_a, body_b, link_a, link_b, on_a, on_b, normal, distance, 0.0, 0.0, _NONE, 0.0, _NONE
 
 
 @exported

@@ -6,6 +6,9 @@ interface is Gymnasium's, with its five results of `step`.
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any, NoReturn
+
 try:
     import gymnasium
 except ImportError as missing:
@@ -20,6 +23,16 @@ _SWINGUP = "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv"
 _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("CartPoleBulletEnv-v1", "bullet.cartpole_bullet:CartPoleBulletEnv", 200, 190.0),
     ("CartPoleContinuousBulletEnv-v0", "bullet.cartpole_bullet:CartPoleContinuousBulletEnv", 200, 190.0),
+    ("RacecarBulletEnv-v0", "bullet.racecarGymEnv:RacecarGymEnv", 1000, 5.0),
+    ("RacecarZedBulletEnv-v0", "bullet.racecarZEDGymEnv:RacecarZEDGymEnv", 1000, 5.0),
+    ("KukaBulletEnv-v0", "bullet.kukaGymEnv:KukaGymEnv", 1000, 5.0),
+    ("KukaCamBulletEnv-v0", "bullet.kukaCamGymEnv:KukaCamGymEnv", 1000, 5.0),
+    (
+        "KukaDiverseObjectGrasping-v0",
+        "bullet.kuka_diverse_object_gym_env:KukaDiverseObjectEnv",
+        1000,
+        5.0,
+    ),
     ("InvertedPendulumBulletEnv-v0", "gym_pendulum_envs:InvertedPendulumBulletEnv", 1000, 950.0),
     ("InvertedDoublePendulumBulletEnv-v0", "gym_pendulum_envs:InvertedDoublePendulumBulletEnv", 1000, 9100.0),
     (
@@ -35,6 +48,38 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("HopperBulletEnv-v0", "gym_locomotion_envs:HopperBulletEnv", 1000, 2500.0),
     ("HumanoidBulletEnv-v0", "gym_locomotion_envs:HumanoidBulletEnv", 1000, None),
 )
+
+# Names that PyBullet has besides, so that asking for one says more than that nobody knows it.
+_MISSING = (
+    "HumanoidDeepMimicBackflipBulletEnv-v1",
+    "HumanoidDeepMimicWalkBulletEnv-v1",
+    "HumanoidFlagrunBulletEnv-v0",
+    "HumanoidFlagrunHarderBulletEnv-v0",
+    "MinitaurAlternatingLegsEnv-v0",
+    "MinitaurBallGymEnv-v0",
+    "MinitaurBulletDuckEnv-v0",
+    "MinitaurBulletEnv-v0",
+    "MinitaurExtendedEnv-v0",
+    "MinitaurFourLegStandEnv-v0",
+    "MinitaurReactiveEnv-v0",
+    "MinitaurStandGymEnv-v0",
+    "MinitaurTrottingEnv-v0",
+    "PusherBulletEnv-v0",
+    "ThrowerBulletEnv-v0",
+)
+
+
+def _unavailable(name: str, **keywords: Any) -> NoReturn:
+    raise NotImplementedError(f"{name} is not available in this version of Carom; these are: {_names()}")
+
+
+def _names() -> str:
+    return ", ".join(name for name, *_ in _ENVIRONMENTS)
+
+
+for _name in _MISSING:
+    if _name not in gymnasium.registry:
+        gymnasium.register(_name, entry_point=partial(_unavailable, _name))
 
 for _name, _place, _steps, _solved in _ENVIRONMENTS:
     if _name not in gymnasium.registry:

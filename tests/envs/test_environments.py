@@ -11,14 +11,19 @@ from gymnasium.utils.env_checker import check_env
 
 import pybullet_envs
 
-# Numbers of an observation and of an action; none of the latter where there is a choice of two.
-SIZES: dict[str, tuple[int, int | None]] = {
+# Numbers, or shape, of an observation, and numbers of an action; none where there is a choice of two.
+SIZES: dict[str, tuple[int | tuple[int, ...], int | None]] = {
     "CartPoleBulletEnv-v1": (4, None),
     "CartPoleContinuousBulletEnv-v0": (4, 1),
     "InvertedPendulumBulletEnv-v0": (5, 1),
     "InvertedPendulumSwingupBulletEnv-v0": (5, 1),
     "InvertedDoublePendulumBulletEnv-v0": (9, 1),
     "ReacherBulletEnv-v0": (9, 2),
+    "RacecarBulletEnv-v0": (2, 2),
+    "RacecarZedBulletEnv-v0": ((10, 100, 4), 2),
+    "KukaBulletEnv-v0": (9, 3),
+    "KukaCamBulletEnv-v0": ((256, 341, 4), 3),
+    "KukaDiverseObjectGrasping-v0": ((48, 48, 3), 3),
     "HopperBulletEnv-v0": (15, 3),
     "Walker2DBulletEnv-v0": (22, 6),
     "HalfCheetahBulletEnv-v0": (26, 6),
@@ -50,7 +55,7 @@ def test_all_of_them_are_listed() -> None:
 def test_environments_are_what_gymnasium_expects(name: str) -> None:
     env: Any = gymnasium.make(name).unwrapped
     observed, acted = SIZES[name]
-    assert env.observation_space.shape == (observed,)
+    assert env.observation_space.shape == ((observed,) if isinstance(observed, int) else observed)
     assert env.action_space.shape == (() if acted is None else (acted,))
     check_env(env, skip_render_check=True)
     env.close()
@@ -61,6 +66,12 @@ def test_the_same_seed_gives_the_same_episode(name: str) -> None:
     first, second = rollout(name, 20), rollout(name, 20)
     assert np.array_equal(first[0], second[0])
     assert first[1] == second[1]
+
+
+@pytest.mark.parametrize("name", ["MinitaurBulletEnv-v0", "HumanoidFlagrunBulletEnv-v0"])
+def test_what_is_not_there_says_so(name: str) -> None:
+    with pytest.raises(NotImplementedError, match=f"{name} is not available in this version of Carom"):
+        gymnasium.make(name)
 
 
 def test_a_pole_that_nobody_holds_falls() -> None:

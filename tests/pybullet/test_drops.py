@@ -4,6 +4,7 @@ import math
 import random
 from collections.abc import Callable
 from itertools import product
+from pathlib import Path
 
 import pytest
 
@@ -99,8 +100,8 @@ def test_a_heavy_box_stands_on_a_light_one(client: int) -> None:
     assert p.getBasePositionAndOrientation(heavy)[0] == pytest.approx((0, 0, 0.3), abs=1e-2)
 
 
-def collapse() -> list[tuple[float, ...]]:
-    """Poses of 125 boxes some time after a heavy ball was thrown into them."""
+def tower() -> list[int]:
+    """125 boxes and a heavy ball that flies at them."""
     p.resetSimulation()
     p.setGravity(0, 0, -G)
     p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
@@ -113,12 +114,34 @@ def collapse() -> list[tuple[float, ...]]:
         20, p.createCollisionShape(p.GEOM_SPHERE, radius=0.2), basePosition=[-1, 0.4, 0.5]
     )
     p.resetBaseVelocity(ball, [8, 0, 0])
-    for _ in range(150):
+    return boxes
+
+
+def run(boxes: list[int], steps: int) -> list[tuple[float, ...]]:
+    """Poses of boxes some steps later."""
+    for _ in range(steps):
         p.stepSimulation()
     return [sum(p.getBasePositionAndOrientation(box), ()) for box in boxes]
 
 
 def test_the_collapse_of_125_boxes_is_the_same_to_the_last_bit(client: int) -> None:
-    first = collapse()
+    first = run(tower(), 150)
     assert max(abs(pose[2] - 0.2 * (n % 5) - 0.1) for n, pose in enumerate(first)) > 0.15, "nothing fell"
-    assert collapse() == first
+    assert run(tower(), 150) == first
+
+
+@pytest.mark.parametrize("by_file", [False, True])
+def test_a_collapse_goes_on_from_a_saved_state_to_the_last_bit(
+    client: int, tmp_path: Path, by_file: bool
+) -> None:
+    boxes, name = tower(), str(tmp_path / "collapse.bullet")
+    run(boxes, 70)
+    state = p.saveState()
+    p.saveBullet(name)
+    expected = run(boxes, 80)
+    for _ in range(2):
+        if by_file:
+            p.restoreState(fileName=name)
+        else:
+            p.restoreState(state)
+        assert run(boxes, 80) == expected

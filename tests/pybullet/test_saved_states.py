@@ -47,6 +47,31 @@ def test_a_state_can_be_restored_any_number_of_times(scene) -> None:
         assert run(*scene) == end
 
 
+def test_wheels_go_on_with_the_points_they_had_gathered() -> None:
+    p.connect(p.DIRECT)
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.setGravity(0, 0, -9.8)
+    p.loadURDF("plane.urdf")
+    car = p.loadURDF("racecar/racecar.urdf", [0, 0, 0.05])
+    for wheel in (2, 3):
+        p.setJointMotorControl2(car, wheel, p.VELOCITY_CONTROL, targetVelocity=20, force=5)
+    for hinge in (4, 6):
+        p.setJointMotorControl2(car, hinge, p.POSITION_CONTROL, targetPosition=0.3, force=10)
+
+    def drive() -> tuple:
+        for _ in range(60):
+            p.stepSimulation()
+        return p.getBasePositionAndOrientation(car), p.getContactPoints()
+
+    drive()
+    state = p.saveState()
+    end = drive()
+    for _ in range(2):
+        p.restoreState(state)
+        assert drive() == end
+    p.disconnect()
+
+
 def test_motors_have_their_targets_back(scene) -> None:
     state = p.saveState()
     end = run(*scene)

@@ -39,3 +39,17 @@ def test_it_falls_and_touches_without_trouble(file: str) -> None:
             assert math.isfinite(sum(spin))
     finally:
         p.disconnect(client)
+
+
+@pytest.mark.parametrize("file", ["tray/tray.urdf", "tray/traybox.urdf"])
+def test_things_lie_in_a_tray(file: str) -> None:
+    client = p.connect(p.DIRECT)
+    try:
+        p.setGravity(0, 0, -9.81)
+        p.loadURDF(str(DATA / file), useFixedBase=True)
+        cube = p.loadURDF(str(DATA / "cube_small.urdf"), [0.05, 0.05, 0.1])
+        for _ in range(240):
+            p.stepSimulation()
+        assert p.getBasePositionAndOrientation(cube)[0] == pytest.approx((0.05, 0.05, 0.032), abs=0.01)
+    finally:
+        p.disconnect(client)

@@ -228,7 +228,7 @@ MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
     "teddy.obj": soft_shapes.teddy_mesh,
     "tray/tray.obj": partial(simple_meshes.tray, TRAY_FLOOR, (-0.3, -0.3, 0.3, 0.3), (-0.005, 0.125), 0.012),
     "tray/tray_solid.obj": partial(
-        simple_meshes.tray, TRAY_FLOOR, (-0.2969, -0.295, 0.2968, 0.3204), (-0.005, 0.1334), 0.012
+        simple_meshes.tray_hulls, TRAY_FLOOR, (-0.2969, -0.295, 0.2968, 0.3204), (-0.005, 0.1334), 0.012
     ),
 }
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from tools.assets.fields import Points
-from tools.assets.obj_mesh import ObjMesh
+from tools.assets.obj_mesh import ObjMesh, ObjParts
 
 
 def square(half: float, tiles: float, material: tuple[str, str]) -> ObjMesh:
@@ -123,6 +123,17 @@ def tray(floor: Rectangle, rim: Rectangle, heights: tuple[float, float], wall: f
             here, after = 4 * level + i, 4 * level + (i + 1) % 4
             faces.append((here, after, after + 4, here + 4))
     return ObjMesh(np.vstack(rings), faces)
+
+
+def tray_hulls(floor: Rectangle, rim: Rectangle, heights: tuple[float, float], wall: float) -> ObjParts:
+    """What such a tray touches with: its floor and its four sides, each a hull, so that things lie in it."""
+    whole = tray(floor, rim, heights, wall)
+    sides = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+    corners = [
+        (0, 1, 2, 3, 12, 13, 14, 15),
+        *((i, j, 4 + j, 4 + i, 12 + i, 12 + j, 8 + j, 8 + i) for i, j in ((0, 1), (1, 2), (2, 3), (3, 0))),
+    ]
+    return ObjParts([ObjMesh(whole.vertices[list(part)], sides) for part in corners])
 
 
 def _ring(outline: Rectangle, height: float, inset: float = 0.0) -> Points:

@@ -1,5 +1,18 @@
-"""Environments around a single URDF robot."""
+"""Environments around a single URDF or SDF robot."""
 
 from pybullet_envs.bullet.cartpole_bullet import CartPoleBulletEnv, CartPoleContinuousBulletEnv
+from pybullet_envs.bullet.kuka_diverse_object_gym_env import KukaDiverseObjectEnv
+from pybullet_envs.bullet.kukaCamGymEnv import KukaCamGymEnv
+from pybullet_envs.bullet.kukaGymEnv import KukaGymEnv
+from pybullet_envs.bullet.racecarGymEnv import RacecarGymEnv
+from pybullet_envs.bullet.racecarZEDGymEnv import RacecarZEDGymEnv
 
-__all__ = ["CartPoleBulletEnv", "CartPoleContinuousBulletEnv"]
+__all__ = [
+    "CartPoleBulletEnv",
+    "CartPoleContinuousBulletEnv",
+    "KukaCamGymEnv",
+    "KukaDiverseObjectEnv",
+    "KukaGymEnv",
+    "RacecarGymEnv",
+    "RacecarZEDGymEnv",
+]

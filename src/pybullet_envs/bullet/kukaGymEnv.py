@@ -1,0 +1,189 @@
+"""A KUKA that comes down on a tray and grasps at a block; the action steers it on the way."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+import pybullet_data
+from pybullet_envs.bullet.kuka import Kuka
+from pybullet_envs.env_bases import BulletEnv
+
+_FINGER_OPEN = 0.3
+_CLOSING_STEPS, _LIFTING_STEPS = 100, 1000
+# What the choices of the discrete action move: along x, along y, and the turn.
+_CHOICES = ((0, 0, 0), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1))
+
+
+class KukaGymEnv(BulletEnv):
+    """The gripper sinks by 2 mm a step; where it meets the tray it closes and lifts, which ends the episode.
+
+    Observation: position and roll, pitch and yaw of the gripper, then position across and yaw of the block as
+    the gripper sees it. Action: how far to move along x and y and to turn, within -1 and 1, or one of 7
+    choices. Reward: ten times the distance of block and wrist, negative, less the turn; 10000 more for a
+    block that is lifted.
+
+    Attributes:
+        blockUid: The block.
+    """
+
+    picture_size = (960, 720)
+    _camera = (1.3, 180.0, -40.0)
+    _step_size = 0.005
+    _turn_size = 0.05
+    _turn_cost = 10.0
+    _lifted_height = 0.2
+    _success = 10000.0
+    # Where the block is put: the least and the most of x, y [m] and yaw [rad]; its height.
+    _block_ranges: tuple[tuple[float, float], ...] = (
+        (0.55, 0.67),
+        (0.0, 0.2),
+        (3.14 * 0.5, 3.14 * 0.5 + 3.1415925438),
+    )
+    _block_height = -0.15
+
+    def __init__(
+        self,
+        urdfRoot: str | None = None,
+        actionRepeat: int = 1,
+        isEnableSelfCollision: bool = True,
+        renders: bool = False,
+        isDiscrete: bool = False,
+        maxSteps: int = 1000,
+        render_mode: str | None = None,
+    ) -> None:
+        """Makes the environment and its world.
+
+        Args:
+            urdfRoot: The folder of the files; that of `pybullet_data` where not given.
+            actionRepeat: Steps of the simulation for each of the environment.
+            isEnableSelfCollision: Kept, but of no effect.
+            renders: Whether to open a window.
+            isDiscrete: Whether the action is one of 7 choices.
+            maxSteps: Steps after which an episode ends.
+            render_mode: `human`, `rgb_array` or none.
+        """
+        super().__init__(renders, render_mode)
+        self._timeStep = 1.0 / 240.0
+        self._urdfRoot = pybullet_data.getDataPath() if urdfRoot is None else urdfRoot
+        self._actionRepeat = actionRepeat
+        self._isEnableSelfCollision = isEnableSelfCollision
+        self._isDiscrete = isDiscrete
+        self._maxSteps = maxSteps
+        self._connect()
+        self._p.resetDebugVisualizerCamera(1.3, 180, -41, [0.52, -0.2, -0.33])
+        self.action_space = self._actions()
+        self.observation_space = self._observations()
+        self._begin()
+
+    def _actions(self) -> gymnasium.spaces.Space[Any]:
+        if self._isDiscrete:
+            return gymnasium.spaces.Discrete(len(_CHOICES))
+        return gymnasium.spaces.Box(-1.0, 1.0, (3,), np.float32)
+
+    def _observations(self) -> gymnasium.spaces.Box:
+        return gymnasium.spaces.Box(-100.0, 100.0, (9,), np.float32)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begins an episode with the block somewhere on the tray."""
+        super().reset(seed=seed)
+        self._connect()
+        self._begin()
+        return self.getExtendedObservation(), {}
+
+    def _begin(self) -> None:
+        self.terminated = False
+        self._envStepCounter = 0
+        self._lay_table()
+        place = [self.np_random.uniform(low, high) for low, high in self._block_ranges]
+        self.blockUid = self._p.loadURDF(
+            os.path.join(self._urdfRoot, "block.urdf"),
+            [*place[:2], self._block_height],
+            self._p.getQuaternionFromEuler([0, 0, place[2]]),
+        )
+        self._p.setGravity(0, 0, -10)
+        self._kuka = Kuka(self._urdfRoot, self._timeStep, self._p)
+        self._p.stepSimulation()
+
+    def _lay_table(self) -> None:
+        """An empty world with a floor and a table."""
+        self._p.resetSimulation()
+        self._p.setPhysicsEngineParameter(numSolverIterations=150)
+        self._p.setTimeStep(self._timeStep)
+        self._p.loadURDF(os.path.join(self._urdfRoot, "plane.urdf"), [0, 0, -1])
+        self._p.loadURDF(os.path.join(self._urdfRoot, "table/table.urdf"), [0.5, 0.0, -0.82])
+
+    def getExtendedObservation(self) -> np.ndarray:
+        """What is observed now."""
+        gripper = self._p.getLinkState(self._kuka.kukaUid, self._kuka.kukaGripperIndex)[:2]
+        block = self._p.getBasePositionAndOrientation(self.blockUid)
+        position, orientation = self._p.multiplyTransforms(*self._p.invertTransform(*gripper), *block)
+        yaw = self._p.getEulerFromQuaternion(orientation)[2]
+        return np.array([*self._kuka.getObservation(), *position[:2], yaw], np.float32)
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Moves the gripper on."""
+        if self._isDiscrete:
+            x, y, turn = _CHOICES[int(action)]
+        else:
+            x, y, turn = (float(value) for value in action)
+        size = self._step_size
+        return self.step2([size * x, size * y, -0.002, self._turn_size * turn, _FINGER_OPEN])
+
+    def step2(self, action: list[float]) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Moves the gripper by an action as `Kuka.applyAction` takes it."""
+        for _ in range(self._actionRepeat):
+            self._kuka.applyAction(action)
+            self._p.stepSimulation()
+            if self._termination():
+                break
+            self._envStepCounter += 1
+        if self.render_mode == "human":
+            time.sleep(self._timeStep)
+        ended = self._termination()
+        reward = self._reward() - self._turn_cost * abs(action[3])
+        return self.getExtendedObservation(), reward, ended, False, {}
+
+    def _looked_at(self) -> tuple[float, float, float]:
+        return self._p.getBasePositionAndOrientation(self._kuka.kukaUid)[0]
+
+    def _termination(self) -> bool:
+        """Whether the episode is over; grasps when the gripper comes to the tray."""
+        if self.terminated or self._envStepCounter > self._maxSteps:
+            return True
+        if not self._p.getClosestPoints(self._kuka.trayUid, self._kuka.kukaUid, 0.005):
+            return False
+        self.terminated = True
+        self._grasp()
+        return True
+
+    def _grasp(self) -> None:
+        """Closes the fingers and lifts, until the block or the wrist is high."""
+        for step in range(_CLOSING_STEPS):
+            finger = _FINGER_OPEN * (1.0 - step / _CLOSING_STEPS)
+            self._kuka.applyAction([0, 0, 0.0001, 0, finger])
+            self._p.stepSimulation()
+        for _ in range(_LIFTING_STEPS):
+            self._kuka.applyAction([0, 0, 0.001, 0, 0.0])
+            self._p.stepSimulation()
+            wrist = self._p.getLinkState(self._kuka.kukaUid, self._kuka.kukaEndEffectorIndex)[0]
+            if self._block_position()[2] > 0.23 or wrist[2] > 0.5:
+                return
+
+    def _block_position(self) -> tuple[float, float, float]:
+        return self._p.getBasePositionAndOrientation(self.blockUid)[0]
+
+    def _reward(self) -> float:
+        points = self._p.getClosestPoints(
+            self.blockUid, self._kuka.kukaUid, 1000, -1, self._kuka.kukaEndEffectorIndex
+        )
+        reward = -10.0 * min(point[8] for point in points) if points else -1000.0
+        if self._block_position()[2] > self._lifted_height:
+            reward += self._success
+        return reward
