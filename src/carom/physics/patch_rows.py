@@ -115,7 +115,7 @@ def rigid_jacobian(arm: Vector3, direction: Vector3) -> Vector8:
 
 
 @func
-def write_small_jacobians(
+def write_rigid_jacobians(
     couplings: Couplings,
     terms: ContactTerms,
     reference_a: Vector3,
@@ -214,7 +214,7 @@ def weigh(couplings: Couplings, world: Int32, patch: Int32, normal_mass: Vector4
 
 
 @func
-def write_small_rows(
+def write_rigid_rows(
     settings: Settings,
     model: Model,
     state: State,
@@ -239,7 +239,7 @@ def write_small_rows(
             settings, model, state, scratch, shapes, contacts, world, first + contact, share
         )
         couplings.terms[world, contact] = terms
-        write_small_jacobians(couplings, terms, body_a.reference, body_b.reference, world, patch, contact)
+        write_rigid_jacobians(couplings, terms, body_a.reference, body_b.reference, world, patch, contact)
         contact += 1
     place = couplings.patch[world, patch].place
     if place[1] > 0:

@@ -6,7 +6,7 @@ from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.contact_terms import contact_terms, keep_contact_impulse
 from carom.physics.couplings import tree_blocks
 from carom.physics.long_patch_rows import clear_run, write_long_contact
-from carom.physics.patch_rows import write_small_rows
+from carom.physics.patch_rows import write_rigid_rows
 
 
 @func
@@ -51,7 +51,7 @@ def write_patch(
     couplings.patch[world, patch].first_contact = first_contact
     couplings.patch[world, patch].count = count
     if run < 0:
-        write_small_rows(
+        write_rigid_rows(
             settings, model, state, scratch, shapes, contacts, couplings, world, patch, a, b, share
         )
         return

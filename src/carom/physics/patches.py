@@ -4,8 +4,8 @@ What a row of a patch does to the velocities of those after it is known beforeha
 are computed at once, from then on only the impulses depend on each other, and the trees' velocities
 are brought up to date once per patch: the same steps of Gauss-Seidel, without waiting for memory.
 
-Places beyond the last contact of a patch have no effective mass. Those of small trees, most often free
-bodies, are here; `long_patches` does the same for trees of any size.
+Places beyond the last contact of a patch have no effective mass. The patches of rigid bodies are here;
+`long_patches` does the same for articulated ones.
 """
 
 from typing import Any
@@ -24,14 +24,10 @@ from carom.model.real import (
 )
 from carom.model.structs import Scratch, Settings
 
-# Blocks and dofs of a small tree at most.
-SMALL = 2
-SMALL_DOFS = 8
-
 
 @func
-def tree_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
-    """What the solver has changed so far about the velocity of a small tree."""
+def body_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
+    """What the solver has changed so far about the velocity of a rigid body."""
     first = scratch.delta_velocity[world, delta]
     second = scratch.delta_velocity[world, delta + 1]
     return Vector8(first[0], first[1], first[2], first[3], second[0], second[1], second[2], second[3])
@@ -39,7 +35,7 @@ def tree_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
 
 @func
 def add_change(scratch: Scratch, world: Int32, delta: Int32, change: Vector8):
-    """Change the velocity of a small tree."""
+    """Change the velocity of a rigid body."""
     scratch.delta_velocity[world, delta] += Vector4(change[0], change[1], change[2], change[3])
     scratch.delta_velocity[world, delta + 1] += Vector4(change[4], change[5], change[6], change[7])
 
@@ -167,8 +163,8 @@ def friction_residual(couplings: Couplings, world: Int32, patch: Int32, change: 
 
 
 @func
-def relax_small_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32) -> real:
-    """Relax the normal rows of a patch of small trees; returns the greatest change of velocity squared."""
+def relax_rigid_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32) -> real:
+    """Relax the normal rows of a patch of rigid bodies; returns the greatest change of velocity squared."""
     place = couplings.patch[world, patch].place
     couplings.patch[world, patch].normal_wanted = couplings.patch[world, patch].normal_share - wp.cw_mul(
         couplings.patch[world, patch].normal_softness, couplings.patch[world, patch].normal_impulse
@@ -177,13 +173,13 @@ def relax_small_normals(scratch: Scratch, couplings: Couplings, world: Int32, pa
         couplings.patch[world, patch].normal_wanted = couplings.patch[
             world, patch
         ].normal_wanted - combination(
-            couplings.patch[world, patch].normal_weighted_a, tree_change(scratch, world, place[0])
+            couplings.patch[world, patch].normal_weighted_a, body_change(scratch, world, place[0])
         )
     if place[3] > 0:
         couplings.patch[world, patch].normal_wanted = couplings.patch[
             world, patch
         ].normal_wanted - combination(
-            couplings.patch[world, patch].normal_weighted_b, tree_change(scratch, world, place[2])
+            couplings.patch[world, patch].normal_weighted_b, body_change(scratch, world, place[2])
         )
     change = bounded_normals(couplings, world, patch)
     if place[1] > 0:
@@ -196,23 +192,23 @@ def relax_small_normals(scratch: Scratch, couplings: Couplings, world: Int32, pa
 
 
 @func
-def relax_small_friction(
+def relax_rigid_friction(
     settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32
 ) -> real:
-    """Relax the friction rows of a patch of small trees; returns as `relax_small_normals`."""
+    """Relax the friction rows of a patch of rigid bodies; returns as `relax_rigid_normals`."""
     place = couplings.patch[world, patch].place
     couplings.patch[world, patch].friction_wanted = couplings.patch[world, patch].friction_share
     if place[1] > 0:
         couplings.patch[world, patch].friction_wanted = couplings.patch[
             world, patch
         ].friction_wanted - combination(
-            couplings.patch[world, patch].friction_weighted_a, tree_change(scratch, world, place[0])
+            couplings.patch[world, patch].friction_weighted_a, body_change(scratch, world, place[0])
         )
     if place[3] > 0:
         couplings.patch[world, patch].friction_wanted = couplings.patch[
             world, patch
         ].friction_wanted - combination(
-            couplings.patch[world, patch].friction_weighted_b, tree_change(scratch, world, place[2])
+            couplings.patch[world, patch].friction_weighted_b, body_change(scratch, world, place[2])
         )
     change = bounded_friction(settings, couplings, world, patch)
     if place[1] > 0:

@@ -7,7 +7,7 @@ import warp as wp
 
 from carom.model.codes import USER
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
-from carom.model.real import Index4, Int32, func, real
+from carom.model.real import Index4, Int32, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.calm import CALM_PRECISION, CALM_SWEEPS, NOT_CALM, SOLVED, UNSOLVED
 from carom.physics.conjugate import go_on, remember_impulses
@@ -77,6 +77,55 @@ def forget_changes(
 
 
 @func
+def sweep_island(
+    settings: Settings,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    visits: Int32,
+    units: Index4,
+    calm: Int32,
+) -> Vector3:
+    """Sweep over the rows of an island until they hardly change; if it is `calm`, along conjugate directions.
+
+    Args:
+        settings: How many sweeps there may be, and what may be left over.
+        scratch: Rows of one tree.
+        couplings: Rows over two trees.
+        world: The world.
+        visits: Rows to visit.
+        units: What `write_units` returned.
+        calm: 1 if all units are patches that start from their last impulses.
+
+    Returns:
+        Greatest change of a velocity in the last sweep, squared; number of sweeps; 0.
+    """
+    threshold = settings.residual_threshold
+    most = settings.iterations
+    if calm == 1:
+        threshold = threshold * CALM_PRECISION
+        most = most * CALM_SWEEPS
+    residual = real(0.0)
+    square = real(0.0)
+    sweep = Int32(0)
+    searching = Int32(0)
+    if visits > 0 or units[0] > 0:
+        searching = Int32(1)
+    while searching == 1:
+        if calm == 1:
+            remember_impulses(couplings, world, units[1])
+        residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
+        if units[0] > 0:
+            residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
+        sweep += 1
+        if residual <= threshold or sweep >= most:
+            searching = Int32(0)
+        elif calm == 1:
+            square = go_on(scratch, couplings, world, units[1], square)
+    return Vector3(residual, real(sweep), 0.0)
+
+
+@func
 def solve_island(
     model: Model,
     settings: Settings,
@@ -89,21 +138,22 @@ def solve_island(
     world: Int32,
     root: Int32,
 ):
-    """Solve the rows of one island; leaves the change of velocity in `delta_velocity`."""
+    """Solve the rows of one island; leaves the change of velocity in `delta_velocity`.
+
+    One that is calm but cannot be solved so is solved once more, from nothing.
+    """
     made = island_rows(model, settings, state, scratch, users, couplings, world, root)
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
-    units = Index4(0, 0, 0, 0)
+    calm = Int32(1) - couplings.tree_restless[world, root]
     outcome = Int32(NOT_CALM)
-    share = real(0.0)
-    if couplings.tree_restless[world, root] == 0:
-        share = settings.contact_warm_starting
-    residual = real(0.0)
-    sweep = Int32(0)
-    attempting = Int32(1)
-    while attempting == 1:
-        attempting = Int32(0)
+    units = Index4(0, 0, 0, 0)
+    found = Vector3(0.0, 0.0, 0.0)
+    trying = Int32(1)
+    while trying == 1:
+        trying = Int32(0)
         if first_contact >= 0:
+            share = settings.contact_warm_starting * real(calm)
             units = write_units(
                 model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
                 Index4(made[1], made[2], 0, 0), share,
@@ -111,35 +161,15 @@ def solve_island(
         if visits < 0 or units[0] < 0:
             state.fault_tree[world, 0] = OVERFLOW
             return
-        threshold = settings.residual_threshold
-        most = settings.iterations
-        if share > 0.0:
-            threshold = threshold * CALM_PRECISION
-            most = most * CALM_SWEEPS
-        square = real(0.0)
-        sweep = Int32(0)
-        searching = Int32(0)
-        if visits > 0 or first_contact >= 0:
-            searching = Int32(1)
-        while searching == 1:
-            if share > 0.0:
-                remember_impulses(couplings, world, units[1])
-            residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
-            if first_contact >= 0:
-                residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
-            sweep += 1
-            if residual <= threshold or sweep >= most:
-                searching = Int32(0)
-            elif share > 0.0:
-                square = go_on(scratch, couplings, world, units[1], square)
-        if share > 0.0:
+        found = sweep_island(settings, scratch, couplings, world, visits, units, calm)
+        if calm == 1:
             outcome = Int32(SOLVED)
-            if residual > settings.residual_threshold:
+            if found[0] > settings.residual_threshold:
                 outcome = Int32(UNSOLVED)
-                share = real(0.0)
                 forget_changes(settings, model, state, scratch, world, root)
-                attempting = Int32(1)
-    keep_row_results(model, settings, state, scratch, world, root, made[0], sweep, residual)
+                calm = Int32(0)
+                trying = Int32(1)
+    keep_row_results(model, settings, state, scratch, world, root, made[0], Int32(found[1]), found[0])
     keep_unit_impulses(contacts, couplings, world, units[0], outcome)
     keep_constraint_impulses(model, users, couplings, world, root)
 

@@ -15,7 +15,7 @@ from carom.model.structs import Scratch, Settings
 from carom.physics.couplings import relax_coupling, relax_in_circle, relax_within
 from carom.physics.joint_solver import relax_row
 from carom.physics.long_patches import relax_long_friction, relax_long_normals
-from carom.physics.patches import relax_small_friction, relax_small_normals
+from carom.physics.patches import relax_rigid_friction, relax_rigid_normals
 
 
 @func
@@ -48,7 +48,7 @@ def visit_sweep(
 def relax_normals(scratch: Scratch, couplings: Couplings, world: Int32, patch: Int32) -> real:
     """Relax the normal rows of a patch; returns the greatest change of velocity squared."""
     if couplings.patch[world, patch].run < 0:
-        return relax_small_normals(scratch, couplings, world, patch)
+        return relax_rigid_normals(scratch, couplings, world, patch)
     return relax_long_normals(scratch, couplings, world, patch)
 
 
@@ -58,7 +58,7 @@ def relax_friction(
 ) -> real:
     """Relax the friction rows of a patch; returns as `relax_normals`."""
     if couplings.patch[world, patch].run < 0:
-        return relax_small_friction(settings, scratch, couplings, world, patch)
+        return relax_rigid_friction(settings, scratch, couplings, world, patch)
     return relax_long_friction(settings, scratch, couplings, world, patch)
 
 
