@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.pose import Pose
+from carom.dynamics_changes import change_body, change_link, write_link
 from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
@@ -198,15 +199,11 @@ class Body:
                 [rad/s and m/s], `activation_state` (bits of `model.flags.ActivationChange`) and
                 `sleep_threshold`, the sum of squared velocities below which it is at rest.
         """
-        from carom.dynamics_changes import change_body, change_link
-
         change_body(self, {name: changes[name] for name in _WHOLE_BODY if name in changes})
         change_link(self, link, {name: value for name, value in changes.items() if name not in _WHOLE_BODY})
 
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Take over all numbers of a link at once, but for the bounds of its joint; -1 is the base."""
-        from carom.dynamics_changes import write_link
-
         self._dynamics[link + 1] = dynamics
         write_link(self, link)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from struct import Struct
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from carom.collision.contact_report import ContactReport, Places, report_contacts_kernel
+from carom.collision.contact_report import ContactReport, report_contacts_kernel
 from carom.model.arrays import ArrayTable, numbers_of
 from carom.model.launch import KernelStructs
 from carom.model.real import NUMPY_REAL
@@ -40,18 +40,11 @@ class ContactSearch:
     """The contacts of a world.
 
     Args:
-        structs: Warp structs by the name kernels give them.
-        places: Body and link that each row of the link arrays stands for.
+        structs: Warp structs by the name kernels give them, `places` among them.
         device: Warp device name.
     """
 
-    def __init__(self, structs: KernelStructs, places: Sequence[tuple[int, int]], device: str) -> None:
-        table = ArrayTable(Places, None)
-        table.reserve({"place": len(places)})
-        if places:
-            columns = np.array(places).T
-            table.numpy["place_body"][: len(places)], table.numpy["place_link"][: len(places)] = columns
-        structs["places"] = table.struct(device)
+    def __init__(self, structs: KernelStructs, device: str) -> None:
         asked = {"body_a": -1, "link_a": -2, "body_b": -1, "link_b": -2, "time_step": NUMPY_REAL(0.0)}
         self._search = Question(
             report_contacts_kernel, structs, "report", ArrayTable(ContactReport, None), device, asked, world=0

@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from carom.collision.closest import place_shapes_kernel
 from carom.collision.hierarchy import IN_HIERARCHY, PLACED, READINESS
 from carom.collision.manifold import THERE
+from carom.collision.places import Places
 from carom.collision.rays import prepare_rays_kernel
 from carom.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.description.pose import Vector3
+from carom.model.arrays import ArrayTable
 from carom.model.codes import PLANE
 from carom.model.launch import KernelStructs, Launch, launch
 from carom.pair_search import NearestPoints, PairSearch
-from carom.ray_cast import Points, RayCast, RayHit, RayHits
+from carom.ray_cast import Points, RayCast, RayHit
 from carom.touch_arrays import TouchArrays
 
 # A distance that counts as none.
@@ -46,10 +49,10 @@ class Queries:
         device: str,
     ) -> None:
         self._structs = structs
+        structs["places"] = _struct_of(places, device)
         self._device = device
         self._touch = touch
         self._positions = positions
-        self._places = places
         self._present_poses = present_poses
         self._all_shapes = touch.shapes
         self._shape_count = touch.shapes.shape_count
@@ -76,7 +79,7 @@ class Queries:
 
     @cached_property
     def _contacts(self) -> ContactSearch:
-        return ContactSearch(self._structs, self._places, self._device)
+        return ContactSearch(self._structs, self._device)
 
     def cast_rays(
         self,
@@ -86,7 +89,7 @@ class Queries:
         mask: int = -1,
         hit_number: int = 0,
         separation: float = 0.0,
-    ) -> RayHits:
+    ) -> tuple[RayHit, ...]:
         """What rays hit.
 
         Args:
@@ -168,3 +171,12 @@ class Queries:
             with self._present_poses():
                 self._make_ready[readiness]()
             self._ready_for = wanted
+
+
+def _struct_of(places: Sequence[tuple[int, int]], device: str) -> Any:
+    """A Warp struct of the bodies and links that the rows of the link arrays stand for."""
+    table = ArrayTable(Places, None)
+    table.reserve({"place": len(places)})
+    for name, column in zip(("place_body", "place_link"), zip(*places, strict=True), strict=False):
+        table.numpy[name][: len(places)] = column
+    return table.struct(device)

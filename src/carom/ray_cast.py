@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from itertools import chain
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,36 +22,16 @@ _TYPE_CODE = np.dtype(NUMPY_REAL).char
 _VECTOR = struct.Struct(f"3{_TYPE_CODE}")
 
 
-class RayHits(NamedTuple):
-    """What rays hit, an item for each.
-
-    Attributes:
-        link: Row of the link in the world's arrays; -1 for none.
-        fraction: Where along the ray; 1 for none.
-        position: The same in world axes [m]; 0 for none.
-        normal: In world axes; 0 for none.
-    """
-
-    link: list[int]
-    fraction: list[float]
-    position: list[Vector3]
-    normal: list[Vector3]
-
-
-class RayHit(NamedTuple):
-    """What one ray hits; see `RayHits`."""
-
-    link: int
-    fraction: float
-    position: Vector3
-    normal: Vector3
+RayHit = tuple[int, int, float, Vector3, Vector3]
+"""Body and link (-1: the base) that a ray hits, fraction of the ray, position [m] and normal in world axes.
+(-1, -1, 1) and zeros for nothing."""
 
 
 class RayCast:
     """The rays of a world.
 
     Args:
-        structs: Warp structs by the name kernels give them.
+        structs: Warp structs by the name kernels give them, `places` among them.
         device: Warp device name.
     """
 
@@ -71,7 +50,7 @@ class RayCast:
 
     def __call__(
         self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float
-    ) -> RayHits:
+    ) -> tuple[RayHit, ...]:
         """Cast rays; the arguments are those of `Queries.cast_rays`."""
         count = len(starts)
         if count > self._cast.room:
@@ -81,13 +60,9 @@ class RayCast:
         self._starts[:size] = _packed(starts)
         self._ends[:size] = _packed(ends)
         self._cast(count, mask, hit_number, separation)
-        arrays = self._cast.arrays.numpy
-        return RayHits(
-            arrays["ray_link"][:count].tolist(),
-            arrays["ray_fraction"][:count].tolist(),
-            list(_VECTOR.iter_unpack(self._positions[:size])),
-            list(_VECTOR.iter_unpack(self._normals[:size])),
-        )
+        bodies = self._bodies[:count]
+        positions, normals = _VECTOR.iter_unpack(self._positions), _VECTOR.iter_unpack(self._normals)
+        return tuple(zip(bodies, self._links, self._fractions, positions, normals, strict=False))
 
     def one(self, start: Vector3, end: Vector3, mask: int, hit_number: int, separation: float) -> RayHit:
         """Cast one ray."""
@@ -95,13 +70,14 @@ class RayCast:
         _VECTOR.pack_into(self._ends, 0, *end)
         self._cast(1, mask, hit_number, separation)
         position, normal = _VECTOR.unpack_from(self._positions), _VECTOR.unpack_from(self._normals)
-        return RayHit(self._links[0], self._fractions[0], position, normal)
+        return self._bodies[0], self._links[0], self._fractions[0], position, normal
 
     def _view(self) -> None:
         """Take the memory of the present arrays."""
         arrays, memory = self._cast.arrays.numpy, self._cast.arrays.bytes_of
         self._starts, self._ends = memory("ray_start"), memory("ray_end")
         self._positions, self._normals = memory("ray_position"), memory("ray_normal")
+        self._bodies: memoryview[int] = arrays["ray_body"].data
         self._links: memoryview[int] = arrays["ray_link"].data
         self._fractions = numbers_of(arrays["ray_fraction"])
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description.pose import Pose, Vector3
+from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from pybullet._arguments import integer, real, sequence, vector3
 from pybullet._builtin import exported
@@ -19,12 +19,10 @@ from pybullet._constants import MAX_RAY_INTERSECTION_BATCH_SIZE
 from pybullet._errors import fail
 
 if TYPE_CHECKING:
-    from carom.ray_cast import Points
+    from carom.ray_cast import RayHit
     from carom.world import World
 
 __all__ = ["rayTest", "rayTestBatch"]
-
-RayHit = tuple[int, int, float, Vector3, Vector3]
 
 _BASE = -1
 _BAD_ITEM = "Items in the from/to positions need to be an [x,y,z] list of 3 floats/doubles"
@@ -69,9 +67,7 @@ def rayTest(
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    hit = world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
-    bodies, links = world.link_columns
-    return ((bodies[hit.link], links[hit.link], hit.fraction, hit.position, hit.normal),)
+    return (world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0)),)
 
 
 @exported
@@ -135,7 +131,9 @@ def rayTestBatch(
         rotation = np.array(rotation_matrix(frame.orientation))
         starts = starts @ rotation.T + frame.position
         ends = ends @ rotation.T + frame.position
-    return _cast(world, starts, ends, mask, number, max(epsilon, 0.0))
+    return world.queries().cast_rays(
+        starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
+    )
 
 
 def _points(values: Any, name: str) -> np.ndarray:
@@ -163,13 +161,3 @@ def _frame_of(world: World, body_id: int, link: int) -> Pose | None:
     body.update_link_poses()
     px, py, pz, qx, qy, qz, qw = world.link_pose[body.first_link + 1 + link].tolist()
     return Pose((px, py, pz), (qx, qy, qz, qw))
-
-
-def _cast(
-    world: World, starts: Points, ends: Points, mask: int, number: int, separation: float
-) -> tuple[RayHit, ...]:
-    rows, *places = world.queries().cast_rays(
-        starts, ends, mask=mask, hit_number=max(number, 0), separation=separation
-    )
-    bodies, links = world.link_columns
-    return tuple(zip(map(bodies.__getitem__, rows), map(links.__getitem__, rows), *places, strict=True))

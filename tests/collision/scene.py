@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from carom.collision.capacity import scratch_capacity
 from carom.collision.closest import Searches, closest_points_kernel, place_shapes_kernel
 from carom.collision.collide import collide_kernel
+from carom.collision.places import Places
 from carom.collision.ray_packets import Rays
 from carom.collision.rays import prepare_rays_kernel, rays_kernel
 from carom.geometry.hull import convex_hull
@@ -233,11 +234,19 @@ class Scene:
         table = ArrayTable(Rays, None)
         table.reserve({"ray": count})
         table.numpy["ray_start"][:count], table.numpy["ray_end"][:count] = starts, ends
+        places = ArrayTable(Places, None)
+        places.reserve({"place": self.settings.shape_count})
         question = (0, count, threads, mask, hit_number, NUMPY_REAL(separation))
         wp.launch(
             rays_kernel,
             dim=threads,
-            inputs=[structs["shapes"], structs["pairs"], table.struct("cpu"), *question],
+            inputs=[
+                structs["shapes"],
+                structs["pairs"],
+                places.struct("cpu"),
+                table.struct("cpu"),
+                *question,
+            ],
         )
         return tuple(table.numpy[name][:count] for name in ("ray_shape", "ray_fraction", "ray_normal"))
 

@@ -194,3 +194,29 @@ def test_a_ball_at_restitution_one_bounces_no_higher_at_usual_steps(client: int,
         p.stepSimulation()
         highest = max(highest, p.getBasePositionAndOrientation(ball)[0][2])
     assert highest < top + 1e-4
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_friction_stays_in_its_cone(client: int, name: str) -> None:
+    """At every contact of things that slide, roll and tumble over a floor."""
+    p.setGravity(0, 0, -9.81)
+    floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    p.changeDynamics(floor, -1, lateralFriction=1)
+    chance, shape, friction = random.Random(name), SHAPES[name](), 0.4
+    for i in range(12):
+        body = p.createMultiBody(1, shape, basePosition=[i, 0, 0.2], baseOrientation=turned(chance))
+        p.changeDynamics(body, -1, lateralFriction=friction)
+        p.resetBaseVelocity(
+            body,
+            [chance.uniform(-2, 2), chance.uniform(-2, 2), 0],
+            [chance.uniform(-5, 5) for _ in range(3)],
+        )
+    sliding = 0
+    for _ in range(120):
+        p.stepSimulation()
+        for contact in p.getContactPoints():
+            normal, tangential = contact[9], np.hypot(contact[10], contact[12])
+            assert normal >= 0
+            assert tangential <= friction * normal * (1 + 1e-9) + 1e-12
+            sliding += bool(tangential > 0.99 * friction * normal > 0)
+    assert sliding > 20

@@ -2,19 +2,12 @@
 
 import warp as wp
 
+from carom.collision.places import Places
 from carom.model.contact_structs import Contacts
 from carom.model.real import Int32, Ints, Reals, Vectors3, func, kernel, real
 
 # Links from this one down stand for any link.
 ANY_LINK = -2
-
-
-@wp.struct
-class Places:
-    """What the rows of the link arrays stand for."""
-
-    place_body: Ints
-    place_link: Ints  # -1: the base
 
 
 @wp.struct

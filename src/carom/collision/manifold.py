@@ -118,8 +118,25 @@ def bequeath(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row:
 
 
 @func
-def write_normal(contacts: Contacts, world: Int32, row: Int32, normal: Vector3):
-    """Write the normal of a contact, and its friction directions."""
+def write_place(
+    contacts: Contacts,
+    world: Int32,
+    row: Int32,
+    shapes: Index4,
+    local_a: Vector3,
+    local_b: Vector3,
+    point_a: Vector3,
+    point_b: Vector3,
+    normal: Vector3,
+    distance: real,
+):
+    """Write where a contact is, and its friction directions."""
+    contacts.contact_shapes[world, row] = shapes
+    contacts.contact_local_a[world, row] = local_a
+    contacts.contact_local_b[world, row] = local_b
+    contacts.contact_point_a[world, row] = point_a
+    contacts.contact_point_b[world, row] = point_b
+    contacts.contact_distance[world, row] = distance
     direction = friction_direction(normal)
     contacts.contact_normal[world, row] = normal
     contacts.contact_direction1[world, row] = direction
@@ -142,17 +159,18 @@ def write_contact(
     link_b = shapes.shape_link[pair[1]]
     point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
     point_b = candidate_point(pairs.candidate_terms, world, candidate)
-    contacts.contact_shapes[world, row] = Index4(pair[0], pair[1], link_a, link_b)
-    contacts.contact_local_a[world, row] = wp.transform_point(
-        wp.transform_inverse(state.link_pose[world, link_a]), point_a
+    write_place(
+        contacts,
+        world,
+        row,
+        Index4(pair[0], pair[1], link_a, link_b),
+        wp.transform_point(wp.transform_inverse(state.link_pose[world, link_a]), point_a),
+        wp.transform_point(wp.transform_inverse(state.link_pose[world, link_b]), point_b),
+        point_a,
+        point_b,
+        candidate_normal(pairs.candidate_terms, world, candidate),
+        candidate_distance(pairs.candidate_terms, world, candidate),
     )
-    contacts.contact_local_b[world, row] = wp.transform_point(
-        wp.transform_inverse(state.link_pose[world, link_b]), point_b
-    )
-    contacts.contact_point_a[world, row] = point_a
-    contacts.contact_point_b[world, row] = point_b
-    contacts.contact_distance[world, row] = candidate_distance(pairs.candidate_terms, world, candidate)
-    write_normal(contacts, world, row, candidate_normal(pairs.candidate_terms, world, candidate))
 
 
 @func
@@ -192,11 +210,6 @@ def keep_contact(state: State, contacts: Contacts, pairs: Pairs, world: Int32, b
     local_b = pairs.previous_local_b[world, before]
     point_a = wp.transform_point(state.link_pose[world, shapes[2]], local_a)
     point_b = wp.transform_point(state.link_pose[world, shapes[3]], local_b)
-    contacts.contact_shapes[world, row] = shapes
-    contacts.contact_local_a[world, row] = local_a
-    contacts.contact_local_b[world, row] = local_b
-    contacts.contact_point_a[world, row] = point_a
-    contacts.contact_point_b[world, row] = point_b
-    contacts.contact_distance[world, row] = wp.dot(point_a - point_b, normal)
-    write_normal(contacts, world, row, normal)
+    distance = wp.dot(point_a - point_b, normal)
+    write_place(contacts, world, row, shapes, local_a, local_b, point_a, point_b, normal, distance)
     bequeath(contacts, pairs, world, before, row)

@@ -21,7 +21,8 @@ class Rays:
     ray_start: Vectors3
     ray_end: Vectors3
     ray_shape: Ints  # -1: nothing
-    ray_link: Ints  # -1: nothing
+    ray_body: Ints  # -1: nothing
+    ray_link: Ints  # -1: the base, or nothing
     ray_fraction: Reals  # 1: nothing
     ray_position: Vectors3  # 0: nothing
     ray_normal: Vectors3  # in world axes; 0: nothing

@@ -13,6 +13,7 @@ from carom.collision.hierarchy import (
     leaf_start,
     next_node,
 )
+from carom.collision.places import Places
 from carom.collision.ray_packets import (
     LANES,
     NOWHERE,
@@ -237,13 +238,16 @@ def cast_packet(
 
 
 @func
-def tell_hit(shapes: Shapes, rays: Rays, ray: Int32):
+def tell_hit(shapes: Shapes, places: Places, rays: Rays, ray: Int32):
     """Write what a ray hit as users read it, from its shape, normal and fraction."""
     shape = rays.ray_shape[ray]
     if shape >= 0:
-        rays.ray_link[ray] = shapes.shape_link[shape]
+        row = shapes.shape_link[shape]
+        rays.ray_body[ray] = places.place_body[row]
+        rays.ray_link[ray] = places.place_link[row]
         rays.ray_position[ray] = rays.ray_start[ray] + way_of(rays, ray) * rays.ray_fraction[ray]
     else:
+        rays.ray_body[ray] = -1
         rays.ray_link[ray] = -1
         rays.ray_fraction[ray] = 1.0
         rays.ray_position[ray] = Vector3(0.0, 0.0, 0.0)
@@ -263,6 +267,7 @@ def prepare_rays_kernel(settings: Settings, shapes: Shapes, state: State, pairs:
 def rays_kernel(
     shapes: Shapes,
     pairs: Pairs,
+    places: Places,
     rays: Rays,
     world: Int32,
     count: Int32,
@@ -276,6 +281,7 @@ def rays_kernel(
     Args:
         shapes: All shapes.
         pairs: Poses and hierarchy.
+        places: What links are reported as.
         rays: The rays, and room for what they hit.
         world: The world they are in.
         count: How many there are.
@@ -288,4 +294,4 @@ def rays_kernel(
         packet, limit = packet_of(rays, first, count)
         cast_packet(shapes, pairs, world, rays, packet, limit, mask, hit_number, separation)
         for ray in range(packet.first, packet.end):
-            tell_hit(shapes, rays, ray)
+            tell_hit(shapes, places, rays, ray)
