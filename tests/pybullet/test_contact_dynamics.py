@@ -141,3 +141,32 @@ def test_whole_numbers_come_back_as_floats(client: int) -> None:
     p.changeDynamics(ball, -1, mass=2, restitution=1, contactStiffness=1000, contactDamping=10)
     info = p.getDynamicsInfo(ball, -1)
     assert [type(info[field]) for field in (0, 5, 8, 9)] == [float] * 4
+
+
+def moving_floor(linear: list[float], angular: list[float]) -> tuple[int, int]:
+    """A body without mass that moves, and a box on it; gravity is 10."""
+    p.setGravity(0, 0, -10)
+    bodies = [
+        p.createMultiBody(mass, p.createCollisionShape(p.GEOM_BOX, halfExtents=half), basePosition=[0, 0, z])
+        for mass, half, z in ((0, [3, 3, 0.05], 0.05), (1, [0.1, 0.1, 0.1], 0.2))
+    ]
+    p.resetBaseVelocity(bodies[0], linear, angular)
+    return bodies[0], bodies[1]
+
+
+def test_a_belt_takes_things_along_as_in_pybullet(client: int) -> None:
+    belt, box = moving_floor([0.5, 0, 0], [0, 0, 0])
+    for _ in range(240):
+        p.stepSimulation()
+    assert p.getBasePositionAndOrientation(belt)[0] == pytest.approx((0.5, 0, 0.05), abs=1e-9)
+    assert p.getBasePositionAndOrientation(box)[0][0] == pytest.approx(0.45087, abs=1e-4)
+    assert p.getBaseVelocity(box)[0] == pytest.approx((0.5, 0, 0), abs=1e-4)
+
+
+def test_a_turntable_turns_things_and_a_lift_lifts_them(client: int) -> None:
+    _, box = moving_floor([0, 0, 0.3], [0, 0, 1])
+    for _ in range(100):
+        p.stepSimulation()
+    velocity, spin = p.getBaseVelocity(box)
+    assert velocity == pytest.approx((0, 0, 0.3), abs=1e-2)
+    assert spin == pytest.approx((0, 0, 1), abs=1e-3)

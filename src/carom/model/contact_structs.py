@@ -245,6 +245,8 @@ class ContactTerms:
     start: Vector3  # impulses to start from
     ignored: Int32  # 1: too far apart to be solved
     gain: real  # velocity along the normal that forces gave it in this substep, where it can rebound
+    carried: Vector3  # velocity of a's point against b's that comes from fixed bases which move
+    carried_spin: Vector3  # likewise the angular velocity
 
 
 if TYPE_CHECKING:

@@ -1,5 +1,7 @@
 """Rows of contacts: normal, friction, rolling and spinning friction, one by one."""
 
+import warp as wp
+
 from carom.model.codes import (
     LATERAL_ROW,
     NORMAL_ROW,
@@ -81,12 +83,13 @@ def add_contact_rows(
         inverse_mass = found[0]
         if terms.ignored != 0:
             inverse_mass = real(0.0)
-        change = friction_change(settings, found[1], terms.drift, linear)
+        velocity = found[1] + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
+        change = friction_change(settings, velocity, terms.drift, linear)
         lower = -coefficient
         upper = coefficient
         softness = real(0.0)
         if place == row:
-            change = normal_change(settings, shapes, terms, found[1])
+            change = normal_change(settings, shapes, terms, velocity)
             lower = real(0.0)
             upper = real(0.0) + _UNBOUNDED
             softness = terms.softness

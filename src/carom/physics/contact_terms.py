@@ -6,6 +6,7 @@ from carom.model.contact_structs import Contacts, ContactTerms, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.calm import next_trust
+from carom.physics.kinematics import base_omega, base_velocity
 
 # A contact slides whose friction is at least this share of the greatest, squared.
 _SLIDING = real(1.0 - 1e-9)
@@ -125,6 +126,24 @@ def gained(
 
 
 @func
+def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, point: Vector3) -> Vector3:
+    """Velocity of a point that goes along with a fixed base: no impulse changes it."""
+    if model.tree[tree].fixed == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+    turning = wp.cross(base_omega(model, state, world, tree), point - reference)
+    return base_velocity(model, state, world, tree) + turning
+
+
+@func
+def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
+    """Angular velocity of a fixed base."""
+    if model.tree[tree].fixed == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    return base_omega(model, state, world, tree)
+
+
+@func
 def contact_terms(
     settings: Settings,
     model: Model,
@@ -168,6 +187,12 @@ def contact_terms(
     terms.ignored = Int32(0)
     if terms.distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
         terms.ignored = Int32(1)
+    terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
+        model, state, world, terms.ends[2], terms.point_b
+    )
+    terms.carried_spin = carried_spin(model, state, world, terms.ends[0]) - carried_spin(
+        model, state, world, terms.ends[2]
+    )
     terms.gain = real(0.0)
     if combined_restitution(shapes, a, b) > 0.0:
         terms.gain = gained(

@@ -73,7 +73,7 @@ def write_row_numbers(
         patch: The patch.
         contact: Which of its contacts.
         row: Which of the rows of the contact: 0 is the normal, 1 and 2 are those of friction.
-        velocity: Present velocity of the row.
+        velocity: Present velocity of the row, but for what fixed bases do.
         inverse_mass: Velocity that a unit impulse gives it.
 
     Returns:
@@ -81,10 +81,12 @@ def write_row_numbers(
     """
     if terms.ignored != 0:
         inverse_mass = real(0.0)
-    change = friction_change(settings, velocity, terms.drift, row_direction(terms, row))
+    direction = row_direction(terms, row)
+    total = velocity + wp.dot(terms.carried, direction)
+    change = friction_change(settings, total, terms.drift, direction)
     if row == 0:
         inverse_mass += terms.softness
-        change = normal_change(settings, shapes, terms, velocity)
+        change = normal_change(settings, shapes, terms, total)
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
