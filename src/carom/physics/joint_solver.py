@@ -13,7 +13,7 @@ from carom.physics.feedback import gather_constraint_forces
 from carom.physics.limits import limit_rows, spherical_limit_rows
 from carom.physics.motors import motor_row, spherical_motor_rows
 from carom.physics.quarantine import report_fault
-from carom.physics.rows import row_dof
+from carom.physics.rows import greater, row_dof
 
 
 @func
@@ -109,7 +109,7 @@ def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> rea
         stride = Int32(-1)
     while row >= 0 and row < count:
         change = relax_row(scratch, world, row)
-        residual = wp.max(residual, change * change)
+        residual = greater(residual, change * change)
         row += stride
     return residual
 

@@ -23,6 +23,7 @@ from carom.model.real import (
     shared_func,
 )
 from carom.model.structs import Scratch, Settings
+from carom.physics.rows import greater
 
 
 @func
@@ -78,7 +79,7 @@ def push_patch(
 def greatest_square(change: Vector4) -> real:
     """The greatest of the squares."""
     square = wp.cw_mul(change, change)
-    return wp.max(wp.max(square[0], square[1]), wp.max(square[2], square[3]))
+    return greater(greater(square[0], square[1]), greater(square[2], square[3]))
 
 
 @func

@@ -16,6 +16,7 @@ from carom.physics.couplings import relax_coupling, relax_in_circle, relax_withi
 from carom.physics.joint_solver import relax_row
 from carom.physics.long_patches import relax_long_friction, relax_long_normals
 from carom.physics.patches import relax_rigid_friction, relax_rigid_normals
+from carom.physics.rows import greater
 
 
 @func
@@ -69,12 +70,12 @@ def normal_sweep(scratch: Scratch, couplings: Couplings, world: Int32, units: In
     for unit in range(units):
         code = couplings.unit_code[world, unit]
         if code < 0:
-            residual = wp.max(residual, relax_normals(scratch, couplings, world, -1 - code))
+            residual = greater(residual, relax_normals(scratch, couplings, world, -1 - code))
         else:
             change = relax_coupling(
                 scratch, couplings, world, couplings.contact_rows[world, code][NORMAL_ROW]
             )
-            residual = wp.max(residual, change * change)
+            residual = greater(residual, change * change)
     return residual
 
 
@@ -105,7 +106,7 @@ def relax_contact_friction(
             if kind == SPINNING_ROW:
                 last = row + 0
             while row <= last:
-                change = wp.max(
+                change = greater(
                     wp.abs(change),
                     wp.abs(relax_within(scratch, couplings, world, row, -bound, bound)),
                 )
@@ -122,11 +123,11 @@ def friction_sweep(
     for unit in range(units):
         code = couplings.unit_code[world, unit]
         if code >= 0:
-            residual = wp.max(
+            residual = greater(
                 residual, relax_contact_friction(settings, scratch, couplings, world, code, kind)
             )
         elif kind == LATERAL_ROW:
-            residual = wp.max(residual, relax_friction(settings, scratch, couplings, world, -1 - code))
+            residual = greater(residual, relax_friction(settings, scratch, couplings, world, -1 - code))
     return residual
 
 
@@ -143,6 +144,6 @@ def contact_sweep(
     if units[2] != 0:
         kind = Int32(SPINNING_ROW)
     while kind >= LATERAL_ROW:
-        residual = wp.max(residual, friction_sweep(settings, scratch, couplings, world, units[0], kind))
+        residual = greater(residual, friction_sweep(settings, scratch, couplings, world, units[0], kind))
         kind -= 1
     return residual
