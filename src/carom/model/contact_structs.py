@@ -283,7 +283,7 @@ class Couplings:
     )
     unit_code: IntRows  # what an island's sweep relaxes, in order: a contact, or -1 - patch
 
-    terms: TermsRows  # of the contacts of the patch that is being written
+    terms: TermsRows  # of the contacts of the manifold whose rows are being written
     patch: Patches
     run_block: Vector4Rows  # see `physics.long_patches`
     entry_run: RealRows

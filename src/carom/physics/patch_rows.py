@@ -2,10 +2,10 @@
 
 import warp as wp
 
-from carom.model.contact_structs import Contacts, ContactTerms, Couplings, Shapes
+from carom.model.contact_structs import ContactTerms, Couplings, Shapes
 from carom.model.real import Int32, Matrix8, Vector3, Vector4, Vector8, func, real
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.contact_terms import contact_terms, friction_change, normal_change
+from carom.physics.contact_terms import friction_change, normal_change
 from carom.physics.patches import combination, push_patch
 from carom.physics.rows import inverse_or_off
 
@@ -222,25 +222,19 @@ def write_rigid_rows(
     state: State,
     scratch: Scratch,
     shapes: Shapes,
-    contacts: Contacts,
     couplings: Couplings,
     world: Int32,
     patch: Int32,
     tree_a: Int32,
     tree_b: Int32,
-    share: real,
 ):
-    """Write all rows of a patch of rigid bodies; contacts start from a `share` of their last impulses."""
+    """Write all rows of a patch of rigid bodies; what its contacts are is in `Couplings.terms`."""
     body_a = rigid_body(model, state, scratch, world, tree_a)
     body_b = rigid_body(model, state, scratch, world, tree_b)
-    first = couplings.patch[world, patch].first_contact
     count = couplings.patch[world, patch].count
     contact = Int32(0)
     while contact < count:
-        terms = contact_terms(
-            settings, model, state, scratch, shapes, contacts, world, first + contact, share
-        )
-        couplings.terms[world, contact] = terms
+        terms = couplings.terms[world, contact]
         write_rigid_jacobians(couplings, terms, body_a.reference, body_b.reference, world, patch, contact)
         contact += 1
     place = couplings.patch[world, patch].place

@@ -1,9 +1,9 @@
 """Making patches of contacts, and reporting what they did; see `patches`."""
 
 from carom.model.contact_structs import Contacts, Couplings, Patch, Shapes
-from carom.model.real import Index4, Int32, func, real
+from carom.model.real import Index4, Int32, func
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.contact_terms import contact_terms, keep_contact_impulse
+from carom.physics.contact_terms import keep_contact_impulse
 from carom.physics.couplings import tree_blocks
 from carom.physics.long_patch_rows import clear_run, write_long_contact
 from carom.physics.patch_rows import write_rigid_rows
@@ -24,25 +24,21 @@ def write_patch(
     state: State,
     scratch: Scratch,
     shapes: Shapes,
-    contacts: Contacts,
     couplings: Couplings,
     world: Int32,
     patch: Int32,
     first_contact: Int32,
     count: Int32,
+    a: Int32,
+    b: Int32,
     run: Int32,
     temporary: Int32,
-    share: real,
 ):
-    """Write the rows of `count` contacts of the same two shapes.
+    """Write the rows of `count` contacts between two trees, a and b, whose terms are in `Couplings.terms`.
 
     `run` is where in `Couplings.run_block` their matrices go, -1 if they are rigid bodies; the
-    blocks from `temporary` on of a row over two trees are free. Contacts of rigid bodies start from a `share`
-    of their last impulses.
+    blocks from `temporary` on of a row over two trees are free.
     """
-    pair = contacts.contact_shapes[world, first_contact]
-    a = shapes.shape_tree[pair[0]]
-    b = shapes.shape_tree[pair[1]]
     couplings.patch[world, patch] = Patch()
     couplings.patch[world, patch].place = Index4(
         tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
@@ -51,19 +47,15 @@ def write_patch(
     couplings.patch[world, patch].first_contact = first_contact
     couplings.patch[world, patch].count = count
     if run < 0:
-        write_rigid_rows(
-            settings, model, state, scratch, shapes, contacts, couplings, world, patch, a, b, share
-        )
+        write_rigid_rows(settings, model, state, scratch, shapes, couplings, world, patch, a, b)
         return
     clear_run(couplings, world, patch)
     contact = Int32(0)
     while contact < count:
-        terms = contact_terms(
-            settings, model, state, scratch, shapes, contacts, world, first_contact + contact, real(0.0)
-        )
         write_long_contact(
-            settings, model, state, scratch, shapes, couplings, terms, world, patch, contact, temporary
-        )
+            settings, model, state, scratch, shapes, couplings, couplings.terms[world, contact], world, patch,
+            contact, temporary,
+        )  # fmt: skip
         contact += 1
 
 

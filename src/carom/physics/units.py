@@ -49,6 +49,12 @@ def write_units(
         while following == contact + count and same_shapes(contacts, world, following, pair):
             following = couplings.contact_next[world, following]
             count += 1
+        i = Int32(0)
+        while i < count:
+            couplings.terms[world, i] = contact_terms(
+                settings, model, state, scratch, shapes, contacts, world, contact + i, share
+            )
+            i += 1
         friction = contact_friction(shapes, pair[2], pair[3])
         twists = friction[1] > 0.0 or friction[2] > 0.0
         if twists:
@@ -62,8 +68,8 @@ def write_units(
                 if next_run > couplings.run_block.shape[1] or not has_room(model, couplings, place, a, b):
                     return Index4(-1, patches, torsion, 0)
             write_patch(
-                settings, model, state, scratch, shapes, contacts, couplings, world, patches, contact, count,
-                run, place[1], share,
+                settings, model, state, scratch, shapes, couplings, world, patches, contact, count, a, b, run,
+                place[1],
             )  # fmt: skip
             couplings.unit_code[world, units] = -1 - patches
             patches += 1
@@ -73,12 +79,9 @@ def write_units(
             while i < count:
                 if not has_room(model, couplings, place, a, b):
                     return Index4(-1, patches, torsion, 0)
-                terms = contact_terms(
-                    settings, model, state, scratch, shapes, contacts, world, contact + i, real(0.0)
-                )
                 place = add_contact_rows(
-                    settings, model, state, scratch, shapes, contacts, couplings, terms, world, contact + i,
-                    place[0], place[1],
+                    settings, model, state, scratch, shapes, contacts, couplings, couplings.terms[world, i],
+                    world, contact + i, place[0], place[1],
                 )  # fmt: skip
                 couplings.unit_code[world, units] = contact + i
                 units += 1
