@@ -107,7 +107,7 @@ lint: $(VENV)/dev
 
 types: $(VENV)/dev
 	$(RUN) -m pyright
-	$(RUN) -m pyright --verifytypes pybullet --ignoreexternal
+	$(RUN) -m pyright --pythonpath $(RUN) --verifytypes pybullet --ignoreexternal
 
 # Beside real PyBullet; the recorded figures and the reports are committed.
 
