@@ -107,7 +107,8 @@ lint: $(VENV)/dev
 
 types: $(VENV)/dev
 	$(RUN) -m pyright
-	$(RUN) -m pyright --pythonpath $(RUN) --verifytypes pybullet --ignoreexternal
+	@# Pyright looks for what it is to verify beside the first Python on the path.
+	PATH="$(CURDIR)/$(VENV)/bin:$$PATH" $(RUN) -m pyright --verifytypes pybullet --ignoreexternal
 
 # Beside real PyBullet; the recorded figures and the reports are committed.
 
