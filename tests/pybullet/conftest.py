@@ -8,6 +8,7 @@ import pytest
 from tests.servers import Servers
 
 import pybullet as p
+from pybullet._clients import Client
 
 ROBOTS = Path(__file__).parent / "robots"
 
@@ -38,6 +39,12 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     sees_insides = metafunc.definition.get_closest_marker("insides") or "caplog" in metafunc.fixturenames
     if metafunc.definition.path.stem in EVERYWHERE and not sees_insides:
         metafunc.parametrize("_place", [HERE, ELSEWHERE], indirect=True)
+
+
+@pytest.fixture(autouse=True)
+def _search_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where earlier tests had files searched, which outlives their connections, this one does not look."""
+    monkeypatch.setattr(Client, "latest_search_path", None)
 
 
 @pytest.fixture(autouse=True)

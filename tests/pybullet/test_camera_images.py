@@ -229,11 +229,13 @@ def test_texture_ids_count_on_from_those_of_the_meshes(cube):
     assert p.loadTexture(file) == 3
 
 
-def test_textures_are_searched_for_like_robots(client):
+def test_textures_are_searched_for_like_robots(client, tmp_path):
+    # Under a name of its own: the process goes on searching where other tests told it to.
+    (tmp_path / "found_here_only.png").write_bytes((ASSETS / "uvmap.png").read_bytes())
     with pytest.raises(p.error, match="Error loading texture"):
-        p.loadTexture("uvmap.png")
-    p.setAdditionalSearchPath(str(ASSETS))
-    assert p.loadTexture("uvmap.png") == 0
+        p.loadTexture("found_here_only.png")
+    p.setAdditionalSearchPath(str(tmp_path))
+    assert p.loadTexture("found_here_only.png") == 0
 
 
 def test_a_broken_texture_is_refused(client, tmp_path):
