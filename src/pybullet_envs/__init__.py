@@ -16,6 +16,8 @@ except ImportError as missing:
         "pybullet_envs needs Gymnasium; install it with: pip install carom[envs]", name="gymnasium"
     ) from missing
 
+import pybullet as p
+
 __all__ = ["getList"]
 
 _SWINGUP = "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv"
@@ -70,7 +72,7 @@ _MISSING = (
 
 
 def _unavailable(name: str, **keywords: Any) -> NoReturn:
-    raise NotImplementedError(f"{name} is not available in this version of Carom; these are: {_names()}")
+    raise p.error(f"{name} is not available in this version of Carom; these are: {_names()}")
 
 
 def _names() -> str:
