@@ -2,7 +2,7 @@
 
 from carom.model.codes import ASLEEP, STIRRED
 from carom.model.contact_structs import Shapes
-from carom.model.real import Index4, Int32, func
+from carom.model.real import Index4, Int32, func, real
 from carom.model.structs import Model, State
 
 
@@ -43,6 +43,18 @@ def is_asleep(state: State, world: Int32, tree: Int32) -> bool:
 def has_stirred(state: State, world: Int32, tree: Int32) -> bool:
     """Whether this is the first substep of a tree that was asleep."""
     return state.tree_activity[world, tree] == STIRRED
+
+
+@func
+def squared_motion(model: Model, state: State, world: Int32, tree: Int32) -> real:
+    """Sum of the squared velocities of a tree."""
+    motion = real(0.0)
+    dof = model.tree[tree].first_dof
+    end = dof + model.tree[tree].dof_count
+    while dof < end:
+        motion += state.dof_velocity[world, dof] * state.dof_velocity[world, dof]
+        dof += 1
+    return motion
 
 
 @func

@@ -15,7 +15,7 @@ from carom.collision.manifold import THERE
 from carom.model.contact_structs import Contacts, Couplings, Shapes
 from carom.model.real import Int32, Vector3, func, real
 from carom.model.structs import Model, Settings, State
-from carom.physics.activity import is_asleep
+from carom.physics.activity import is_asleep, squared_motion
 from carom.physics.contact_order import same_shapes
 
 # What `Couplings.tree_touches` says of a tree: it has contacts, and some of them are not plain.
@@ -79,15 +79,7 @@ def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -
 @func
 def rests(model: Model, state: State, world: Int32, tree: Int32) -> bool:
     """Whether a tree is a rigid body at rest."""
-    if not is_rigid(model, tree):
-        return False
-    motion = real(0.0)
-    first = model.tree[tree].first_dof
-    dof = first + 0
-    while dof < first + model.tree[tree].dof_count:
-        motion += state.dof_velocity[world, dof] * state.dof_velocity[world, dof]
-        dof += 1
-    return motion < REST
+    return is_rigid(model, tree) and squared_motion(model, state, world, tree) < REST
 
 
 @func

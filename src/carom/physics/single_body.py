@@ -16,23 +16,15 @@ from carom.physics.dynamics import (
     update_velocities,
 )
 from carom.physics.kinematics import base_omega, base_subspace, base_velocity, forward_kinematics
-from carom.physics.mass_matrix import LEAST_PIVOT
 from carom.physics.quarantine import report_fault
 from carom.physics.rotation import rotation_matrix
+from carom.physics.rows import inverse_or_off
 
 
 @func
 def is_single_body(model: Model, tree: Int32) -> bool:
     """Whether a tree is one link that can move freely."""
     return model.tree[tree].link_count == 1 and model.tree[tree].fixed == 0
-
-
-@func
-def inverse_or_none(inertia: real) -> real:
-    """Inverse of a mass or a moment; 0 if it is so small that the body cannot be accelerated."""
-    if inertia >= LEAST_PIVOT:
-        return 1.0 / inertia
-    return 0.0
 
 
 @func
@@ -63,11 +55,11 @@ def move_single_body(
     link = model.tree[tree].first_link
     moments = model.link[link].inertia
     mass = model.link[link].mass
-    inverse_mass = inverse_or_none(mass)
+    inverse_mass = inverse_or_off(mass)
     rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
     inverse_inertia = turned_inertia(
         rotation,
-        Vector3(inverse_or_none(moments[0]), inverse_or_none(moments[1]), inverse_or_none(moments[2])),
+        Vector3(inverse_or_off(moments[0]), inverse_or_off(moments[1]), inverse_or_off(moments[2])),
     )
 
     omega = base_omega(model, state, world, tree)

@@ -15,7 +15,7 @@ from carom.model.codes import ACTIVE, ASLEEP, DROWSY, STIRRED
 from carom.model.contact_structs import Contacts, Couplings, Pairs, Shapes, UserConstraints
 from carom.model.real import Int32, func, kernel, real
 from carom.model.structs import Model, Settings, State
-from carom.physics.activity import link_moves
+from carom.physics.activity import link_moves, squared_motion
 from carom.physics.islands import unite
 
 # Time without motion after which a tree may fall asleep [s].
@@ -157,11 +157,7 @@ def watch(model: Model, settings: Settings, state: State, world: Int32, tree: In
         state.tree_tired[world, tree] = 0
         state.tree_idle_time[world, tree] = 0.0
         return
-    motion = real(0.0)
-    first = model.tree[tree].first_dof
-    for dof in range(first, first + model.tree[tree].dof_count):
-        motion += state.dof_velocity[world, dof] * state.dof_velocity[world, dof]
-    if motion < model.tree[tree].sleep_threshold:
+    if squared_motion(model, state, world, tree) < model.tree[tree].sleep_threshold:
         state.tree_idle_time[world, tree] += settings.time_step
         if state.tree_idle_time[world, tree] > TIRED_AFTER:
             state.tree_tired[world, tree] = 1
