@@ -11,6 +11,9 @@ from carom.model.real import Int32, Vector3, Vector8, Vector8Rows, func, real, s
 
 # Points closer together than this count as one [m].
 SAME_POINT = real(1.0e-6)
+# A candidate must be deeper than another by this to count as the deepest [m]: of what lies flat, the same
+# corners should be chosen in every step.
+AS_DEEP = real(1.0e-7)
 # Share by which a later candidate must be better to be preferred.
 CLEARLY = real(1.0e-6)
 
@@ -86,7 +89,7 @@ def keep_four(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
     deepest = candidate_distance(candidates, world, 0)
     for row in range(1, count):
         distance = candidate_distance(candidates, world, row)
-        if distance < deepest - SAME_POINT * CLEARLY:
+        if distance < deepest - AS_DEEP:
             deepest = distance
             best = row
     exchange(candidates, world, 0, best)

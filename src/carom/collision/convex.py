@@ -4,13 +4,13 @@ import warp as wp
 
 from carom.collision.candidates import add_candidate, candidate_distance
 from carom.collision.clip import clip_faces
-from carom.collision.cores import Core
+from carom.collision.cores import Core, support, toward
 from carom.collision.faces import arrange_box_corners, supporting_face
 from carom.collision.gjk import TOUCHING, nearest_points
 from carom.collision.polytope import overlap
 from carom.model.codes import BOX
 from carom.model.contact_structs import Pairs, Shapes
-from carom.model.real import Int32, Vector3, Vector3Rows, func, real
+from carom.model.real import Int32, Vector3, Vector3Rows, Vectors3, func, real
 
 # Cosine of the angle between a face and the contact beyond which the face does not lie on the other.
 FLAT_ON = real(0.999)
@@ -19,11 +19,47 @@ DEEPER = real(1.0e-6)
 
 
 @func
+def over_face(box: Core, other: Core, vertex_position: Vectors3):
+    """Height of a core over the face of a box that looks at it, the face's normal, and the lowest point.
+
+    The point where the core is lowest and its foot on the face are the nearest points of the two if the
+    foot lies on the face: no search is needed for what rests on a table. Otherwise the height is 0.
+    """
+    offset = wp.transpose(box.frame) * (other.position - box.position)
+    axis = Int32(0)
+    most = wp.abs(offset[0]) - box.size[0]
+    for candidate in range(1, 3):
+        excess = wp.abs(offset[candidate]) - box.size[candidate]
+        if excess > most:
+            most = excess
+            axis = Int32(candidate)
+    normal = Vector3(0.0, 0.0, 0.0)
+    normal[axis] = toward(offset[axis], 1.0)
+    outward = box.frame * normal
+    lowest = support(other, vertex_position, -outward)
+    local = wp.transpose(box.frame) * (lowest - box.position)
+    height = wp.dot(normal, local) - box.size[axis]
+    beside = wp.abs(local) - box.size
+    beside[axis] = real(-1.0)
+    if beside[0] > 0.0 or beside[1] > 0.0 or beside[2] > 0.0:
+        height = real(0.0)
+    return height, outward, lowest
+
+
+@func
 def nearest_or_deepest(shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core, core_b: Core, reach: real):
     """Distance of two cores (negative: overlap), normal on b towards a, nearest points on a and on b.
 
     If the distance is more than `reach` it is a lower bound, and the rest means nothing.
     """
+    if core_a.kind == BOX:
+        height, outward, lowest = over_face(core_a, core_b, shapes.vertex_position)
+        if height > TOUCHING:
+            return height, -outward, lowest - outward * height, lowest
+    elif core_b.kind == BOX:
+        height, outward, lowest = over_face(core_b, core_a, shapes.vertex_position)
+        if height > TOUCHING:
+            return height, outward, lowest, lowest - outward * height
     start = core_a.position - core_b.position
     distance, point_a, point_b = nearest_points(core_a, core_b, shapes.vertex_position, start, reach)
     normal = start

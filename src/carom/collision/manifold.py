@@ -199,6 +199,9 @@ def write_new_contact(
         far,
     )
     bequeath(contacts, pairs, world, before, row)
+    if before < 0 and last > first:
+        # Another corner of what touched already is no reason to distrust the rest.
+        contacts.contact_impulse[world, row][3] = wp.min(pairs.previous_impulse[world, first][3], 1.0)
 
 
 @func

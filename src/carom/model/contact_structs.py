@@ -273,7 +273,7 @@ class Couplings:
     tree_first_constraint: IntRows  # islands as linked lists that start at their root
     tree_first_contact: IntRows
     tree_touches: IntRows  # whether it has contacts itself, and which: see `physics.calm`
-    tree_restless: IntRows  # of the root of an island: whether it is not calm, see `physics.calm`
+    tree_calm: IntRows  # of the root of an island: how calm that is, see `physics.calm`
     constraint_next: IntRows
     contact_next: IntRows
     run_first: IntRows  # first contact of each manifold, in the order in which they are relaxed

@@ -5,11 +5,9 @@ import warp as wp
 from carom.model.contact_structs import Contacts, ContactTerms, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Model, Scratch, Settings, State
-from carom.physics.calm import next_trust
+from carom.physics.calm import next_trust, slides
 from carom.physics.kinematics import base_omega, base_velocity
 
-# A contact slides whose friction is at least this share of the greatest, squared.
-_SLIDING = real(1.0 - 1e-9)
 _GREATEST_FRICTION = real(10.0)
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
 # Damping of links for which none is set, in contact with soft ones [N s/m].
@@ -253,7 +251,6 @@ def keep_contact_impulse(
     """
     trust = next_trust(contacts.contact_impulse[world, contact][3], outcome)
     contacts.contact_impulse[world, contact] = Vector4(normal, first, second, trust)
-    bound = normal * friction
-    if first * first + second * second >= bound * bound * _SLIDING:
+    if slides(normal, first, second, friction):
         contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
         contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]

@@ -10,7 +10,7 @@ from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstra
 from carom.model.real import Int32, func
 from carom.model.structs import Model, Settings, State
 from carom.physics.activity import can_move, is_asleep, link_moves
-from carom.physics.calm import TOUCHES, TOUCHES_BADLY, find_calm, is_plain
+from carom.physics.calm import ANCHORED, find_calm, touches_how
 from carom.physics.contact_order import list_contacts
 
 _NONE = wp.constant(-1)
@@ -38,8 +38,8 @@ def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
 
 @func
 def note_touch(couplings: Couplings, world: Int32, tree: Int32, touches: Int32):
-    """Note that a tree has a contact."""
-    couplings.tree_touches[world, tree] = wp.max(couplings.tree_touches[world, tree], touches)
+    """Note that a tree has a contact, and of what kind."""
+    couplings.tree_touches[world, tree] = couplings.tree_touches[world, tree] | touches
 
 
 @func
@@ -65,9 +65,9 @@ def build_islands(
         pair = contacts.contact_shapes[world, contact]
         moves_a = link_moves(model, pair[2])
         moves_b = link_moves(model, pair[3])
-        touches = Int32(TOUCHES)
-        if not is_plain(shapes, contacts, world, contact):
-            touches = Int32(TOUCHES_BADLY)
+        touches = touches_how(settings, shapes, contacts, world, contact)
+        if not moves_a or not moves_b:
+            touches = touches | ANCHORED
         if moves_a:
             note_touch(couplings, world, shapes.shape_tree[pair[0]], touches)
         if moves_b:

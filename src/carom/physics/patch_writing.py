@@ -3,6 +3,7 @@
 from carom.model.contact_structs import Contacts, Couplings, Patch, Shapes
 from carom.model.real import Index4, Int32, func
 from carom.model.structs import Model, Scratch, Settings, State
+from carom.physics.calm import SOLVED, SOLVED_AND_HOLDS, holds
 from carom.physics.contact_terms import keep_contact_impulse
 from carom.physics.couplings import tree_blocks
 from carom.physics.long_patch_rows import clear_run, write_long_contact
@@ -66,6 +67,8 @@ def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, 
     lateral = couplings.patch[world, patch].friction_impulse
     friction = couplings.patch[world, patch].friction
     first = couplings.patch[world, patch].first_contact
+    if outcome == SOLVED and holds(couplings, world, patch):
+        outcome = Int32(SOLVED_AND_HOLDS)
     for i in range(couplings.patch[world, patch].count):
         keep_contact_impulse(
             contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], outcome

@@ -14,7 +14,8 @@ from carom.physics.conjugate import go_on, remember_impulses
 from carom.physics.couplings import has_room
 from carom.physics.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.physics.quarantine import OVERFLOW
-from carom.physics.sweeps import contact_sweep, visit_sweep
+from carom.physics.rows import greater
+from carom.physics.sweeps import calm_sweep, contact_sweep, visit_sweep
 from carom.physics.units import keep_unit_impulses, write_units
 from carom.physics.user_constraints import add_user_rows, keep_user_impulses
 
@@ -115,8 +116,10 @@ def sweep_island(
         if calm == 1:
             remember_impulses(couplings, world, units[1])
         residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
-        if units[0] > 0:
-            residual = wp.max(residual, contact_sweep(settings, scratch, couplings, world, units))
+        if calm == 1:
+            residual = greater(residual, calm_sweep(settings, scratch, couplings, world, units[1]))
+        elif units[0] > 0:
+            residual = greater(residual, contact_sweep(settings, scratch, couplings, world, units))
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)
@@ -145,7 +148,7 @@ def solve_island(
     made = island_rows(model, settings, state, scratch, users, couplings, world, root)
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
-    calm = Int32(1) - couplings.tree_restless[world, root]
+    calm = wp.min(couplings.tree_calm[world, root], 1)
     outcome = Int32(NOT_CALM)
     units = Index4(0, 0, 0, 0)
     found = Vector3(0.0, 0.0, 0.0)

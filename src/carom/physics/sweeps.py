@@ -147,3 +147,21 @@ def contact_sweep(
         residual = greater(residual, friction_sweep(settings, scratch, couplings, world, units[0], kind))
         kind -= 1
     return residual
+
+
+@func
+def calm_sweep(
+    settings: Settings, scratch: Scratch, couplings: Couplings, world: Int32, patches: Int32
+) -> real:
+    """Relax all rows of a calm island's patches once; returns the greatest change squared.
+
+    Patch by patch, friction right after the normals, first to last and last to first in turn: a load
+    passes through a whole stack in a sweep, whichever way it has to go.
+    """
+    residual = real(0.0)
+    patch = Int32(0)
+    while patch < patches:
+        residual = greater(residual, relax_rigid_normals(scratch, couplings, world, patch))
+        residual = greater(residual, relax_rigid_friction(settings, scratch, couplings, world, patch))
+        patch += 1
+    return residual

