@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.collision.extremes import greater, greatest_entry, upper_corner
 from carom.model.codes import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Matrix3, Vector3, func, real
@@ -96,7 +97,7 @@ def look_ahead(
         state.dof_velocity[world, first + 4],
         state.dof_velocity[world, first + 5],
     )
-    motion = wp.max(motion, wp.length(velocity) * settings.time_step)
+    motion = greater(motion, wp.length(velocity) * settings.time_step)
     if motion > 0.5 * radius and motion < UNBOUNDED:
         return motion
     return 0.0
@@ -112,11 +113,4 @@ def place_shapes(shapes: Shapes, state: State, settings: Settings, pairs: Pairs,
 @func
 def boxes_meet(lower_a: Vector3, upper_a: Vector3, lower_b: Vector3, upper_b: Vector3, reach: real) -> bool:
     """Whether two boxes are at most `reach` apart along every axis."""
-    return (
-        lower_a[0] <= upper_b[0] + reach
-        and lower_b[0] <= upper_a[0] + reach
-        and lower_a[1] <= upper_b[1] + reach
-        and lower_b[1] <= upper_a[1] + reach
-        and lower_a[2] <= upper_b[2] + reach
-        and lower_b[2] <= upper_a[2] + reach
-    )
+    return greatest_entry(upper_corner(lower_a - upper_b, lower_b - upper_a)) <= reach

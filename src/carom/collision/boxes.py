@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.collision.cores import toward
+from carom.collision.extremes import greatest_entry, least_entry, lower_corner
 from carom.collision.segments import nearest_places
 from carom.model.real import Int32, Matrix3, Vector3, func, real, shared_func
 
@@ -83,10 +84,10 @@ def box_axis(
             best = gaps_b[i]
             code = Int32(FACE_B)
             normal = column(frame_b, i) * -toward(t_in_b[i], 1.0)
-    if best > reach + TOUCHING_SHARE * (wp.max(wp.abs(t)) + wp.max(half_a) + wp.max(half_b)):
+    if best > reach + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
         return Int32(APART), normal, best
 
-    thinnest = wp.min(wp.min(half_a), wp.min(half_b))
+    thinnest = least_entry(lower_corner(half_a, half_b))
     needed = best + EDGE_SHARE * wp.abs(best) + EDGE_SIZE_SHARE * thinnest
     pair = Int32(0)
     while pair < 9:

@@ -62,13 +62,11 @@ def compare_in_leaf(
     leaf: Int32,
 ):
     """Pairs of shape `a` with the shapes of a leaf, from place `start` on."""
-    leaf_count = pairs.count_pairs[world, LEAVES]
-    count = pairs.count_pairs[world, BOUNDED]
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
     breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
-    first = wp.max(start, leaf_start(leaf, leaf_count, count))
-    for place in range(first, leaf_start(leaf + 1, leaf_count, count)):
+    first = wp.max(start, leaf_start(pairs, world, leaf))
+    for place in range(first, leaf_start(pairs, world, leaf + 1)):
         b = pairs.shape_order[world, place]
         reach = breaking + pairs.shape_motion[world, b]
         if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], reach):
@@ -165,6 +163,6 @@ def find_pairs(shapes: Shapes, model: Model, state: State, settings: Settings, p
     for place in range(count, count + pairs.count_pairs[world, PLANES]):
         plane_pairs(shapes, model, settings, pairs, world, pairs.shape_order[world, place])
     for leaf in range(leaf_count):
-        for place in range(leaf_start(leaf, leaf_count, count), leaf_start(leaf + 1, leaf_count, count)):
+        for place in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
             walk_from(shapes, model, settings, pairs, world, place, leaf)
     sort_pairs(settings, pairs, world)

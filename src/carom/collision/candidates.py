@@ -7,6 +7,7 @@ good decides, so results do not depend on rounding more than need be.
 
 import warp as wp
 
+from carom.collision.extremes import greater
 from carom.model.real import Int32, Vector3, Vector8, Vector8Rows, func, real, shared_func
 
 # Points closer together than this count as one [m].
@@ -125,9 +126,9 @@ def keep_four(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
     most = SAME_POINT * SAME_POINT * wp.sqrt(base) * wp.length(normal)
     for row in range(3, count):
         p = candidate_point(candidates, world, row)
-        outside = wp.max(
+        outside = greater(
             wp.dot(wp.cross(p - a, b - a), normal),
-            wp.max(wp.dot(wp.cross(p - b, c - b), normal), wp.dot(wp.cross(p - c, a - c), normal)),
+            greater(wp.dot(wp.cross(p - b, c - b), normal), wp.dot(wp.cross(p - c, a - c), normal)),
         )
         if outside > most * (1.0 + CLEARLY):
             most = outside

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.collision.hierarchy import RADIX
+from carom.collision.hierarchy import COLUMNS, RADIX
 from carom.collision.polytope import MOST_CORNERS
 
 CANDIDATES = 64
@@ -27,5 +27,5 @@ def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
         "polygon": CORNERS,
         "polytope": 2 * MOST_CORNERS,
         "previous": contact_capacity,
-        "count": 5,
+        "count": COLUMNS,
     }

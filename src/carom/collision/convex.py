@@ -5,6 +5,7 @@ import warp as wp
 from carom.collision.candidates import add_candidate, candidate_distance
 from carom.collision.clip import clip_faces
 from carom.collision.cores import Core, support, toward
+from carom.collision.extremes import lesser
 from carom.collision.faces import arrange_box_corners, supporting_face
 from carom.collision.gjk import TOUCHING, nearest_points
 from carom.collision.polytope import overlap
@@ -167,7 +168,7 @@ def touch_convex(
     count = touch_faces(shapes, pairs, world, a, b, core_a, core_b, normal, reach, found)
     deepest = distance + 2.0 * DEEPER
     for row in range(found, count):
-        deepest = wp.min(deepest, candidate_distance(pairs.candidate_terms, world, row))
+        deepest = lesser(deepest, candidate_distance(pairs.candidate_terms, world, row))
     if count == found or distance < deepest - DEEPER:
         count = add_candidate(
             pairs.candidate_terms, world, count, point_b + normal * core_b.radius, normal, distance

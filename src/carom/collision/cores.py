@@ -7,6 +7,7 @@ lies outside. Only between boxes, and against planes, boxes have sharp edges.
 
 import warp as wp
 
+from carom.collision.extremes import least_entry, lesser
 from carom.model.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Matrix3, Vector3, Vectors3, func, real
@@ -41,10 +42,10 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
     if core.kind == SPHERE or core.kind == CAPSULE:
         core.radius = core.size[0]
     elif core.kind == BOX:
-        core.radius = wp.min(margin, wp.min(core.size[0], wp.min(core.size[1], core.size[2])))
+        core.radius = lesser(margin, least_entry(core.size))
         core.size = core.size - Vector3(core.radius, core.radius, core.radius)
     elif core.kind == CYLINDER:
-        core.radius = wp.min(margin, wp.min(core.size[0], core.size[1]))
+        core.radius = lesser(margin, lesser(core.size[0], core.size[1]))
         core.size = core.size - Vector3(core.radius, core.radius, 0.0)
     else:
         core.radius = margin

@@ -7,6 +7,7 @@ cores, by a simplex of at most four differences that moves towards it.
 import warp as wp
 
 from carom.collision.cores import Core, support
+from carom.collision.extremes import greater, within_bounds
 from carom.model.real import Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
 
 MOST_STEPS = 64
@@ -44,7 +45,7 @@ def segment_weights(a: Vector3, b: Vector3):
     length_sq = wp.length_sq(edge)
     share = real(0.0)
     if length_sq > 0.0:
-        share = wp.clamp(-wp.dot(a, edge) / length_sq, 0.0, 1.0)
+        share = within_bounds(-wp.dot(a, edge) / length_sq, 0.0, 1.0)
     return 1.0 - share, share
 
 
@@ -161,7 +162,7 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
             bound = wp.dot(v, w) / length
             if bound > reach:
                 return bound, core_a.position, core_b.position
-            if length - bound <= wp.max(PRECISION, RELATIVE_PRECISION * (length + wp.length(w))):
+            if length - bound <= greater(PRECISION, RELATIVE_PRECISION * (length + wp.length(w))):
                 searching = Int32(0)
         if searching == 1:
             for axis in range(3):

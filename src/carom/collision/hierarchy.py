@@ -9,6 +9,7 @@ depends on nothing but the present bounds. Sizes may differ at will: a table onl
 import warp as wp
 
 from carom.collision.bounds import UNBOUNDED
+from carom.collision.extremes import greater, greatest_entry, lower_corner, upper_corner
 from carom.model.codes import PLANE
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Vector3, func, real
@@ -19,7 +20,8 @@ LEAF_SIZE = 4
 # As few shapes as this are not worth sorting: they make one leaf.
 ONE_LEAF = 32
 # Columns of `Pairs.count_pairs`.
-PAIRS, LEAVES, BOUNDED, PLANES, READINESS = 0, 1, 2, 3, 4
+PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH = 0, 1, 2, 3, 4, 5
+COLUMNS = 6
 # What READINESS says of shapes between steps: they are where the last step saw them; they have been placed
 # since; and the hierarchy has been built over them.
 STALE, PLACED, IN_HIERARCHY = 0, 1, 2
@@ -93,18 +95,20 @@ def write_codes(pairs: Pairs, world: Int32, count: Int32):
             if within(center - window_center, window):
                 mean += center
                 inside += 1.0
-        mean = mean / wp.max(inside, 1.0)
+        mean = mean / greater(inside, 1.0)
         deviation = Vector3(0.0, 0.0, 0.0)
         for i in range(count):
             center = double_center(pairs, world, pairs.shape_order[world, i])
             if within(center - window_center, window):
                 deviation += wp.abs(center - mean)
-        window = deviation * (SPREAD / wp.max(inside, 1.0)) + Vector3(1.0e-9, 1.0e-9, 1.0e-9)
+        window = deviation * (SPREAD / greater(inside, 1.0)) + Vector3(1.0e-9, 1.0e-9, 1.0e-9)
         window_center = mean
         trimming += 1
+    # Cells are cubes, lest what is at almost one height is sorted by the rest of it.
+    scale = 1.0 / greatest_entry(window)
     for i in range(count):
         shape = pairs.shape_order[world, i]
-        place = wp.cw_div(double_center(pairs, world, shape) - window_center, window)
+        place = (double_center(pairs, world, shape) - window_center) * scale
         pairs.shape_code[world, shape] = (
             spread_bits(curve_cell(place[0]))
             | (spread_bits(curve_cell(place[1])) << 1)
@@ -153,23 +157,23 @@ def sort_by_code(pairs: Pairs, world: Int32, count: Int32):
 
 
 @func
-def leaf_start(leaf: Int32, leaf_count: Int32, count: Int32) -> Int32:
+def leaf_start(pairs: Pairs, world: Int32, leaf: Int32) -> Int32:
     """First place in `shape_order` of a leaf, counted from 0."""
-    return wp.min(leaf * ((count + leaf_count - 1) // leaf_count), count)
+    return wp.min(leaf * pairs.count_pairs[world, LEAF_LENGTH], pairs.count_pairs[world, BOUNDED])
 
 
 @func
-def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32, count: Int32):
+def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32):
     """Bounds of the leaves."""
     for leaf in range(leaf_count):
         lower = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
         upper = -lower
-        for i in range(leaf_start(leaf, leaf_count, count), leaf_start(leaf + 1, leaf_count, count)):
+        for i in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
             shape = pairs.shape_order[world, i]
             ahead = pairs.shape_motion[world, shape]
             margin = Vector3(ahead, ahead, ahead)
-            lower = wp.min(lower, pairs.shape_lower[world, shape] - margin)
-            upper = wp.max(upper, pairs.shape_upper[world, shape] + margin)
+            lower = lower_corner(lower, pairs.shape_lower[world, shape] - margin)
+            upper = upper_corner(upper, pairs.shape_upper[world, shape] + margin)
         pairs.node_lower[world, leaf_count + leaf] = lower
         pairs.node_upper[world, leaf_count + leaf] = upper
 
@@ -184,16 +188,17 @@ def build_hierarchy(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int
         while leaf_count * LEAF_SIZE < count:
             leaf_count *= 2
     pairs.count_pairs[world, LEAVES] = leaf_count
+    pairs.count_pairs[world, LEAF_LENGTH] = (count + leaf_count - 1) // leaf_count
     if leaf_count > 1:
         write_codes(pairs, world, count)
         sort_by_code(pairs, world, count)
-    bound_leaves(pairs, world, leaf_count, count)
+    bound_leaves(pairs, world, leaf_count)
     node = leaf_count - 1
     while node >= 1:
-        pairs.node_lower[world, node] = wp.min(
+        pairs.node_lower[world, node] = lower_corner(
             pairs.node_lower[world, 2 * node], pairs.node_lower[world, 2 * node + 1]
         )
-        pairs.node_upper[world, node] = wp.max(
+        pairs.node_upper[world, node] = upper_corner(
             pairs.node_upper[world, 2 * node], pairs.node_upper[world, 2 * node + 1]
         )
         node -= 1

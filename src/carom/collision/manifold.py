@@ -10,6 +10,7 @@ from carom.collision.candidates import (
     candidate_on_a,
     candidate_point,
 )
+from carom.collision.extremes import lesser
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import State
@@ -91,7 +92,7 @@ def predecessor(
     least = far * far
     for row in range(first, last):
         if pairs.previous_taken[world, row] == 0:
-            away = wp.min(
+            away = lesser(
                 wp.length_sq(pairs.previous_local_a[world, row] - local_a),
                 wp.length_sq(pairs.previous_local_b[world, row] - local_b),
             )
@@ -201,7 +202,7 @@ def write_new_contact(
     bequeath(contacts, pairs, world, before, row)
     if before < 0 and last > first:
         # Another corner of what touched already is no reason to distrust the rest.
-        contacts.contact_impulse[world, row][3] = wp.min(pairs.previous_impulse[world, first][3], 1.0)
+        contacts.contact_impulse[world, row][3] = lesser(pairs.previous_impulse[world, first][3], 1.0)
 
 
 @func

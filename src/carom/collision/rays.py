@@ -197,8 +197,8 @@ def first_hits(
                     limit = hit_shape(shapes, pairs, world, shape, rays, packet, limit, lengths, separation)
         node = next_leaf(pairs, world, packet, limit, leaf_count, node)
         searching = wp.min(node, 1)
-        first = leaf_start(node - leaf_count, leaf_count, count)
-        end = leaf_start(node - leaf_count + 1, leaf_count, count)
+        first = leaf_start(pairs, world, node - leaf_count)
+        end = leaf_start(pairs, world, node - leaf_count + 1)
         if searching == 1:
             node = next_node(node)
     return limit

@@ -6,6 +6,7 @@ two shapes, and most pairs make one as early as that, so that it can slow them i
 
 import warp as wp
 
+from carom.collision.extremes import greater, lesser
 from carom.model.codes import BOX, SPHERE
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, func, real
@@ -16,7 +17,7 @@ IDENTITY_TOLERANCE = real(1.0e-12)
 @func
 def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
     """Distance at which a contact of two shapes ends [m]."""
-    return wp.min(shapes.shape_breaking[a], shapes.shape_breaking[b])
+    return lesser(shapes.shape_breaking[a], shapes.shape_breaking[b])
 
 
 @func
@@ -41,7 +42,7 @@ def bounds_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32)
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     if is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b):
         return ahead
-    return wp.max(ahead, breaking_distance(shapes, a, b))
+    return greater(ahead, breaking_distance(shapes, a, b))
 
 
 @func
@@ -58,4 +59,4 @@ def contact_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
         return ahead
     if kind_a == BOX and kind_b == BOX and not in_contact:
         return ahead
-    return wp.max(ahead, breaking_distance(shapes, a, b))
+    return greater(ahead, breaking_distance(shapes, a, b))

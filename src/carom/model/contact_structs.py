@@ -182,7 +182,7 @@ class UserConstraints:
 
 @wp.struct
 class Patch:
-    """Up to four contacts of the same two shapes, whose rows are relaxed together; see `physics.patches`.
+    """Up to four contacts of the same two trees, whose rows are relaxed together; see `physics.patches`.
 
     Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
     response is what an impulse does to the velocities of the dofs of a tree, one of a gain by how much it
@@ -192,7 +192,7 @@ class Patch:
 
     place: Index4  # as `coupling_place`
     run: Int32  # where in `run_block` the matrices of trees that are not small are, or -1
-    first_contact: Int32
+    members: Index4  # its contacts, -1 for none
     count: Int32
     friction: Vector4  # coefficients
 

@@ -13,6 +13,7 @@ the velocity left from the last step, if it is next to nothing, is the solver's 
 
 import warp as wp
 
+from carom.collision.extremes import lesser
 from carom.collision.manifold import THERE
 from carom.model.contact_structs import Contacts, Couplings, Shapes
 from carom.model.real import Int32, Vector3, func, real
@@ -56,7 +57,7 @@ def next_trust(trust: real, outcome: Int32) -> real:
         return 1.0 - PAUSE
     if outcome == SOLVED_AND_HOLDS:
         return HOLDS
-    return wp.min(trust + 1.0, 1.0)
+    return lesser(trust + 1.0, 1.0)
 
 
 @func

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.collision.extremes import greater, lesser, within_bounds
 from carom.model.contact_structs import Contacts, ContactTerms, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import Model, Scratch, Settings, State
@@ -35,8 +36,8 @@ def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) ->
     if stiffness_b > 0.0:
         compliance += 1.0 / stiffness_b
     damping = contact_damping(shapes, a) + contact_damping(shapes, b)
-    stiffness = 1.0 / wp.max(compliance, _LEAST_DENOMINATOR)
-    denominator = wp.max(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
+    stiffness = 1.0 / greater(compliance, _LEAST_DENOMINATOR)
+    denominator = greater(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
     return Vector3(
         1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
     )
@@ -57,9 +58,9 @@ def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
     rolling = shapes.link_rolling_friction[a] * lateral_b + shapes.link_rolling_friction[b] * lateral_a
     spinning = shapes.link_spinning_friction[a] * lateral_b + shapes.link_spinning_friction[b] * lateral_a
     return Vector3(
-        wp.clamp(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-        wp.clamp(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-        wp.clamp(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        within_bounds(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        within_bounds(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        within_bounds(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
     )
 
 
@@ -183,7 +184,7 @@ def contact_terms(
     terms.erp = soft[1]
     terms.start = starting_impulse(share, contacts.contact_impulse[world, contact])
     terms.ignored = Int32(0)
-    if terms.distance > wp.min(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
+    if terms.distance > lesser(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
         terms.ignored = Int32(1)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b
@@ -216,8 +217,8 @@ def normal_change(settings: Settings, shapes: Shapes, terms: ContactTerms, veloc
     restitution = combined_restitution(shapes, terms.ends[1], terms.ends[3])
     if restitution <= 0.0:
         return parting - velocity
-    rebound = wp.max(restitution, 1.0) * (terms.gain - velocity)
-    return wp.min(parting - restitution * velocity, wp.max(rebound, parting)) - velocity
+    rebound = greater(restitution, 1.0) * (terms.gain - velocity)
+    return lesser(parting - restitution * velocity, greater(rebound, parting)) - velocity
 
 
 @func

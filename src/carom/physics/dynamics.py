@@ -7,6 +7,7 @@ Notation and method: R. Featherstone, Rigid Body Dynamics Algorithms (2008), cha
 
 import warp as wp
 
+from carom.collision.extremes import within_bounds
 from carom.model.codes import CONSTRAINT_FEEDBACK, FREE_MOTION
 from carom.model.real import Int32, Matrix3, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
@@ -193,6 +194,6 @@ def update_velocities(
     total = real(0.0)
     for dof in range(first, first + model.tree[tree].dof_count):
         velocity = state.dof_velocity[world, dof] + settings.time_step * scratch.dof[world, dof].force
-        state.dof_velocity[world, dof] = wp.clamp(velocity, -bound, bound)
+        state.dof_velocity[world, dof] = within_bounds(velocity, -bound, bound)
         total += velocity
     report_fault(state, world, tree, total)

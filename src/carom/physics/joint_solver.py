@@ -6,6 +6,7 @@ no row changed its velocity by more than the residual threshold, or after the gi
 
 import warp as wp
 
+from carom.collision.extremes import greater, within_bounds
 from carom.model.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
 from carom.model.real import Int32, Vector4, func, real, shared_func
 from carom.model.structs import Model, Scratch, Settings, State
@@ -13,7 +14,7 @@ from carom.physics.feedback import gather_constraint_forces
 from carom.physics.limits import limit_rows, spherical_limit_rows
 from carom.physics.motors import motor_row, spherical_motor_rows
 from carom.physics.quarantine import report_fault
-from carom.physics.rows import greater, row_dof
+from carom.physics.rows import row_dof
 
 
 @func
@@ -66,7 +67,7 @@ def joint_constraint_rows(
 @shared_func
 def bounded_change(before: real, after: real, lower: real, upper: real, effective_mass: real) -> real:
     """Change of rate that is left of a row's when its impulse stops at a bound."""
-    return (wp.clamp(after, lower, upper) - before) / effective_mass
+    return (within_bounds(after, lower, upper) - before) / effective_mass
 
 
 @func
@@ -184,6 +185,6 @@ def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: 
     total = real(0.0)
     for i in range(model.tree[tree].dof_count):
         velocity = state.dof_velocity[world, first + i] + scratch.entry_delta_velocity[world, 4 * delta + i]
-        state.dof_velocity[world, first + i] = wp.clamp(velocity, -bound, bound)
+        state.dof_velocity[world, first + i] = within_bounds(velocity, -bound, bound)
         total += velocity
     report_fault(state, world, tree, total)

@@ -6,6 +6,7 @@ as the motor's greatest impulse allows. Explicit drives (PD, joint damping) are 
 
 import warp as wp
 
+from carom.collision.extremes import within_bounds
 from carom.model.codes import (
     MOTOR_DAMPING,
     MOTOR_KD,
@@ -49,7 +50,9 @@ def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
                 force = drive[PD_KP] * (drive[PD_POSITION] - position) + drive[PD_KD] * (
                     drive[PD_VELOCITY] - state.dof_velocity[world, dof]
                 )
-                state.dof_torque[world, dof] += wp.clamp(force, -drive[PD_MAX_FORCE], drive[PD_MAX_FORCE])
+                state.dof_torque[world, dof] += within_bounds(
+                    force, -drive[PD_MAX_FORCE], drive[PD_MAX_FORCE]
+                )
 
 
 @func
@@ -76,7 +79,7 @@ def motor_row(
         + velocity
         + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - velocity)
     )
-    wanted = wp.clamp(wanted, -motor[MOTOR_VELOCITY_CLAMP], motor[MOTOR_VELOCITY_CLAMP])
+    wanted = within_bounds(wanted, -motor[MOTOR_VELOCITY_CLAMP], motor[MOTOR_VELOCITY_CLAMP])
     effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
     return add_row(
         model, scratch, world, constraint, row, dof, wanted - velocity, effective_mass, -bound, bound

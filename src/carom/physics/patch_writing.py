@@ -28,14 +28,14 @@ def write_patch(
     couplings: Couplings,
     world: Int32,
     patch: Int32,
-    first_contact: Int32,
+    members: Index4,
     count: Int32,
     a: Int32,
     b: Int32,
     run: Int32,
     temporary: Int32,
 ):
-    """Write the rows of `count` contacts between two trees, a and b, whose terms are in `Couplings.terms`.
+    """Write the rows of the `count` contacts in `members` of two trees, whose terms are in `Couplings.terms`.
 
     `run` is where in `Couplings.run_block` their matrices go, -1 if they are rigid bodies; the
     blocks from `temporary` on of a row over two trees are free.
@@ -45,7 +45,7 @@ def write_patch(
         tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
     )
     couplings.patch[world, patch].run = run
-    couplings.patch[world, patch].first_contact = first_contact
+    couplings.patch[world, patch].members = members
     couplings.patch[world, patch].count = count
     if run < 0:
         write_rigid_rows(settings, model, state, scratch, shapes, couplings, world, patch, a, b)
@@ -66,10 +66,10 @@ def keep_patch_impulses(contacts: Contacts, couplings: Couplings, world: Int32, 
     normal = couplings.patch[world, patch].normal_impulse
     lateral = couplings.patch[world, patch].friction_impulse
     friction = couplings.patch[world, patch].friction
-    first = couplings.patch[world, patch].first_contact
+    members = couplings.patch[world, patch].members
     if outcome == SOLVED and holds(couplings, world, patch):
         outcome = Int32(SOLVED_AND_HOLDS)
     for i in range(couplings.patch[world, patch].count):
         keep_contact_impulse(
-            contacts, world, first + i, normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], outcome
+            contacts, world, members[i], normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], outcome
         )

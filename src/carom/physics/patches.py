@@ -1,4 +1,4 @@
-"""Patches: the up to four contacts of two shapes, relaxed together.
+"""Patches: up to four contacts of two trees that come one after the other, relaxed together.
 
 What a row of a patch does to the velocities of those after it is known beforehand. So all velocities
 are computed at once, from then on only the impulses depend on each other, and the trees' velocities
@@ -12,6 +12,7 @@ from typing import Any
 
 import warp as wp
 
+from carom.collision.extremes import greater, within_bounds
 from carom.model.contact_structs import Couplings
 from carom.model.real import (
     Int32,
@@ -23,7 +24,6 @@ from carom.model.real import (
     shared_func,
 )
 from carom.model.structs import Scratch, Settings
-from carom.physics.rows import greater
 
 
 @func
@@ -136,9 +136,9 @@ def bounded_friction(settings: Settings, couplings: Couplings, world: Int32, pat
                 change1 = first * scale - before[2 * i]
                 change2 = second * scale - before[2 * i + 1]
         elif bound > 0.0:
-            change1 = wp.clamp(first, -bound, bound) - before[2 * i]
+            change1 = within_bounds(first, -bound, bound) - before[2 * i]
             second -= change1 * gain[2 * i, 2 * i + 1]
-            change2 = wp.clamp(second, -bound, bound) - before[2 * i + 1]
+            change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
         else:
             change1 = real(0.0)
             change2 = real(0.0)

@@ -14,12 +14,6 @@ LEAST_INVERSE_MASS = real(2.220446049250313e-16)
 
 
 @func
-def greater(a: real, b: real) -> real:
-    """The greater of two numbers, a if one is NaN: one instruction, which `wp.max` is not."""
-    return wp.where(b > a, b, a)
-
-
-@func
 def add_row(
     model: Model,
     scratch: Scratch,

@@ -9,7 +9,7 @@ import warp as wp
 
 from carom.collision.bounds import boxes_meet
 from carom.collision.filters import may_touch
-from carom.collision.hierarchy import BOUNDED, LEAVES, leaf_start, next_node
+from carom.collision.hierarchy import LEAVES, leaf_start, next_node
 from carom.collision.manifold import THERE
 from carom.model.codes import ACTIVE, ASLEEP, DROWSY, STIRRED
 from carom.model.contact_structs import Contacts, Couplings, Pairs, Shapes, UserConstraints
@@ -58,7 +58,6 @@ def unite_near(
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
     leaf_count = pairs.count_pairs[world, LEAVES]
-    count = pairs.count_pairs[world, BOUNDED]
     node = leaf_count + own_leaf
     while node > 0:
         if boxes_meet(lower, upper, pairs.node_lower[world, node], pairs.node_upper[world, node], NEAR):
@@ -67,8 +66,8 @@ def unite_near(
                 continue
             leaf = node - leaf_count
             for other in range(
-                wp.max(place + 1, leaf_start(leaf, leaf_count, count)),
-                leaf_start(leaf + 1, leaf_count, count),
+                wp.max(place + 1, leaf_start(pairs, world, leaf)),
+                leaf_start(pairs, world, leaf + 1),
             ):
                 b = pairs.shape_order[world, other]
                 if are_near(settings, model, shapes, pairs, world, a, b):
@@ -82,9 +81,8 @@ def unite_neighbours(
 ):
     """Unite all trees that are near each other."""
     leaf_count = pairs.count_pairs[world, LEAVES]
-    count = pairs.count_pairs[world, BOUNDED]
     for leaf in range(leaf_count):
-        for place in range(leaf_start(leaf, leaf_count, count), leaf_start(leaf + 1, leaf_count, count)):
+        for place in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
             unite_near(settings, model, state, shapes, pairs, world, place, leaf)
 
 

@@ -5,6 +5,7 @@ Sweeps go and end as those of `joint_solver`, which does the same where nothing 
 
 import warp as wp
 
+from carom.collision.extremes import greater
 from carom.model.codes import USER
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Index4, Int32, Vector3, func, real
@@ -14,7 +15,6 @@ from carom.physics.conjugate import go_on, remember_impulses
 from carom.physics.couplings import has_room
 from carom.physics.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.physics.quarantine import OVERFLOW
-from carom.physics.rows import greater
 from carom.physics.sweeps import calm_sweep, contact_sweep, visit_sweep
 from carom.physics.units import keep_unit_impulses, write_units
 from carom.physics.user_constraints import add_user_rows, keep_user_impulses

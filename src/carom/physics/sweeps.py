@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.collision.extremes import greater
 from carom.model.codes import (
     LATERAL_ROW,
     NORMAL_ROW,
@@ -16,7 +17,6 @@ from carom.physics.couplings import relax_coupling, relax_in_circle, relax_withi
 from carom.physics.joint_solver import relax_row
 from carom.physics.long_patches import relax_long_friction, relax_long_normals
 from carom.physics.patches import relax_rigid_friction, relax_rigid_normals
-from carom.physics.rows import greater
 
 
 @func
