@@ -26,6 +26,8 @@ _FLAGRUN_HARDER = "gym_locomotion_envs:HumanoidFlagrunHarderBulletEnv"
 _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("CartPoleBulletEnv-v1", "bullet.cartpole_bullet:CartPoleBulletEnv", 200, 190.0),
     ("CartPoleContinuousBulletEnv-v0", "bullet.cartpole_bullet:CartPoleContinuousBulletEnv", 200, 190.0),
+    ("MinitaurBulletEnv-v0", "bullet.minitaur_gym_env:MinitaurBulletEnv", 1000, 15.0),
+    ("MinitaurBulletDuckEnv-v0", "bullet.minitaur_duck_gym_env:MinitaurBulletDuckEnv", 1000, 5.0),
     ("RacecarBulletEnv-v0", "bullet.racecarGymEnv:RacecarGymEnv", 1000, 5.0),
     ("RacecarZedBulletEnv-v0", "bullet.racecarZEDGymEnv:RacecarZEDGymEnv", 1000, 5.0),
     ("KukaBulletEnv-v0", "bullet.kukaGymEnv:KukaGymEnv", 1000, 5.0),
@@ -60,8 +62,6 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
 _MISSING = (
     "MinitaurAlternatingLegsEnv-v0",
     "MinitaurBallGymEnv-v0",
-    "MinitaurBulletDuckEnv-v0",
-    "MinitaurBulletEnv-v0",
     "MinitaurExtendedEnv-v0",
     "MinitaurFourLegStandEnv-v0",
     "MinitaurReactiveEnv-v0",
