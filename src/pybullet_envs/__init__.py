@@ -28,6 +28,13 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("CartPoleContinuousBulletEnv-v0", "bullet.cartpole_bullet:CartPoleContinuousBulletEnv", 200, 190.0),
     ("MinitaurBulletEnv-v0", "bullet.minitaur_gym_env:MinitaurBulletEnv", 1000, 15.0),
     ("MinitaurBulletDuckEnv-v0", "bullet.minitaur_duck_gym_env:MinitaurBulletDuckEnv", 1000, 5.0),
+    ("MinitaurExtendedEnv-v0", "minitaur.envs:MinitaurExtendedEnv", 1000, 5.0),
+    ("MinitaurReactiveEnv-v0", "minitaur.envs:MinitaurReactiveEnv", 1000, 5.0),
+    ("MinitaurBallGymEnv-v0", "minitaur.envs:MinitaurBallGymEnv", 1000, 5.0),
+    ("MinitaurTrottingEnv-v0", "minitaur.envs:MinitaurTrottingEnv", 1000, 5.0),
+    ("MinitaurStandGymEnv-v0", "minitaur.envs:MinitaurStandGymEnv", 1000, 5.0),
+    ("MinitaurAlternatingLegsEnv-v0", "minitaur.envs:MinitaurAlternatingLegsEnv", 1000, 5.0),
+    ("MinitaurFourLegStandEnv-v0", "minitaur.envs:MinitaurFourLegStandEnv", 1000, 5.0),
     ("RacecarBulletEnv-v0", "bullet.racecarGymEnv:RacecarGymEnv", 1000, 5.0),
     ("RacecarZedBulletEnv-v0", "bullet.racecarZEDGymEnv:RacecarZEDGymEnv", 1000, 5.0),
     ("KukaBulletEnv-v0", "bullet.kukaGymEnv:KukaGymEnv", 1000, 5.0),
@@ -59,35 +66,23 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
 )
 
 # Names that PyBullet has besides, so that asking for one says more than that nobody knows it.
-_MISSING = (
-    "MinitaurAlternatingLegsEnv-v0",
-    "MinitaurBallGymEnv-v0",
-    "MinitaurExtendedEnv-v0",
-    "MinitaurFourLegStandEnv-v0",
-    "MinitaurReactiveEnv-v0",
-    "MinitaurStandGymEnv-v0",
-    "MinitaurTrottingEnv-v0",
-)
 _DEEP_MIMIC = ("HumanoidDeepMimicBackflipBulletEnv-v1", "HumanoidDeepMimicWalkBulletEnv-v1")
 _NEEDS_MOTIONS = "it imitates recorded motions of people, which are not Carom's to pass on"
 
 
-def _unavailable(name: str, why: str = "", **keywords: Any) -> NoReturn:
-    reason = f": {why}" if why else ""
-    raise p.error(f"{name} is not available in this version of Carom{reason}; these are: {_names()}")
+def _unavailable(name: str, **keywords: Any) -> NoReturn:
+    raise p.error(
+        f"{name} is not available in this version of Carom: {_NEEDS_MOTIONS}; these are: {_names()}"
+    )
 
 
 def _names() -> str:
     return ", ".join(name for name, *_ in _ENVIRONMENTS)
 
 
-for _name in _MISSING:
-    if _name not in gymnasium.registry:
-        gymnasium.register(_name, entry_point=partial(_unavailable, _name))
-
 for _name in _DEEP_MIMIC:
     if _name not in gymnasium.registry:
-        gymnasium.register(_name, entry_point=partial(_unavailable, _name, _NEEDS_MOTIONS))
+        gymnasium.register(_name, entry_point=partial(_unavailable, _name))
 
 for _name, _place, _steps, _solved in _ENVIRONMENTS:
     if _name not in gymnasium.registry:

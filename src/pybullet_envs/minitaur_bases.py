@@ -40,8 +40,8 @@ Point = tuple[float, float, float]
 class MinitaurBody(ABC):
     """A Minitaur in a world that is there already.
 
-    Its motors are driven in one of three ways: by the engine's position control, by torques of a PD controller,
-    or by torques of a model of the motors.
+    Its motors are driven in one of three ways: by the engine's position control, by torques of a PD
+    controller, or by torques of a model of the motors.
 
     Attributes:
         quadruped: The body in the world.
@@ -128,6 +128,10 @@ class MinitaurBody(ABC):
                 if name.startswith("knee"):
                     self._foot_link_ids.append(joint)
 
+    @abstractmethod
+    def Reset(self, reload_urdf: bool = True) -> None:
+        """Takes it to where it begins, loaded anew or put back."""
+
     def _put_back(self, position: Sequence[float]) -> None:
         """Puts it where it was loaded, at rest."""
         self._pybullet_client.resetBasePositionAndOrientation(self.quadruped, position, INIT_ORIENTATION)
@@ -190,6 +194,22 @@ class MinitaurBody(ABC):
         )
         return angles, velocities, self._observed_motor_torques if self._by_torques else torques
 
+    @abstractmethod
+    def GetBaseOrientation(self) -> tuple[float, float, float, float]:
+        """Orientation of the base as it is told (x, y, z, w)."""
+
+    @abstractmethod
+    def GetMotorAngles(self) -> np.ndarray:
+        """Angles of the motors as they are told [rad], (8,)."""
+
+    @abstractmethod
+    def GetMotorVelocities(self) -> np.ndarray:
+        """Velocities of the motors as they are told [rad/s], (8,)."""
+
+    @abstractmethod
+    def GetMotorTorques(self) -> np.ndarray:
+        """Torques of the motors as they are told [N m], (8,)."""
+
     def GetActionDimension(self) -> int:
         """How many commands `ApplyAction` takes."""
         return self.num_motors
@@ -199,7 +219,7 @@ class MinitaurBody(ABC):
 
         Args:
             motor_commands: Angles [rad] for the motors, or duty cycles under torque control, shape (8,).
-            kp: Gains for angles, (8,); those of the robot where not given. Of effect where torques are computed.
+            kp: Gains for angles, (8,); the robot's where not given. For torques only.
             kd: Gains for velocities.
         """
         commands = np.asarray(motor_commands, float)

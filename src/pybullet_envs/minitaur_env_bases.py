@@ -6,7 +6,7 @@ import os
 import time
 from abc import abstractmethod
 from math import hypot, inf
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import gymnasium
 import numpy as np
@@ -21,17 +21,18 @@ OBSERVATION_EPS = 0.01
 _UPRIGHT = 0.85
 _LOWEST = 0.13
 
+RobotT = TypeVar("RobotT", bound=MinitaurBody)
 Step = tuple[np.ndarray, float, bool, bool, dict[str, Any]]
 
 
-class MinitaurEnvBase(BulletEnv):
+class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
     """A Minitaur on flat ground that is rewarded for its way forward, and charged for what it spends.
 
     Attributes:
         minitaur: The robot, from the first `reset` on.
     """
 
-    minitaur: MinitaurBody
+    minitaur: RobotT
     _camera = (1.0, 0.0, -30.0)
     _action_bound = 1.0
 
@@ -69,6 +70,7 @@ class MinitaurEnvBase(BulletEnv):
         self._leg_model_enabled = leg_model_enabled
         self._hard_reset = hard_reset
         self._ground_id = -1
+        self._loaded_state = -1
         self._env_step_counter = 0
         self._last_base_position: Place = (0.0, 0.0, 0.0)
         self._objectives: list[list[float]] = []
@@ -95,16 +97,22 @@ class MinitaurEnvBase(BulletEnv):
         self._load_things()
         bullet.setGravity(0, 0, -10)
         self.minitaur = self._load_minitaur()
+        self._loaded_state = bullet.saveState()
 
     def _load_things(self) -> None:
         """Loads what else there is, before the robot."""
 
-    def _put_things_back(self) -> None:
-        """Puts everything but the robot where it was loaded."""
-
     @abstractmethod
-    def _load_minitaur(self) -> Any:
+    def _load_minitaur(self) -> RobotT:
         """Loads the robot."""
+
+    def _renew_world(self) -> None:
+        """Loads everything, or puts it back to where it was loaded, to the last digit."""
+        if self._connect() or self._hard_reset:
+            self._load_world()
+        else:
+            self._p.restoreState(self._loaded_state)
+            self.minitaur.Reset(reload_urdf=False)
 
     def _begin_episode(self) -> None:
         self._env_step_counter = 0

@@ -80,7 +80,7 @@ def action_on_our_data(name: str, discrete: bool, step: int) -> Any:
     return 0.5 * np.sin(0.1 * step + np.arange(numbers))
 
 
-def _old_gym() -> None:
+def old_gym() -> None:
     """What PyBullet's environments import of gym, which is not kept up any more."""
     import gymnasium
 
@@ -103,7 +103,7 @@ def _old_gym() -> None:
     sys.modules.update(modules | {"gym.spaces": gymnasium.spaces})
 
 
-def _without_a_server() -> None:
+def without_a_server() -> None:
     """Clients of environments try a server first, of which there may be one that belongs to others."""
     import pybullet
     from pybullet_utils import bullet_client
@@ -153,8 +153,8 @@ def _episode_on_our_data(name: str, discrete: bool) -> Episode:
 
 
 if __name__ == "__main__":
-    _old_gym()
-    _without_a_server()
+    old_gym()
+    without_a_server()
     recorded: dict[str, Any] = {name: _episodes_of_pybullet(name) for name in ACTIONS}
     for name, (_, choices) in ON_OUR_DATA.items():
         kinds = (False, True) if choices else (False,)

@@ -17,9 +17,6 @@ class MinitaurBulletDuckEnv(MinitaurBulletEnv):
         file = os.path.join(self._urdf_root, "duck_vhacd.urdf")
         self._duckId = self._p.loadURDF(file, duckStartPos, duckStartOrn)
 
-    def _put_things_back(self) -> None:
-        self._p.resetBasePositionAndOrientation(self._duckId, duckStartPos, duckStartOrn)
-
     def lost_duck(self) -> bool:
         """Whether the duck touches the ground."""
         return len(self._p.getContactPoints(self._duckId, self._ground_id)) > 0

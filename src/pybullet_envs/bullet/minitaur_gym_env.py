@@ -20,17 +20,16 @@ _SETTLING_STEPS = 100
 _RANDOMIZER = MinitaurEnvRandomizer()
 
 
-class MinitaurBulletEnv(MinitaurEnvBase):
+class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
     """A Minitaur is to come far along x, and to spend little.
 
-    Observation: angles [rad], velocities [rad/s] and torques [N m] of the eight motors, and the orientation of
-    the base. Action: how each leg swings and then how far each is stretched, within -1 and 1. Reward: the way
-    forward, less energy, drift and shaking, by their weights. An episode ends with a fall.
+    Observation: angles [rad], velocities [rad/s] and torques [N m] of the eight motors, and the orientation
+    of the base. Action: how each leg swings and then how far each is stretched, within -1 and 1. Reward: the
+    way forward, less energy, drift and shaking, by their weights. An episode ends with a fall.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 50}  # noqa: RUF012  # as Gymnasium has it
     picture_size = (960, 720)
-    minitaur: Minitaur
 
     def __init__(
         self,
@@ -73,8 +72,8 @@ class MinitaurBulletEnv(MinitaurEnvBase):
             motor_velocity_limit: How fast commands may lead the motors [rad/s].
             pd_control_enabled: Whether torques of a PD controller drive the motors.
             leg_model_enabled: Whether actions say how legs swing and stretch, or where motors go [rad].
-            accurate_motor_model_enabled: Whether torques of a model of the motors drive them. With neither the
-                engine's position control does.
+            accurate_motor_model_enabled: Whether torques of a model of the motors drive them. With neither
+                the engine's position control does.
             motor_kp: Gain for angles, of that model.
             motor_kd: Gain for velocities.
             torque_control_enabled: Whether commands are duty cycles for that model.
@@ -135,11 +134,7 @@ class MinitaurBulletEnv(MinitaurEnvBase):
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins an episode: the robot comes to stand for a hundred steps of the simulation."""
         super().reset(seed=seed)
-        if self._connect() or self._hard_reset:
-            self._load_world()
-        else:
-            self._put_things_back()
-            self.minitaur.Reset(reload_urdf=False)
+        self._renew_world()
         if self._env_randomizer is not None:
             self._env_randomizer.randomize_env(self)
         self._begin_episode()
