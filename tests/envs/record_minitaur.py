@@ -1,6 +1,6 @@
 """Two episodes of each environment of the Minitaur, recorded with PyBullet and our files of the robot.
 
-    PYTHONPATH=. .oracle/bin/python tests/envs/record_minitaur.py     # needs gymnasium there, for its spaces
+PYTHONPATH=. .oracle/bin/python tests/envs/record_minitaur.py     # needs gymnasium there, for its spaces
 """
 
 from __future__ import annotations
@@ -45,7 +45,11 @@ KINDS: dict[str, dict[str, Any]] = {
         "include_leg_model": True,
     },
     "minitaur.envs:MinitaurReactiveEnv": {},
-    "minitaur.envs:MinitaurReactiveEnv derpy": {"urdf_version": "derpy_v0", "pd_latency": 0.0025, "on_rack": True},
+    "minitaur.envs:MinitaurReactiveEnv derpy": {
+        "urdf_version": "derpy_v0",
+        "pd_latency": 0.0025,
+        "on_rack": True,
+    },
     "minitaur.envs:MinitaurReactiveEnv rainbow": {"urdf_version": "rainbow_dash_v0"},
     "minitaur.envs:MinitaurBallGymEnv": {},
     "minitaur.envs:MinitaurTrottingEnv": {"use_angle_in_observation": True},
@@ -63,7 +67,7 @@ Episodes = list[list[tuple[list[float], float]]]
 
 def kind_of(name: str) -> tuple[str, str]:
     """The module and the class."""
-    module, _, kind = name.split()[0].partition(":")
+    module, _, kind = name.split(maxsplit=1)[0].partition(":")
     return f"pybullet_envs.{module}", kind
 
 
@@ -96,12 +100,21 @@ def _without_servers() -> None:
 def _deal_evenly() -> None:
     """PyBullet's own randomizers draw from these."""
     chance = EvenChance()
-    vars(random)["uniform"] = vars(np.random)["uniform"] = chance.uniform
+    module: Any
+    for module in (random, np.random):
+        module.uniform = chance.uniform
 
 
-def _episodes_of_pybullet(name: str) -> Episodes:
+def _record_of_pybullet(name: str) -> dict[str, Any]:
     module, kind = kind_of(name)
     env = getattr(importlib.import_module(module), kind)(**KINDS[name])
+    spaces = [
+        [space.low.tolist(), space.high.tolist()] for space in (env.action_space, env.observation_space)
+    ]
+    return {"spaces": spaces, "episodes": _episodes(env, name)}
+
+
+def _episodes(env: Any, name: str) -> Episodes:
     episodes = []
     for _ in range(2):
         _deal_evenly()
@@ -120,4 +133,4 @@ if __name__ == "__main__":
     _without_protobuf()
     _without_servers()
     _deal_evenly()
-    RECORD.write_text(json.dumps({name: _episodes_of_pybullet(name) for name in KINDS}) + "\n")
+    RECORD.write_text(json.dumps({name: _record_of_pybullet(name) for name in KINDS}) + "\n")

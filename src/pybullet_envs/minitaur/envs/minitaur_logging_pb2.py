@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 NUM_MOTORS = 8
 _INTEGER, _DOUBLE, _MESSAGE = 0, 1, 2
+_MOST_BITS = 63
 _DOUBLE_LAYOUT = struct.Struct("<d")
 
 
@@ -192,6 +193,8 @@ def _fields(data: Any) -> Iterator[tuple[int, Any]]:
         while (group := taken(1)[0]) & 0x80:
             value |= (group & 0x7F) << shift
             shift += 7
+            if shift > _MOST_BITS:
+                raise ValueError("the log has an integer of more than 64 bits")
         return value | group << shift
 
     while place < len(data):

@@ -53,7 +53,7 @@ class MinitaurTrottingEnv(LegPoseEnv):
     ) -> None:
         """Makes the environment; see `MinitaurGymEnv` for the arguments that have the same names.
 
-        `use_signal_in_observation` says whether the angles of the motors are observed that the gait wants [rad],
+        `use_signal_in_observation` says whether the angles of the motors are observed that the gait wants,
         `use_angle_in_observation` whether those are that they have. In the middle of the gait legs have
         `init_swing` and `init_extension` [rad]; the gait has the `step_frequency` [1/s] and takes them up to
         `swing_amplitude` and `extension_amplitude` [rad] from there.
