@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.envs.record import EvenChance, old_gym
+from tests.envs.record import OUR_DATA, Episodes, EvenChance, old_gym, without_a_server
 
 RECORD = Path(__file__).with_name("minitaur.json")
-DATA = Path(__file__).parents[2] / "src" / "pybullet_data"
 STEPS = 12
 KINDS: dict[str, dict[str, Any]] = {
     "bullet:MinitaurBulletEnv": {},
@@ -62,8 +61,6 @@ KINDS: dict[str, dict[str, Any]] = {
 ACTIONS = {"MinitaurBallGymEnv": 1, "MinitaurStandGymEnv": 1, "MinitaurFourLegStandEnv": 4}
 """How many numbers an action has, where it is not 8."""
 
-Episodes = list[list[tuple[list[float], float]]]
-
 
 def kind_of(name: str) -> tuple[str, str]:
     """The module and the class."""
@@ -87,14 +84,6 @@ def _without_protobuf() -> None:
     sys.modules["pybullet_envs.minitaur.envs.minitaur_logging_pb2"] = module
     logs = importlib.import_module("pybullet_envs.minitaur.envs.minitaur_logging")
     vars(logs)["preallocate_episode_proto"] = lambda *arguments: None
-
-
-def _without_servers() -> None:
-    """Worlds are made at once, instead of looking for a server first."""
-    clients: Any = importlib.import_module("pybullet_utils.bullet_client")
-    pybullet: Any = importlib.import_module("pybullet")
-    connected = clients.BulletClient
-    clients.BulletClient = lambda connection_mode=None: connected(pybullet.DIRECT)
 
 
 def _deal_evenly() -> None:
@@ -128,9 +117,9 @@ def _episodes(env: Any, name: str) -> Episodes:
 
 if __name__ == "__main__":
     old_gym()
-    vars(importlib.import_module("pybullet_data"))["getDataPath"] = lambda: str(DATA)
+    vars(importlib.import_module("pybullet_data"))["getDataPath"] = lambda: str(OUR_DATA)
     importlib.import_module("pybullet_envs")
     _without_protobuf()
-    _without_servers()
+    without_a_server()
     _deal_evenly()
     RECORD.write_text(json.dumps({name: _record_of_pybullet(name) for name in KINDS}) + "\n")
