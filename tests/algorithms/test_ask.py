@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.algorithms.ask import asking
+from carom.model.arrays import numbers_of
 from carom.model.real import NUMPY_REAL
 
 NUMBERS = st.floats(-1e6, 1e6)
@@ -21,7 +22,7 @@ def sums(counts):
     def answer_it():
         answer[:] = question.sum(), answer[1] + 1
 
-    return asking(counts, question.data, answer_it, answer.data, 2)
+    return asking(counts, numbers_of(question), answer_it, numbers_of(answer), 2)
 
 
 @given(
