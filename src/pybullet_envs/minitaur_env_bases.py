@@ -28,11 +28,10 @@ Step = tuple[np.ndarray, float, bool, bool, dict[str, Any]]
 class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
     """A Minitaur on flat ground that is rewarded for its way forward, and charged for what it spends.
 
-    Attributes:
-        minitaur: The robot, from the first `reset` on.
+    Its first episode begins at the first `reset`, or when something is done that needs one: in PyBullet it
+    has begun when the environment is made, and scripts go on from there.
     """
 
-    minitaur: RobotT
     _camera = (1.0, 0.0, -30.0)
     _action_bound = 1.0
 
@@ -69,7 +68,9 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         self._distance_limit = distance_limit
         self._leg_model_enabled = leg_model_enabled
         self._hard_reset = hard_reset
+        self._minitaur: RobotT | None = None
         self._ground_id = -1
+        self._loaded_bodies: set[int] = set()
         self._loaded_state = -1
         self._env_step_counter = 0
         self._last_base_position: Place = (0.0, 0.0, 0.0)
@@ -87,6 +88,22 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
             -high, high, dtype=np.float32
         )
 
+    @property
+    def minitaur(self) -> RobotT:
+        """The robot."""
+        self._begin_if_needed()
+        assert self._minitaur is not None
+        return self._minitaur
+
+    def _begin_if_needed(self) -> None:
+        if self._minitaur is None:
+            self.reset()
+
+    def close(self) -> None:
+        """Ends the world; a new one is made when it is needed."""
+        self._minitaur = None
+        super().close()
+
     def _load_world(self) -> None:
         """Loads the ground and the robot into an empty world."""
         bullet = self._p
@@ -96,7 +113,8 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         self._ground_id = bullet.loadURDF(os.path.join(self._urdf_root, "plane.urdf"))
         self._load_things()
         bullet.setGravity(0, 0, -10)
-        self.minitaur = self._load_minitaur()
+        self._minitaur = self._load_minitaur()
+        self._loaded_bodies = self._bodies()
         self._loaded_state = bullet.saveState()
 
     def _load_things(self) -> None:
@@ -107,12 +125,20 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         """Loads the robot."""
 
     def _renew_world(self) -> None:
-        """Loads everything, or puts it back to where it was loaded, to the last digit."""
-        if self._connect() or self._hard_reset:
+        """Loads everything, or puts it back to where it was loaded, to the last digit.
+
+        What was added to the world since is taken away. Where something is gone, all is loaded.
+        """
+        if self._connect() or self._hard_reset or not self._loaded_bodies <= self._bodies():
             self._load_world()
-        else:
-            self._p.restoreState(self._loaded_state)
-            self.minitaur.Reset(reload_urdf=False)
+            return
+        for body in self._bodies() - self._loaded_bodies:
+            self._p.removeBody(body)
+        self._p.restoreState(self._loaded_state)
+        self.minitaur.Reset(reload_urdf=False)
+
+    def _bodies(self) -> set[int]:
+        return {self._p.getBodyUniqueId(number) for number in range(self._p.getNumBodies())}
 
     def _begin_episode(self) -> None:
         self._env_step_counter = 0

@@ -22,6 +22,7 @@ from pybullet_envs.minitaur.envs import (
     MinitaurAlternatingLegsEnv,
     MinitaurExtendedEnv,
     MinitaurReactiveEnv,
+    MinitaurStandGymEnv,
     MinitaurTrottingEnv,
     minitaur,
     motor,
@@ -211,6 +212,17 @@ def test_ranges_of_the_randomizer_are_heeded() -> None:
     env.reset(seed=3)
     assert env.minitaur._motor_model.get_voltage() == 12.0
     assert env._p.getDynamicsInfo(env.minitaur.quadruped, -1)[0] == env.minitaur.GetBaseMassFromURDF()
+    env.close()
+
+
+@pytest.mark.parametrize("kind", [MinitaurBulletEnv, MinitaurReactiveEnv, MinitaurStandGymEnv])
+def test_scripts_may_go_on_without_a_reset(kind: Any) -> None:
+    env = kind()
+    shape = env.action_space.shape
+    assert env.minitaur.quadruped > 0
+    env.close()
+    observation = env.step(np.zeros(shape))[0]
+    assert observation in env.observation_space
     env.close()
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from pybullet_envs.bullet.env_randomizer_base import EnvRandomizerBase
 
 Range = tuple[float, float]
@@ -45,14 +43,11 @@ class MinitaurEnvRandomizer(EnvRandomizerBase):
     def randomize_env(self, env: Any) -> None:
         """Draws masses, voltage, damping and the friction of the feet."""
         draw, robot = env.np_random.uniform, env.minitaur
-        robot.SetBaseMass(_off(robot.GetBaseMassFromURDF(), self._base_error, draw))
-        robot.SetLegMasses([_off(mass, self._leg_error, draw) for mass in robot.GetLegMassesFromURDF()])
+        self._draw_base_mass(robot, 1.0 + draw(*self._base_error))
+        robot.SetLegMasses([mass * (1.0 + draw(*self._leg_error)) for mass in robot.GetLegMassesFromURDF()])
         robot.SetBatteryVoltage(draw(*self._voltage))
         robot.SetMotorViscousDamping(draw(*self._damping))
         robot.SetFootFriction(draw(*MINITAUR_LEG_FRICTION))
 
-
-def _off(value: float, error: Range, draw: Any) -> float:
-    """The value, wrong by a share within the range."""
-    low, high = value * (1.0 + np.array(error))
-    return float(draw(low, high))
+    def _draw_base_mass(self, robot: Any, share: float) -> None:
+        robot.SetBaseMass(share * robot.GetBaseMassFromURDF())

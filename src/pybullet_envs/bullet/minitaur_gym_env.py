@@ -150,6 +150,7 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
         Raises:
             ValueError: The action is not eight finite numbers, or one is out of bounds.
         """
+        self._begin_if_needed()
         commands = self._transform_action_to_motor_command(self._checked(action))
         self._pace()
         for _ in range(self._action_repeat):

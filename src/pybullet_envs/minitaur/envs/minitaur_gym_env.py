@@ -170,12 +170,14 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
 
     @property
     def pybullet_client(self) -> Any:
-        """The world; none before `reset`."""
+        """The world."""
+        self._begin_if_needed()
         return self._p
 
     @property
     def ground_id(self) -> int:
-        """The ground; -1 before `reset`."""
+        """The ground."""
+        self._begin_if_needed()
         return self._ground_id
 
     @ground_id.setter
@@ -208,6 +210,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         """
         if control_step < simulation_step:
             raise ValueError("Control step should be larger than or equal to simulation step.")
+        self._begin_if_needed()
         self.control_time_step = control_step
         self._time_step = simulation_step
         self._action_repeat = round(control_step / simulation_step)

@@ -72,6 +72,7 @@ class MinitaurStandGymEnv(MinitaurGymEnv):
         if self._env_step_counter > 0:
             return super().step(action)
         self._checked(action)
+        self._begin_if_needed()
         for moment in range(_MOST_RISING_STEPS):
             self._pace()
             self.minitaur.ApplyAction(self._rise(moment))
