@@ -51,6 +51,8 @@ IN_PROCESS = (
     Case("contact_points", "getContactPoints of one box"),
     Case("closest_points", "getClosestPoints of two boxes"),
     Case("inverse_dynamics", "calculateInverseDynamics, Panda", speedup=1.0),
+    Case("inverse_dynamics_kuka", "calculateInverseDynamics, KUKA", speedup=1.0),
+    Case("inverse_dynamics_tree", "calculateInverseDynamics, floating tree of 20 links", speedup=1.0),
     Case("jacobian", "calculateJacobian, Panda", speedup=1.0),
     Case("mass_matrix", "calculateMassMatrix, Panda"),
     Case("stable_pd", "STABLE_PD_CONTROL, floating tree of 20 links"),

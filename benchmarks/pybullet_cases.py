@@ -287,10 +287,24 @@ def closest_points(original_data: str) -> Prepared:
     return lambda: p.getClosestPoints(boxes[3], boxes[4], 1.0)
 
 
+def _inverse_dynamics(body: int, positions: list[float], dofs: int) -> Timed:
+    velocities, accelerations = [0.1] * dofs, [0.5] * dofs
+    return lambda: p.calculateInverseDynamics(body, positions, velocities, accelerations)
+
+
 def inverse_dynamics(original_data: str) -> Prepared:
-    panda = _panda()
-    velocities, accelerations = [0.1] * 9, [0.5] * 9
-    return lambda: p.calculateInverseDynamics(panda, HOME, velocities, accelerations)
+    return _inverse_dynamics(_panda(), HOME, 9)
+
+
+def inverse_dynamics_kuka(original_data: str) -> Prepared:
+    return _inverse_dynamics(_kuka(), [0.1] * 7, 7)
+
+
+def inverse_dynamics_tree(original_data: str) -> Prepared:
+    tree, single, spherical = _tree()
+    dofs = len(single) + 3 * len(spherical)
+    base = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    return _inverse_dynamics(tree, base + [0.1] * dofs, 6 + dofs)
 
 
 def jacobian(original_data: str) -> Prepared:

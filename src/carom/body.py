@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.pose import Pose
-from carom.dynamics_changes import change_body, change_link, write_link
+from carom.dynamics_changes import change_dynamics, write_link
 from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
@@ -34,13 +34,6 @@ if TYPE_CHECKING:
 _ROUNDING = 1e-15
 _NUMBER = np.dtype(NUMPY_REAL)
 _POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
-_WHOLE_BODY = (
-    "linear_damping",
-    "angular_damping",
-    "max_joint_velocity",
-    "activation_state",
-    "sleep_threshold",
-)
 
 
 class Body:
@@ -199,8 +192,7 @@ class Body:
                 [rad/s and m/s], `activation_state` (bits of `model.flags.ActivationChange`) and
                 `sleep_threshold`, the sum of squared velocities below which it is at rest.
         """
-        change_body(self, {name: changes[name] for name in _WHOLE_BODY if name in changes})
-        change_link(self, link, {name: value for name, value in changes.items() if name not in _WHOLE_BODY})
+        change_dynamics(self, link, changes)
 
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Take over all numbers of a link at once, but for the bounds of its joint; -1 is the base."""

@@ -13,21 +13,43 @@ if TYPE_CHECKING:
     from carom.body import Body
 
 
-def change_body(body: Body, changes: Mapping[str, Any]) -> None:
-    """Change what holds for all links of a body."""
-    model = body.world.arrays.model.numpy
-    tree = body.rows.tree
-    fields = {
-        "linear_damping": "tree_linear_damping",
-        "angular_damping": "tree_angular_damping",
-        "max_joint_velocity": "tree_max_velocity",
-        "sleep_threshold": "tree_sleep_threshold",
-    }
-    for name, value in changes.items():
-        if name in fields:
-            model[fields[name]][tree] = value
-        else:
-            _change_activation(body, ActivationChange(value))
+_OF_BODY = {
+    "linear_damping": "tree_linear_damping",
+    "angular_damping": "tree_angular_damping",
+    "max_joint_velocity": "tree_max_velocity",
+    "sleep_threshold": "tree_sleep_threshold",
+}
+_ACTIVATION = "activation_state"
+_OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
+_NOT_OF_SURFACE = {*_OF_BODY, _ACTIVATION, *_OF_JOINT, "mass", "inertia", "joint_limit_force"}
+
+
+def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
+    """Change a link, the joint that carries it, or what holds for all links of a body."""
+    dynamics, world = body.dynamics(link), body.world
+    surface = [name for name in changes if name not in _NOT_OF_SURFACE]
+    if surface:
+        for name in surface:
+            setattr(dynamics, name, changes[name])
+        world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics, surface)
+        if len(surface) == len(changes):
+            return
+    for name, field in _OF_BODY.items():
+        if name in changes:
+            world.arrays.model.numpy[field][body.rows.tree] = changes[name]
+    if _ACTIVATION in changes:
+        _change_activation(body, ActivationChange(changes[_ACTIVATION]))
+    if "mass" in changes:
+        _set_mass(body, link, changes["mass"])
+    if "inertia" in changes:
+        _set_inertia(body, link, changes["inertia"])
+    if link != BASE:
+        _change_joint(body, link, changes)
+    else:
+        for name in changes.keys() & _OF_JOINT:
+            setattr(dynamics, name, changes[name])
+    if "joint_limit_force" in changes:
+        _set_limit_force(body, link, changes["joint_limit_force"])
 
 
 def _change_activation(body: Body, change: ActivationChange) -> None:
@@ -54,26 +76,13 @@ def _change_activation(body: Body, change: ActivationChange) -> None:
     body.world.constraints_changed()
 
 
-def change_link(body: Body, link: int, changes: Mapping[str, Any]) -> None:
-    """Change one link and the joint that carries it."""
-    dynamics = body.dynamics(link)
-    changes = dict(changes)
-    if "mass" in changes:
-        _set_mass(body, link, changes.pop("mass"))
-    if "inertia" in changes:
-        _set_inertia(body, link, changes.pop("inertia"))
-    if "joint_damping" in changes and link != BASE:
-        _set_joint_damping(body, link, changes.pop("joint_damping"))
-    if ("joint_lower_limit" in changes or "joint_upper_limit" in changes) and link != BASE:
-        lower = changes.pop("joint_lower_limit", dynamics.joint_lower_limit)
-        upper = changes.pop("joint_upper_limit", dynamics.joint_upper_limit)
-        _set_limits(body, link, lower, upper)
-    if "joint_limit_force" in changes:
-        _set_limit_force(body, link, changes.pop("joint_limit_force"))
-    for name, value in changes.items():
-        setattr(dynamics, name, value)
-    if changes:
-        body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics, changes)
+def _change_joint(body: Body, joint: int, changes: Mapping[str, Any]) -> None:
+    dynamics = body.dynamics(joint)
+    if "joint_damping" in changes:
+        _set_joint_damping(body, joint, changes["joint_damping"])
+    if "joint_lower_limit" in changes or "joint_upper_limit" in changes:
+        lower = changes.get("joint_lower_limit", dynamics.joint_lower_limit)
+        _set_limits(body, joint, lower, changes.get("joint_upper_limit", dynamics.joint_upper_limit))
 
 
 def write_link(body: Body, link: int) -> None:

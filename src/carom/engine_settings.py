@@ -10,30 +10,53 @@ from carom.physics.parameters import EngineParameters
 from carom.touch_arrays import TouchArrays
 
 
-def engine_settings(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArrays) -> Any:
-    """`Settings` of a world: its parameters, and how much of its arrays is in use."""
-    settings: Any = Settings()
-    settings.time_step = parameters.substep_time
-    settings.gravity = parameters.gravity
-    settings.iterations = parameters.solver_iterations
-    settings.inner_iterations = parameters.noncontact_inner_iterations
-    settings.residual_threshold = parameters.solver_residual_threshold
-    settings.joint_erp = parameters.erp
-    settings.split_impulse = int(parameters.split_impulse)
-    settings.split_threshold = parameters.split_impulse_penetration_threshold
-    settings.feedback_in_world = parameters.joint_feedback_mode & 1
-    settings.feedback_in_joint = parameters.joint_feedback_mode >> 1 & 1
-    settings.tree_count = arrays.used["tree"]
-    settings.user_count = touch.user_count
-    settings.constraint_count = arrays.used["constraint"]
-    settings.contact_erp = parameters.contact_erp
-    settings.friction_erp = parameters.friction_erp
-    settings.contact_softness = parameters.global_cfm / parameters.substep_time
-    settings.contact_slop = parameters.contact_slop
-    settings.contact_warm_starting = parameters.contact_warm_starting
-    settings.restitution_threshold = parameters.restitution_velocity_threshold
-    settings.cone_friction = int(parameters.cone_friction)
-    settings.shape_count = touch.shapes.shape_count
-    settings.filter_count = touch.shapes.filter_count
-    settings.filter_both = int(parameters.collision_filter_mode == 0)
-    return settings
+class EngineSettings:
+    """`Settings` of a world: its parameters, and how much of its arrays is in use.
+
+    Attributes:
+        struct: What kernels are given: always the same struct, whose fields change.
+    """
+
+    def __init__(self) -> None:
+        self.struct: Any = Settings()
+        self._written: dict[str, Any] = {}
+
+    def update(self, parameters: EngineParameters, arrays: WorldArrays, touch: TouchArrays) -> bool:
+        """Bring the struct up to date; true if anything has changed."""
+        changed = False
+        for name, value in _values(parameters, arrays, touch).items():
+            # Writing a field of a struct takes a hundred times as long as comparing.
+            if self._written.get(name) != value:
+                setattr(self.struct, name, value)
+                self._written[name] = value
+                changed = True
+        return changed
+
+
+def _values(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArrays) -> dict[str, Any]:
+    substep_time = parameters.substep_time
+    return {
+        "time_step": substep_time,
+        "gravity": parameters.gravity,
+        "iterations": parameters.solver_iterations,
+        "inner_iterations": parameters.noncontact_inner_iterations,
+        "residual_threshold": parameters.solver_residual_threshold,
+        "joint_erp": parameters.erp,
+        "split_impulse": int(parameters.split_impulse),
+        "split_threshold": parameters.split_impulse_penetration_threshold,
+        "feedback_in_world": parameters.joint_feedback_mode & 1,
+        "feedback_in_joint": parameters.joint_feedback_mode >> 1 & 1,
+        "tree_count": arrays.used["tree"],
+        "user_count": touch.user_count,
+        "constraint_count": arrays.used["constraint"],
+        "contact_erp": parameters.contact_erp,
+        "friction_erp": parameters.friction_erp,
+        "contact_softness": parameters.global_cfm / substep_time,
+        "contact_slop": parameters.contact_slop,
+        "contact_warm_starting": parameters.contact_warm_starting,
+        "restitution_threshold": parameters.restitution_velocity_threshold,
+        "cone_friction": int(parameters.cone_friction),
+        "shape_count": touch.shapes.shape_count,
+        "filter_count": touch.shapes.filter_count,
+        "filter_both": int(parameters.collision_filter_mode == 0),
+    }

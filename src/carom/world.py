@@ -15,7 +15,7 @@ from carom.body import Body
 from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
-from carom.engine_settings import engine_settings
+from carom.engine_settings import EngineSettings
 from carom.errors import SimulationError
 from carom.log import Log, Observer, SubstepObserver
 from carom.model.body_spec import BodySpec
@@ -68,7 +68,8 @@ class World(StateViews):
     def _start_empty(self) -> None:
         self.bodies.clear()
         self.arrays: WorldArrays = WorldArrays()
-        self._kernels = KernelStructs()
+        self._settings = EngineSettings()
+        self._kernels = KernelStructs(settings=self._settings.struct)
         self.touch: TouchArrays = TouchArrays(self.arrays, _DEVICE)
         self.constraints: JointConstraints = JointConstraints()
         self.user_constraints: UserConstraints = UserConstraints()
@@ -77,6 +78,7 @@ class World(StateViews):
         self.next_id: int = 0
         self.unspent_time = 0.0
         self._step: Callable[[], None] | None = None
+        self._made_for: tuple[int, int] | None = None
         # What the constraints in the arrays were grouped by; None if they are not those there are now.
         self._island_size: int | None = None
         self._layout: Layout | None = None
@@ -390,9 +392,13 @@ class World(StateViews):
 
     def apply_parameters(self) -> None:
         """Make changes of `parameters` take effect."""
-        self.touch.shapes.set_breaking_fraction(self.parameters.contact_breaking_threshold)
-        self._step = None
-        self._queries = None
+        shapes, breaking = self.touch.shapes, self.parameters.contact_breaking_threshold
+        if self._step is None or self._structure() != self._made_for or breaking != shapes.breaking_fraction:
+            shapes.set_breaking_fraction(breaking)
+            self._step = None
+            self._queries = None
+        else:
+            self._update_settings()
 
     def constraints_changed(self) -> None:
         """Sort and number the constraints again before the next step."""
@@ -493,6 +499,7 @@ class World(StateViews):
             self._island_size = island_size
         self.user_constraints.write(self.touch)
         self._queries = None
+        self._made_for = self._structure()
         self._stepper = self._stepper_type(
             self._kernel_structs(),
             self.touch,
@@ -555,16 +562,20 @@ class World(StateViews):
             )
         return self._queries
 
+    def _structure(self) -> tuple[int, int]:
+        """The parameters that decide which launches a step consists of."""
+        return self.parameters.substeps, self.parameters.minimum_island_size
+
+    def _update_settings(self) -> None:
+        """Bring the settings that kernels get up to date, those of launches that are there as well."""
+        if self._settings.update(self.parameters, self.arrays, self.touch):
+            self._kernels.changed("settings")
+
     def _kernel_structs(self) -> KernelStructs:
         """Structs over the present arrays, by the name kernels give them."""
         model, state, scratch = self._structs
-        self._kernels.update(
-            settings=engine_settings(self.parameters, self.arrays, self.touch),
-            model=model,
-            state=state,
-            scratch=scratch,
-        )
-        self._kernels.update(self.touch.structs())
+        self._kernels.update(model=model, state=state, scratch=scratch, **self.touch.structs())
+        self._update_settings()
         return self._kernels
 
     def analytics(self) -> list[dict[str, float]]:

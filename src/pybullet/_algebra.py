@@ -105,11 +105,9 @@ def calculateInverseDynamics(
     """
     try:
         client = clients[physicsClientId]
-        tree = client.bodies[bodyUniqueId].tree
-        if tree is not None and not flags:
-            return tree.motion_in_pybullet.forces(
-                objPositions, objVelocities, objAccelerations, client.world.parameters.gravity
-            )
+        forces = client.bodies[bodyUniqueId].forces_of_motion
+        if forces is not None and not flags:
+            return forces(client.world.parameters.gravity, objPositions, objVelocities, objAccelerations)
     except (KeyError, TypeError, ValueError, StructError):
         pass
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
@@ -150,12 +148,12 @@ def calculateInverseDynamics(
 
     from carom.algorithms.moving_tree import moving_tree
 
-    base = q[: positions - sum(body.velocity_count)]
-    joints = joint_coordinates(body, q[len(base) :])
     if floating:
-        _check_rotation(base[3:], _INVERSE_DYNAMICS)
-    motion, gravity = moving_tree(body).motion_in_pybullet, client.world.parameters.gravity
-    return motion.forces((*base, *joints), qd, qdd, gravity)
+        _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
+    try:
+        return moving_tree(body).forces_in_pybullet(client.world.parameters.gravity, q, qd, qdd)
+    except ValueError as problem:
+        fail(_INVERSE_DYNAMICS, f"{problem}.")
 
 
 @exported

@@ -10,10 +10,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
+from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
-from pybullet._arguments import integer, rotation, vector3
+from pybullet._arguments import integer
 from pybullet._clients import Client
 from pybullet._errors import logger
+from pybullet._optional_vectors import optional_rotation, optional_vector3
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
@@ -61,13 +63,9 @@ def bare_shape(
     problem = "getClosestPoints failed."
     name = f"collisionShape{side}"
     shape = client.shapes.collisions.get(integer(number, name))
-    place = (0.0, 0.0, 0.0)
-    if position is not None:
-        place = vector3(position, problem, f"collisionShapePosition{side}")
-    turn = (0.0, 0.0, 0.0, 1.0)
-    if orientation is not None:
-        given = rotation(orientation, problem, f"collisionShapeOrientation{side}")
-        turn = quaternion_from_matrix(rotation_matrix(given))
+    place = optional_vector3(position, problem, f"collisionShapePosition{side}") or IDENTITY.position
+    turn = optional_rotation(orientation, problem, f"collisionShapeOrientation{side}") or IDENTITY.orientation
+    turn = quaternion_from_matrix(rotation_matrix(turn))
     if shape is None:
         logger.warning("getClosestPoints: there is no %s %d.", name, number)
         return None

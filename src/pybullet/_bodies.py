@@ -9,6 +9,7 @@ from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_FIXED, JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._errors import fail, logger
 from pybullet._lookup import body_access, body_of, no_body
+from pybullet._optional_vectors import optional_vector3
 
 __all__ = [
     "computeDofCount",
@@ -262,6 +263,8 @@ def resetBaseVelocity(
 ) -> None:
     """Sets the velocity of a body's base. No such body is no error.
 
+    What has not three items stops the body, as in PyBullet, with a warning.
+
     Args:
         objectUniqueId: The body.
         linearVelocity: Of the centre of mass [m/s], world axes; None leaves it as it is.
@@ -269,7 +272,7 @@ def resetBaseVelocity(
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, neither velocity is given, or one is not three finite numbers.
+        pybullet.error: Not connected, neither velocity is given, or an item is not a finite number.
 
     Examples:
         >>> p.resetBaseVelocity(cube, linearVelocity=[1, 0, 0])
@@ -281,8 +284,11 @@ def resetBaseVelocity(
     problem = "expected at least linearVelocity and/or angularVelocity."
     if linearVelocity is None and angularVelocity is None:
         fail(problem)
-    linear = None if linearVelocity is None else vector3(linearVelocity, problem, "linearVelocity")
-    angular = None if angularVelocity is None else vector3(angularVelocity, problem, "angularVelocity")
+    linear = angular = None
+    if linearVelocity is not None:
+        linear = optional_vector3(linearVelocity, problem, "linearVelocity") or (0.0, 0.0, 0.0)
+    if angularVelocity is not None:
+        angular = optional_vector3(angularVelocity, problem, "angularVelocity") or (0.0, 0.0, 0.0)
     if body is not None:
         with client.lock:
             present_linear, present_angular = client.bodies[body.id].base_velocity()

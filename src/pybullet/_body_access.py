@@ -15,6 +15,7 @@ from pybullet._link_access import LinkAccess
 from pybullet._rotations import canonical
 
 if TYPE_CHECKING:
+    from carom.algorithms.ask import Ask
     from carom.algorithms.moving_tree import MovingTree
     from carom.body import Body
     from pybullet._clients import Client
@@ -68,6 +69,14 @@ class BodyAccess:
         from carom.algorithms.moving_tree import moving_tree
 
         return moving_tree(self.body)
+
+    @cached_property
+    def forces_of_motion(self) -> Ask | None:
+        """What `calculateInverseDynamics` asks, unless nothing about the body can move."""
+        from carom.algorithms.moving_tree import moving_tree
+
+        tree = moving_tree(self.body)
+        return tree.forces_in_pybullet if tree.dofs else None
 
     @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from pybullet._constants import (
     ER_USE_PROJECTIVE_TEXTURE,
 )
 from pybullet._errors import fail
+from pybullet._optional_vectors import has_length
 
 if TYPE_CHECKING:
     import numpy as np
@@ -95,11 +97,9 @@ def getCameraImage(
     columns, rows = integer(width, "width"), integer(height, "height")
     options = max(integer(flags, "flags"), 0)
     integer(renderer, "renderer")
-    if viewMatrix is None or projectionMatrix is None:
+    view, projection = _matrix(viewMatrix, "viewMatrix"), _matrix(projectionMatrix, "projectionMatrix")
+    if view is None or projection is None:
         view, projection = view_of_window(client), _projection_of_window(client)
-    else:
-        view = _matrix(viewMatrix, "viewMatrix")
-        projection = _matrix(projectionMatrix, "projectionMatrix")
 
     from carom.render.appearance import appearance_of
     from carom.render.renderer import renderer_of
@@ -107,9 +107,10 @@ def getCameraImage(
     projector = None
     if options & ER_USE_PROJECTIVE_TEXTURE:
         projector = projection @ view
-        if projectiveTextureView is not None and projectiveTextureProj is not None:
-            cast = _matrix(projectiveTextureProj, "projectiveTextureProj")
-            projector = cast @ _matrix(projectiveTextureView, "projectiveTextureView")
+        place = _matrix(projectiveTextureView, "projectiveTextureView")
+        cast = _matrix(projectiveTextureProj, "projectiveTextureProj")
+        if place is not None and cast is not None:
+            projector = cast @ place
     with client.lock:
         appearance = appearance_of(client.world)
         light = _changed_light(
@@ -140,51 +141,54 @@ def getCameraImage(
     return columns, rows, image.rgba, image.depth, label
 
 
-def _matrix(values: Vector, name: str) -> NDArray[np.float64]:
-    """4 x 4 matrix of 16 numbers, column after column."""
+def _matrix(values: Any, name: str) -> NDArray[np.float64] | None:
+    """4 x 4 matrix of 16 numbers, column after column; None, with a warning, of another number of them."""
+    if not has_length(values, 16, name):
+        return None
+    return _square(numbers(values, _FAILED, name))
+
+
+def _square(columns: Sequence[float]) -> NDArray[np.float64]:
     import numpy as np
 
-    entries = numbers(values, _FAILED, name)
-    if len(entries) != 16:
-        fail(_FAILED, f"{name} has {len(entries)} numbers instead of 16.")
-    return np.array(entries).reshape(4, 4).T
+    return np.array(columns).reshape(4, 4).T
 
 
 def view_of_window(client: Client) -> NDArray[np.float64]:
     """World to the camera of the window, or to PyBullet's camera without a window."""
     width, _, view = client.window.camera_info()[:3]
     if width and isinstance(view, tuple):
-        return _matrix(view, "viewMatrix")
+        return _square(view)
     target = (0.0, 0.0, 0.0)
     eye, up = orbit(target, 1.5, -80.0, -10.0, 0.0, Z_UP)
     default: Matrix16 | None = look_at(eye, target, up)
     assert default is not None
-    return _matrix(default, "viewMatrix")
+    return _square(default)
 
 
 def _projection_of_window(client: Client) -> NDArray[np.float64]:
     """Camera of the window to image; PyBullet's without a window."""
     width, _, _, projection = client.window.camera_info()[:4]
     if width and isinstance(projection, tuple):
-        return _matrix(projection, "projectionMatrix")
+        return _square(projection)
     near, far, aspect = 0.01, 1000.0, 4.0 / 3.0
-    return _matrix(frustum(-aspect * near, aspect * near, -near, near, near, far), "projectionMatrix")
+    return _square(frustum(-aspect * near, aspect * near, -near, near, near, far))
 
 
 def _changed_light(
     light: Light,
-    direction: Vector | None,
-    colour: Vector | None,
+    direction: Any,
+    colour: Any,
     coefficients: dict[str, float],
     shadow: int,
 ) -> Light:
     """The light with what was given; negative numbers stand for no change."""
     changes: dict[str, Any] = {name: value for name, value in coefficients.items() if value >= 0.0}
-    if direction is not None:
+    if has_length(direction, 3, "lightDirection"):
         changes["direction"] = vector3(direction, _FAILED, "lightDirection")
         if not any(changes["direction"]):
             fail(_FAILED, "lightDirection has length 0.")
-    if colour is not None:
+    if has_length(colour, 3, "lightColor"):
         changes["colour"] = vector3(colour, _FAILED, "lightColor")
     if shadow >= 0:
         changes["shadow"] = shadow != 0

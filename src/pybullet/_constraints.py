@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose
-from pybullet._arguments import Vector, integer, real, rotation, vector3
+from pybullet._arguments import Vector, integer, real
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_GEAR, JOINT_POINT2POINT, JOINT_PRISMATIC
 from pybullet._errors import fail, logger
 from pybullet._lookup import no_body
+from pybullet._optional_vectors import optional_rotation, optional_vector3
 from pybullet._rotations import unit
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def createConstraint(
 
     parent_frame = _frame(parentFramePosition, parentFrameOrientation, "parentFrame")
     child_frame = _frame(childFramePosition, childFrameOrientation, "childFrame")
-    axis = vector3(jointAxis, _FAILED, "jointAxis")
+    axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     with client.lock:
         constraint = client.world.tie(
             UserConstraintKind(kind),
@@ -155,11 +156,8 @@ def changeConstraint(
     force, ratio = real(maxForce, "maxForce"), real(gearRatio, "gearRatio")
     auxiliary, share = integer(gearAuxLink, "gearAuxLink"), real(erp, "erp")
     target = real(relativePositionTarget, "relativePositionTarget")
-    pivot = orientation = None
-    if jointChildPivot is not None:
-        pivot = vector3(jointChildPivot, _CHANGE_FAILED, "jointChildPivot")
-    if jointChildFrameOrientation is not None:
-        orientation = unit(rotation(jointChildFrameOrientation, _CHANGE_FAILED, "jointChildFrameOrientation"))
+    pivot = optional_vector3(jointChildPivot, _CHANGE_FAILED, "jointChildPivot")
+    orientation = optional_rotation(jointChildFrameOrientation, _CHANGE_FAILED, "jointChildFrameOrientation")
     if constraint is None:
         logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
         return
@@ -167,7 +165,9 @@ def changeConstraint(
         constraint.gear_auxiliary_link = _link(constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED)
     if pivot is not None or orientation is not None:
         old = constraint.child_frame
-        constraint.child_frame = Pose(pivot or old.position, orientation or old.orientation)
+        constraint.child_frame = Pose(
+            pivot or old.position, old.orientation if orientation is None else unit(orientation)
+        )
     if force >= 0.0:
         constraint.max_force = force
         constraint.max_impulse = force * client.world.parameters.substep_time
@@ -352,7 +352,6 @@ def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: 
 
 
 def _frame(position: Vector, orientation: Vector | None, name: str) -> Pose:
-    origin = vector3(position, _FAILED, f"{name}Position")
-    if orientation is None:
-        return Pose(origin, IDENTITY.orientation)
-    return Pose(origin, unit(rotation(orientation, _FAILED, f"{name}Orientation")))
+    origin = optional_vector3(position, _FAILED, f"{name}Position") or IDENTITY.position
+    turn = optional_rotation(orientation, _FAILED, f"{name}Orientation") or IDENTITY.orientation
+    return Pose(origin, unit(turn))

@@ -9,6 +9,7 @@ from pybullet._arguments import Vector, integer, real, rotation, sequence, text,
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._errors import fail
+from pybullet._optional_vectors import optional_vector3
 from pybullet._window import DebugLine, DebugPoints, DebugText
 
 __all__ = [
@@ -62,7 +63,7 @@ def addUserDebugLine(
     line = DebugLine(
         start=vector3(lineFromXYZ, "Error converting lineFrom[3]", "lineFromXYZ"),
         end=vector3(lineToXYZ, "Error converting lineTo[3]", "lineToXYZ"),
-        colour=_colour(lineColorRGB, "Error converting lineColorRGB[3]", "lineColorRGB"),
+        colour=optional_vector3(lineColorRGB, "Error converting lineColorRGB[3]", "lineColorRGB") or _WHITE,
         width=real(lineWidth, "lineWidth"),
         life_time=real(lifeTime, "lifeTime"),
         parent_body=integer(parentObjectUniqueId, "parentObjectUniqueId"),
@@ -232,10 +233,8 @@ def setDebugObjectColor(
         >>> p.setDebugObjectColor(cube, -1, [1, 0, 0])
     """
     client = client_of(physicsClientId)
-    colour = None
-    if objectDebugColorRGB is not None:
-        problem = "Error converting objectDebugColorRGB[3]"
-        colour = vector3(objectDebugColorRGB, problem, "objectDebugColorRGB")
+    problem = "Error converting objectDebugColorRGB[3]"
+    colour = optional_vector3(objectDebugColorRGB, problem, "objectDebugColorRGB")
     client.window.colour_link(
         integer(objectUniqueId, "objectUniqueId"), integer(linkIndex, "linkIndex"), colour
     )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import inf
 from typing import Any
 
 from carom.description.pose import Quaternion, Vector3
@@ -25,33 +23,7 @@ DynamicsInfo = tuple[
 
 _MULTI_BODY = 2
 
-# What each number of `changeDynamics` sets, its keyword, and whether it belongs to the whole body; in the
-# order in which PyBullet looks at them.
-_NUMBERS = (
-    ("joint_limit_force", "jointLimitForce", False),
-    ("sleep_threshold", "sleepThreshold", True),
-    ("mass", "mass", False),
-    ("lateral_friction", "lateralFriction", False),
-    ("spinning_friction", "spinningFriction", False),
-    ("rolling_friction", "rollingFriction", False),
-    ("linear_damping", "linearDamping", True),
-    ("angular_damping", "angularDamping", True),
-    ("joint_damping", "jointDamping", False),
-    ("restitution", "restitution", False),
-    ("contact_stiffness", "contactStiffness", False),
-    ("contact_damping", "contactDamping", False),
-    ("friction_anchor", "frictionAnchor", False),
-    ("ccd_swept_sphere_radius", "ccdSweptSphereRadius", False),
-    ("activation_state", "activationState", True),
-    ("contact_processing_threshold", "contactProcessingThreshold", False),
-    ("max_joint_velocity", "maxJointVelocity", True),
-    ("collision_margin", "collisionMargin", True),
-    ("joint_lower_limit", "jointLowerLimit", False),
-    ("joint_upper_limit", "jointUpperLimit", False),
-)
-_BEFORE_LIMITS = ("joint_limit_force", "sleep_threshold")
-_WHOLE = ("friction_anchor", "activation_state")
-_INTEGERS = tuple(place for place, (name, _, _) in enumerate(_NUMBERS) if name in _WHOLE)
+_UNCHANGED = -1
 # What `BodyAccess` was made with.
 _KEPT_BY_ACCESS = {"mass", "inertia", "joint_lower_limit", "joint_upper_limit"}
 
@@ -186,55 +158,55 @@ def changeDynamics(
     """
     client = client_of(physicsClientId)
     named_link = integer(linkIndex, "linkIndex")
-    values = _checked(
-        (
-            jointLimitForce,
-            sleepThreshold,
-            mass,
-            lateralFriction,
-            spinningFriction,
-            rollingFriction,
-            linearDamping,
-            angularDamping,
-            jointDamping,
-            restitution,
-            contactStiffness,
-            contactDamping,
-            frictionAnchor,
-            ccdSweptSphereRadius,
-            activationState,
-            contactProcessingThreshold,
-            maxJointVelocity,
-            collisionMargin,
-            jointLowerLimit,
-            jointUpperLimit,
-        )
-    )
-    *values, lower, upper = values
+    changes = _Changes(named_link)
+    # In the order in which PyBullet looks at them, see the docstring.
+    if jointLimitForce != _UNCHANGED:
+        changes.take("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
+    if sleepThreshold != _UNCHANGED:
+        changes.take_for_body("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
+    if jointLowerLimit != 1 or jointUpperLimit != _UNCHANGED:
+        lower = real(jointLowerLimit, "jointLowerLimit")
+        changes.take_limits(lower, real(jointUpperLimit, "jointUpperLimit"))
+    if anisotropicFriction is not None:
+        changes.take_vector("anisotropic_friction", anisotropicFriction, "anisotropicFriction")
+    if localInertiaDiagonal is not None:
+        changes.take_vector("inertia", localInertiaDiagonal, "localInertiaDiagonal")
+    if mass != _UNCHANGED:
+        changes.take("mass", real(mass, "mass"))
+    if lateralFriction != _UNCHANGED:
+        changes.take("lateral_friction", real(lateralFriction, "lateralFriction"))
+    if spinningFriction != _UNCHANGED:
+        changes.take("spinning_friction", real(spinningFriction, "spinningFriction"))
+    if rollingFriction != _UNCHANGED:
+        changes.take("rolling_friction", real(rollingFriction, "rollingFriction"))
+    if linearDamping != _UNCHANGED:
+        changes.take_for_body("linear_damping", real(linearDamping, "linearDamping"))
+    if angularDamping != _UNCHANGED:
+        changes.take_for_body("angular_damping", real(angularDamping, "angularDamping"))
+    if jointDamping != _UNCHANGED:
+        changes.take("joint_damping", real(jointDamping, "jointDamping"))
+    if restitution != _UNCHANGED:
+        changes.take("restitution", real(restitution, "restitution"))
+    if contactStiffness != _UNCHANGED:
+        changes.take("contact_stiffness", real(contactStiffness, "contactStiffness"))
+    if contactDamping != _UNCHANGED:
+        changes.take("contact_damping", real(contactDamping, "contactDamping"))
+    if frictionAnchor != _UNCHANGED:
+        changes.take("friction_anchor", integer(frictionAnchor, "frictionAnchor"))
+    if ccdSweptSphereRadius != _UNCHANGED:
+        changes.take("ccd_swept_sphere_radius", real(ccdSweptSphereRadius, "ccdSweptSphereRadius"))
+    if activationState != _UNCHANGED:
+        changes.take_for_body("activation_state", integer(activationState, "activationState"))
+    if contactProcessingThreshold != _UNCHANGED:
+        threshold = real(contactProcessingThreshold, "contactProcessingThreshold")
+        changes.take("contact_processing_threshold", threshold)
+    if maxJointVelocity != _UNCHANGED:
+        changes.take_for_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
+    if collisionMargin != _UNCHANGED:
+        changes.take_for_body("collision_margin", real(collisionMargin, "collisionMargin"))
+
     if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
         fail("Both contactStiffness and contactDamping needs to be set together.")
-    anisotropy = _optional_vector(anisotropicFriction, "anisotropicFriction")
-    inertia = _optional_vector(localInertiaDiagonal, "localInertiaDiagonal")
-    changes = _Changes(named_link)
-    given = [
-        (entry, value if entry[0] in _WHOLE else float(value))
-        for entry, value in zip(_NUMBERS, values, strict=False)
-        if value >= 0
-    ]
-    # The limits and lists have their place among the numbers, see the docstring.
-    for (name, _, of_body), value in given:
-        if name in _BEFORE_LIMITS:
-            changes.take(name, value, of_body=of_body)
-    if lower <= upper:
-        changes.take("joint_lower_limit", float(lower))
-        changes.take("joint_upper_limit", float(upper))
-    if anisotropy is not None:
-        changes.take("anisotropic_friction", anisotropy)
-    if inertia is not None:
-        changes.take("inertia", inertia)
-    for (name, _, of_body), value in given:
-        if name not in _BEFORE_LIMITS:
-            changes.take(name, value, of_body=of_body)
 
     found = link_or_warning(client, bodyUniqueId, changes.link, "changeDynamics")
     if found is None:
@@ -294,35 +266,36 @@ class _Changes:
         misdirected: Names of those that were meant for a link.
     """
 
+    __slots__ = ("_named_link", "link", "misdirected", "values")
+
     def __init__(self, link: int) -> None:
         self._named_link = link
         self.link = link
         self.values: dict[str, Any] = {}
         self.misdirected: list[str] = []
 
-    def take(self, name: str, value: Any, *, of_body: bool = False) -> None:
-        """Takes a value for the named link or for the whole body."""
-        self.values[name] = value
-        if of_body:
-            self.link = BASE
-        else:
+    def take(self, name: str, value: float) -> None:
+        """Takes a value for the named link, unless it is negative."""
+        if value >= 0:
+            self.values[name] = value
             self.link = self._named_link
             self.misdirected.append(name)
 
+    def take_for_body(self, name: str, value: float) -> None:
+        """Takes a value for the whole body, unless it is negative."""
+        if value >= 0:
+            self.values[name] = value
+            self.link = BASE
 
-def _checked(values: tuple[Any, ...]) -> Sequence[Any]:
-    """The numbers of a call in the order of `_NUMBERS`, each checked, or all at once if that will do."""
-    try:
-        anchor, state = _INTEGERS
-        if -inf < sum(values) < inf and type(values[anchor]) is type(values[state]) is int:
-            return values
-    except TypeError:
-        pass
-    return [
-        integer(value, name) if place in _INTEGERS else real(value, name)
-        for place, ((_, name, _), value) in enumerate(zip(_NUMBERS, values, strict=True))
-    ]
+    def take_limits(self, lower: float, upper: float) -> None:
+        """Takes the limits of the named link's joint, unless the lower one is greater."""
+        if lower <= upper:
+            self.values |= {"joint_lower_limit": lower, "joint_upper_limit": upper}
+            self.link = self._named_link
+            self.misdirected += "joint_lower_limit", "joint_upper_limit"
 
-
-def _optional_vector(values: Vector | None, name: str) -> Vector3 | None:
-    return None if values is None else vector3(values, f"{name} needs 3 numbers.", name)
+    def take_vector(self, name: str, value: Vector, argument: str) -> None:
+        """Takes three numbers for the named link."""
+        self.values[name] = vector3(value, f"{argument} needs 3 numbers.", argument)
+        self.link = self._named_link
+        self.misdirected.append(name)

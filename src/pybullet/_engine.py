@@ -115,7 +115,10 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
         -1.62
     """
     client = client_of(physicsClientId)
-    _change(client, gravity=(real(gravX, "gravX"), real(gravY, "gravY"), real(gravZ, "gravZ")))
+    gravity = (real(gravX, "gravX"), real(gravY, "gravY"), real(gravZ, "gravZ"))
+    # Scripts that set gravity before every step need not pay for it.
+    if gravity != client.world.parameters.gravity:
+        _change(client, gravity=gravity)
 
 
 @exported
@@ -393,7 +396,6 @@ def _set_time_step(client: Client, value: Any, name: str) -> None:
 def _change(client: Client, **changes: Any) -> None:
     parameters = client.world.parameters
     with client.lock:
-        # Scripts that set gravity before every step need not pay for it.
         if all(getattr(parameters, field) == value for field, value in changes.items()):
             return
         for field, value in changes.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import cache
 from typing import NoReturn
 
 logger = logging.getLogger("pybullet")
@@ -22,3 +23,9 @@ error.__module__ = "pybullet"
 def fail(text: str, particulars: str = "") -> NoReturn:
     """Raises `error` with PyBullet's text first and the particulars after it."""
     raise error(f"{text} {particulars}" if particulars else text)
+
+
+@cache
+def warn_once(message: str) -> None:
+    """Logs a warning, the first time only: control loops make the same call in every step."""
+    logger.warning(message)

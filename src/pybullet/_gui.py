@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from pybullet._arguments import Vector, integer, real, rotation, text, vector3
+from pybullet._arguments import Vector, integer, real, text
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._constants import COV_ENABLE_SINGLE_STEP_RENDERING
 from pybullet._errors import fail
+from pybullet._optional_vectors import optional_rotation, optional_vector3
 from pybullet._window import Slider, VisualizerOptions
 
 __all__ = [
@@ -178,10 +179,10 @@ def configureDebugVisualizer(
     client = client_of(physicsClientId)
     number, on = integer(flag, "flag"), integer(enable, "enable")
     options = VisualizerOptions(flags={number: on != 0} if number >= 0 else {})
-    if lightPosition is not None:
-        options.light_position = vector3(lightPosition, "lightPosition needs 3 numbers.", "lightPosition")
-    if rgbBackground is not None:
-        options.background = vector3(rgbBackground, "rgbBackground needs 3 numbers.", "rgbBackground")
+    options.light_position = optional_vector3(
+        lightPosition, "lightPosition needs 3 numbers.", "lightPosition"
+    )
+    options.background = optional_vector3(rgbBackground, "rgbBackground needs 3 numbers.", "rgbBackground")
     resolution = integer(shadowMapResolution, "shadowMapResolution")
     size = integer(shadowMapWorldSize, "shadowMapWorldSize")
     intensity = real(shadowMapIntensity, "shadowMapIntensity")
@@ -204,7 +205,9 @@ def resetDebugVisualizerCamera(
     cameraTargetPosition: Vector,
     physicsClientId: int = 0,
 ) -> None:
-    """Moves the camera of the window. Nothing happens in `DIRECT`, or when the distance is negative.
+    """Moves the camera of the window.
+
+    Nothing happens in `DIRECT`, when the distance is negative, or when the target has not three items.
 
     Args:
         cameraDistance: From the target to the camera [m].
@@ -214,7 +217,7 @@ def resetDebugVisualizerCamera(
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, the target is not three finite numbers, or a number is not finite.
+        pybullet.error: Not connected, or a number is not finite.
 
     Examples:
         >>> p.resetDebugVisualizerCamera(1.5, 45, -30, [0, 0, 0.5])
@@ -223,8 +226,8 @@ def resetDebugVisualizerCamera(
     distance = real(cameraDistance, "cameraDistance")
     yaw, pitch = real(cameraYaw, "cameraYaw"), real(cameraPitch, "cameraPitch")
     problem = "cameraTargetPosition needs 3 numbers."
-    target = vector3(cameraTargetPosition, problem, "cameraTargetPosition")
-    if distance >= 0.0:
+    target = optional_vector3(cameraTargetPosition, problem, "cameraTargetPosition")
+    if distance >= 0.0 and target is not None:
         client.window.move_camera(distance, yaw, pitch, target)
 
 
@@ -303,9 +306,7 @@ def setVRCameraState(
         >>> p.setVRCameraState(rootPosition=[0, 0, 1])
     """
     client_of(physicsClientId)
-    if rootPosition is not None:
-        vector3(rootPosition, "rootPosition needs 3 numbers.", "rootPosition")
-    if rootOrientation is not None:
-        rotation(rootOrientation, "rootOrientation needs 4 numbers.", "rootOrientation")
+    optional_vector3(rootPosition, "rootPosition needs 3 numbers.", "rootPosition")
+    optional_rotation(rootOrientation, "rootOrientation needs 4 numbers.", "rootOrientation")
     integer(trackObject, "trackObject")
     integer(trackObjectFlag, "trackObjectFlag")

@@ -24,7 +24,7 @@ from pybullet._arguments import (
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._constants import IK_DLS, IK_SDLS, JOINT_SPHERICAL
-from pybullet._errors import fail, logger
+from pybullet._errors import fail, warn_once
 from pybullet._lookup import body_of
 from pybullet._maths import getEulerFromQuaternion
 
@@ -273,7 +273,7 @@ def _orientation(values: Any) -> tuple[float, float, float, float] | None:
         return None
     name = "targetOrientation"
     if len(numbers(values, _PROBLEM, name)) != 4:
-        _warn_once("calculateInverseKinematics: targetOrientation has not 4 values and is ignored")
+        warn_once("calculateInverseKinematics: targetOrientation has not 4 values and is ignored")
         return None
     return rotation(values, _PROBLEM, name)
 
@@ -311,7 +311,7 @@ def _options(
         if len(values) >= freedoms:
             options["damping"] = values[:freedoms]
         elif values:
-            _warn_once(
+            warn_once(
                 "calculateInverseKinematics: the size of input joint damping values should be equal to the "
                 "number of degrees of freedom, not using joint damping."
             )
@@ -356,8 +356,3 @@ def _result(body: Body, coordinates: list[float]) -> tuple[float, ...]:
         result += getEulerFromQuaternion(own) if kind == JOINT_SPHERICAL else own
         first += count
     return tuple(result)
-
-
-@cache
-def _warn_once(message: str) -> None:
-    logger.warning(message)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 from pybullet._arguments import Indices, Vector, bound, indices, integer, numbers, real, sequence
 from pybullet._builtin import exported
@@ -215,12 +215,10 @@ def _entries(values: Any, name: str) -> tuple[Any, ...]:
 
 def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
     """A number, or at most three of them; no number at all stands for the default of each use."""
-    if isinstance(value, (int, float)):
+    # Arrays of one number can be floats, too, but are lists.
+    if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
         return real(value, name)
-    try:
-        return numbers(value, f"expected a {name} sequence", name)[:3]
-    except TypeError:
-        return real(value, name)
+    return numbers(value, f"expected a {name} sequence", name)[:3]
 
 
 def _check_rotation(position: Sequence[float]) -> None:

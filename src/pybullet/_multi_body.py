@@ -14,6 +14,7 @@ from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
 from pybullet._errors import fail, logger
 from pybullet._new_bodies import add_bodies, warn_of_coordinates
+from pybullet._optional_vectors import optional_rotation, optional_vector3
 from pybullet._shape_registry import ShapeTable
 
 if TYPE_CHECKING:
@@ -168,8 +169,8 @@ def createMultiBody(
     """
     client = client_of(physicsClientId)
     maximal, bits = integer(useMaximalCoordinates, "useMaximalCoordinates"), integer(flags, "flags")
-    position = _ORIGIN if basePosition is None else vector3(basePosition, _FAILED, "basePosition")
-    orientation = _rotation(baseOrientation, "baseOrientation")
+    position = optional_vector3(basePosition, _FAILED, "basePosition") or _ORIGIN
+    orientation = _rotation(optional_rotation(baseOrientation, _FAILED, "baseOrientation"), "baseOrientation")
     lists = _link_lists(
         linkMasses=linkMasses,
         linkCollisionShapeIndices=linkCollisionShapeIndices,
@@ -185,10 +186,11 @@ def createMultiBody(
     places = None if batchPositions is None else sequence(batchPositions, _FAILED, "batchPositions")
     batch = [vector3(place, _FAILED, "batchPositions") for place in places or ()]
     base_frame = Pose(
-        _ORIGIN
-        if baseInertialFramePosition is None
-        else vector3(baseInertialFramePosition, _FAILED, "baseInertialFramePosition"),
-        _rotation(baseInertialFrameOrientation, "baseInertialFrameOrientation"),
+        optional_vector3(baseInertialFramePosition, _FAILED, "baseInertialFramePosition") or _ORIGIN,
+        _rotation(
+            optional_rotation(baseInertialFrameOrientation, _FAILED, "baseInertialFrameOrientation"),
+            "baseInertialFrameOrientation",
+        ),
     )
     base = _link(
         client, 0, _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
@@ -198,7 +200,7 @@ def createMultiBody(
     spec = _assembled(Robot("", tuple(links), tuple(_joints(lists))), max(bits, 0))
     ids = add_bodies(client, [(spec, Pose(place, orientation)) for place in batch or [position]], _FAILED)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
-        shape = client.shapes.collisions.get(number)
+        shape = client.shapes.collisions.get(integer(number, "collision shape"))
         if shape is not None:
             shape.used = True
     return ids if batch else ids[0]

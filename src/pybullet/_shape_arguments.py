@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Pose, Sphere
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
-from pybullet._arguments import real, rotation, sequence, vector3
+from pybullet._arguments import real, sequence
 from pybullet._constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
 from pybullet._errors import fail
+from pybullet._optional_vectors import optional_rotation, optional_vector3
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,11 +46,11 @@ def primitive(
     if kind == GEOM_BOX:
         if half_extents is None:
             fail(problem, "A box needs halfExtents.")
-        x, y, z = vector3(half_extents, problem, "halfExtents")
+        x, y, z = optional_vector3(half_extents, problem, "halfExtents") or (1.0, 1.0, 1.0)
         _check_size(min(x, y, z) >= 0.0, max(x, y, z), problem, f"halfExtents is {[x, y, z]}.")
         return Box((x, y, z))
     if kind == GEOM_PLANE:
-        x, y, z = (0.0, 0.0, 1.0) if normal is None else vector3(normal, problem, "planeNormal")
+        x, y, z = optional_vector3(normal, problem, "planeNormal") or (0.0, 0.0, 1.0)
         norm = (x * x + y * y + z * z) ** 0.5
         if norm == 0.0:
             fail(problem, "planeNormal has no length.")
@@ -81,16 +82,16 @@ def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
     """
     if position is None and orientation is None:
         return IDENTITY
-    place = (0.0, 0.0, 0.0) if position is None else vector3(position, problem, f"{prefix}Position")
-    if orientation is None:
+    place = optional_vector3(position, problem, f"{prefix}Position") or IDENTITY.position
+    turn = optional_rotation(orientation, problem, f"{prefix}Orientation")
+    if turn is None:
         return Pose(place)
-    turn = rotation(orientation, problem, f"{prefix}Orientation")
     return Pose(place, quaternion_from_matrix(rotation_matrix(turn)))
 
 
 def scale_of(values: Any, problem: str) -> Vector3:
     """`meshScale`; None for 1."""
-    return (1.0, 1.0, 1.0) if values is None else vector3(values, problem, "meshScale")
+    return optional_vector3(values, problem, "meshScale") or (1.0, 1.0, 1.0)
 
 
 def find_file(client: Client, name: str, problem: str) -> Path:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pybullet._arguments import Vector, integer, sequence, text, vector3, vector4
+from pybullet._arguments import Vector, integer, sequence, text
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._constants import VISUAL_SHAPE_DOUBLE_SIDED
 from pybullet._errors import fail, logger
 from pybullet._lookup import link_or_warning
+from pybullet._optional_vectors import optional_vector3, optional_vector4
 from pybullet._shape_arguments import find_file
 
 if TYPE_CHECKING:
@@ -138,8 +139,8 @@ def changeVisualShape(
     client = client_of(physicsClientId)
     shape, texture = integer(shapeIndex, "shapeIndex"), integer(textureUniqueId, "textureUniqueId")
     bits = integer(flags, "flags")
-    colour = None if rgbaColor is None else vector4(rgbaColor, _CANNOT_CHANGE, "rgbaColor")
-    highlight = None if specularColor is None else vector3(specularColor, _CANNOT_CHANGE, "specularColor")
+    colour = optional_vector4(rgbaColor, _CANNOT_CHANGE, "rgbaColor")
+    highlight = optional_vector3(specularColor, _CANNOT_CHANGE, "specularColor")
     found = link_or_warning(client, objectUniqueId, linkIndex, "changeVisualShape")
     if found is None:
         return

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
-from pybullet._arguments import Indices, Vector, Vectors, integer, text, vector3, vector4
+from pybullet._arguments import Indices, Vector, Vectors, integer, text
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import GEOM_MESH
 from pybullet._errors import error, fail, logger
+from pybullet._optional_vectors import optional_vector3, optional_vector4
 from pybullet._shape_arguments import (
     PRIMITIVES,
     find_file,
@@ -93,8 +94,8 @@ def createVisualShape(
     integer(flags, "flags")
     pose = frame(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
     material = Material(
-        rgba=_WHITE if rgbaColor is None else vector4(rgbaColor, _FAILED, "rgbaColor"),
-        specular=_HIGHLIGHT if specularColor is None else vector3(specularColor, _FAILED, "specularColor"),
+        rgba=optional_vector4(rgbaColor, _FAILED, "rgbaColor") or _WHITE,
+        specular=optional_vector3(specularColor, _FAILED, "specularColor") or _HIGHLIGHT,
     )
     if kind in PRIMITIVES:
         geometry = primitive(
@@ -184,8 +185,8 @@ def createVisualShapeArray(
     def part(index: int, kind: int) -> Visual:
         pose, problem = columns.frame(index), columns.problem
         integer(columns.flags.item(index, 0), "flags")
-        rgba = colours.item(index)
-        material = None if rgba is None else Material(rgba=vector4(rgba, problem, "rgbaColors"))
+        rgba = optional_vector4(colours.item(index), problem, "rgbaColors")
+        material = None if rgba is None else Material(rgba=rgba)
         file = columns.files.item(index)
         if kind in PRIMITIVES:
             geometry = columns.primitive(index)

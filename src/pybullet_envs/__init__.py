@@ -21,10 +21,20 @@ import pybullet as p
 __all__ = ["getList"]
 
 _SWINGUP = "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv"
+_FLAGRUN_HARDER = "gym_locomotion_envs:HumanoidFlagrunHarderBulletEnv"
 # Name, module and class, steps of an episode, and what counts as solved.
 _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("CartPoleBulletEnv-v1", "bullet.cartpole_bullet:CartPoleBulletEnv", 200, 190.0),
     ("CartPoleContinuousBulletEnv-v0", "bullet.cartpole_bullet:CartPoleContinuousBulletEnv", 200, 190.0),
+    ("MinitaurBulletEnv-v0", "bullet.minitaur_gym_env:MinitaurBulletEnv", 1000, 15.0),
+    ("MinitaurBulletDuckEnv-v0", "bullet.minitaur_duck_gym_env:MinitaurBulletDuckEnv", 1000, 5.0),
+    ("MinitaurExtendedEnv-v0", "minitaur.envs:MinitaurExtendedEnv", 1000, 5.0),
+    ("MinitaurReactiveEnv-v0", "minitaur.envs:MinitaurReactiveEnv", 1000, 5.0),
+    ("MinitaurBallGymEnv-v0", "minitaur.envs:MinitaurBallGymEnv", 1000, 5.0),
+    ("MinitaurTrottingEnv-v0", "minitaur.envs:MinitaurTrottingEnv", 1000, 5.0),
+    ("MinitaurStandGymEnv-v0", "minitaur.envs:MinitaurStandGymEnv", 1000, 5.0),
+    ("MinitaurAlternatingLegsEnv-v0", "minitaur.envs:MinitaurAlternatingLegsEnv", 1000, 5.0),
+    ("MinitaurFourLegStandEnv-v0", "minitaur.envs:MinitaurFourLegStandEnv", 1000, 5.0),
     ("RacecarBulletEnv-v0", "bullet.racecarGymEnv:RacecarGymEnv", 1000, 5.0),
     ("RacecarZedBulletEnv-v0", "bullet.racecarZEDGymEnv:RacecarZEDGymEnv", 1000, 5.0),
     ("KukaBulletEnv-v0", "bullet.kukaGymEnv:KukaGymEnv", 1000, 5.0),
@@ -44,42 +54,33 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
         800.0,
     ),
     ("ReacherBulletEnv-v0", "gym_manipulator_envs:ReacherBulletEnv", 150, 18.0),
+    ("PusherBulletEnv-v0", "gym_manipulator_envs:PusherBulletEnv", 150, 18.0),
+    ("ThrowerBulletEnv-v0", "gym_manipulator_envs:ThrowerBulletEnv", 100, 18.0),
     ("Walker2DBulletEnv-v0", "gym_locomotion_envs:Walker2DBulletEnv", 1000, 2500.0),
     ("HalfCheetahBulletEnv-v0", "gym_locomotion_envs:HalfCheetahBulletEnv", 1000, 3000.0),
     ("AntBulletEnv-v0", "gym_locomotion_envs:AntBulletEnv", 1000, 2500.0),
     ("HopperBulletEnv-v0", "gym_locomotion_envs:HopperBulletEnv", 1000, 2500.0),
     ("HumanoidBulletEnv-v0", "gym_locomotion_envs:HumanoidBulletEnv", 1000, None),
+    ("HumanoidFlagrunBulletEnv-v0", "gym_locomotion_envs:HumanoidFlagrunBulletEnv", 1000, 2000.0),
+    ("HumanoidFlagrunHarderBulletEnv-v0", _FLAGRUN_HARDER, 1000, None),
 )
 
 # Names that PyBullet has besides, so that asking for one says more than that nobody knows it.
-_MISSING = (
-    "HumanoidDeepMimicBackflipBulletEnv-v1",
-    "HumanoidDeepMimicWalkBulletEnv-v1",
-    "HumanoidFlagrunBulletEnv-v0",
-    "HumanoidFlagrunHarderBulletEnv-v0",
-    "MinitaurAlternatingLegsEnv-v0",
-    "MinitaurBallGymEnv-v0",
-    "MinitaurBulletDuckEnv-v0",
-    "MinitaurBulletEnv-v0",
-    "MinitaurExtendedEnv-v0",
-    "MinitaurFourLegStandEnv-v0",
-    "MinitaurReactiveEnv-v0",
-    "MinitaurStandGymEnv-v0",
-    "MinitaurTrottingEnv-v0",
-    "PusherBulletEnv-v0",
-    "ThrowerBulletEnv-v0",
-)
+_DEEP_MIMIC = ("HumanoidDeepMimicBackflipBulletEnv-v1", "HumanoidDeepMimicWalkBulletEnv-v1")
+_NEEDS_MOTIONS = "it imitates recorded motions of people, which are not Carom's to pass on"
 
 
 def _unavailable(name: str, **keywords: Any) -> NoReturn:
-    raise p.error(f"{name} is not available in this version of Carom; these are: {_names()}")
+    raise p.error(
+        f"{name} is not available in this version of Carom: {_NEEDS_MOTIONS}; these are: {_names()}"
+    )
 
 
 def _names() -> str:
     return ", ".join(name for name, *_ in _ENVIRONMENTS)
 
 
-for _name in _MISSING:
+for _name in _DEEP_MIMIC:
     if _name not in gymnasium.registry:
         gymnasium.register(_name, entry_point=partial(_unavailable, _name))
 

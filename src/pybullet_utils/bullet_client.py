@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from functools import partial
 from inspect import isbuiltin
 from types import TracebackType
@@ -52,7 +53,9 @@ class BulletClient:
         self._close()
 
     def __del__(self) -> None:
-        self._close()
+        # At the interpreter's end the functions that close may be gone already, and all worlds end with it.
+        if not sys.is_finalizing():
+            self._close()
 
     def __getattr__(self, name: str) -> Any:
         attribute = getattr(pybullet, name)

@@ -12,7 +12,7 @@ from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulu
 
 from carom import Body, World
 from carom.algorithms import inverse_dynamics, mass_matrix
-from carom.algorithms.motion import Motion
+from carom.algorithms.motion import forces_of_motion
 from carom.algorithms.moving_tree import moving_tree
 from carom.description.transform import quaternion_from_rpy, rpy_from_quaternion
 from carom.model.codes import MOTOR_MAX_IMPULSE
@@ -182,12 +182,12 @@ def gravity_turned_back(quaternion, *, opposite_order: bool) -> np.ndarray:
     world = World()
     world.gravity = GRAVITY
     body = world.load(random_tree(1, 1, fixed_base=False))
-    motion = Motion(moving_tree(body), opposite_order=opposite_order)
+    forces = forces_of_motion(moving_tree(body), as_pybullet=opposite_order)
     dofs = sum(body.velocity_count)
     position = [0.1, 0.2, 0.3, *quaternion, *np.zeros(dofs)]
     still = [0.0] * (6 + dofs)
     mass = sum(link.mass for link in body.links)
-    return -np.array(motion.forces(position, still, still, world.parameters.gravity))[:3] / mass
+    return -np.array(forces(world.parameters.gravity, position, still, still))[:3] / mass
 
 
 @given(turn=UNIT_QUATERNIONS)

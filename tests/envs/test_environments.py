@@ -20,16 +20,29 @@ SIZES: dict[str, tuple[int | tuple[int, ...], int | None]] = {
     "InvertedPendulumSwingupBulletEnv-v0": (5, 1),
     "InvertedDoublePendulumBulletEnv-v0": (9, 1),
     "ReacherBulletEnv-v0": (9, 2),
+    "PusherBulletEnv-v0": (55, 7),
+    "ThrowerBulletEnv-v0": (48, 7),
     "RacecarBulletEnv-v0": (2, 2),
     "RacecarZedBulletEnv-v0": ((10, 100, 4), 2),
     "KukaBulletEnv-v0": (9, 3),
     "KukaCamBulletEnv-v0": ((256, 341, 4), 3),
     "KukaDiverseObjectGrasping-v0": ((48, 48, 3), 3),
+    "MinitaurBulletEnv-v0": (28, 8),
+    "MinitaurBulletDuckEnv-v0": (28, 8),
+    "MinitaurExtendedEnv-v0": (20, 8),
+    "MinitaurReactiveEnv-v0": (12, 8),
+    "MinitaurBallGymEnv-v0": (2, 1),
+    "MinitaurTrottingEnv-v0": (4, 8),
+    "MinitaurStandGymEnv-v0": (28, 1),
+    "MinitaurAlternatingLegsEnv-v0": (4, 8),
+    "MinitaurFourLegStandEnv-v0": (2, 4),
     "HopperBulletEnv-v0": (15, 3),
     "Walker2DBulletEnv-v0": (22, 6),
     "HalfCheetahBulletEnv-v0": (26, 6),
     "AntBulletEnv-v0": (28, 8),
     "HumanoidBulletEnv-v0": (44, 17),
+    "HumanoidFlagrunBulletEnv-v0": (44, 17),
+    "HumanoidFlagrunHarderBulletEnv-v0": (44, 17),
 }
 
 
@@ -69,10 +82,10 @@ def test_the_same_seed_gives_the_same_episode(name: str) -> None:
     assert first[1] == second[1]
 
 
-@pytest.mark.parametrize("name", ["MinitaurBulletEnv-v0", "HumanoidFlagrunBulletEnv-v0"])
-def test_what_is_not_there_says_so(name: str) -> None:
-    with pytest.raises(p.error, match=f"{name} is not available in this version of Carom"):
-        gymnasium.make(name)
+@pytest.mark.parametrize("motion", ["Walk", "Backflip"])
+def test_what_needs_recorded_motions_says_so(motion: str) -> None:
+    with pytest.raises(p.error, match="is not available in this version of Carom: it imitates recorded"):
+        gymnasium.make(f"HumanoidDeepMimic{motion}BulletEnv-v1")
 
 
 def test_a_pole_that_nobody_holds_falls() -> None:

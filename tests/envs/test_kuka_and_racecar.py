@@ -2,52 +2,36 @@
 
 from __future__ import annotations
 
+import importlib
+import json
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.envs.record import EvenChance
+from tests.envs.record import ON_OUR_DATA, RECORD, EvenChance, action_on_our_data
 
 import pybullet
 import pybullet_data
 from pybullet_envs.bullet import KukaDiverseObjectEnv, KukaGymEnv, RacecarGymEnv
 from pybullet_envs.bullet.kuka import Kuka
 
-# Recorded with PyBullet 3.2.7: the gripper and the block after so many steps, and the reward. Its wrist is a
-# mesh, which is up to 2 mm nearer to the block than ours.
-STEERED = {
-    0: (
-        [0.532117, -0.001107, 0.452298, 3.14129, 0.001438, -3.141371, -0.017033, 0.074921, -0.752964],
-        0.0,
-    ),
-    1: (
-        [0.532117, -0.001107, 0.452298, 3.14129, 0.001438, -3.141373, -0.017032, 0.074921, -0.752966],
-        -6.143661,
-    ),
-    5: (
-        [0.534178, 0.002878, 0.451304, 3.141482, 0.000038, 3.124972, -0.014614, 0.071309, -0.769807],
-        -6.105884,
-    ),
-}
-CHOSEN = {
-    5: (
-        [0.533938, 0.000638, 0.451307, 3.141399, -0.001934, -3.123682, -0.018544, 0.072946, -0.735276],
-        -6.437544,
-    ),
-}
+RECORDED = json.loads(RECORD.read_text())
+TOLERANCES = {"bullet.kukaGymEnv:KukaGymEnv": (2e-6, 2e-3), "bullet.racecarGymEnv:RacecarGymEnv": (0.1, 0.02)}
+"""Of observations and of rewards."""
+EPISODES = [(name, discrete) for name in ON_OUR_DATA for discrete in range(len(RECORDED[name]))]
 
 
-@pytest.mark.parametrize(("discrete", "recorded"), [(False, STEERED), (True, CHOSEN)])
-def test_the_kuka_moves_as_pybullets(discrete: bool, recorded: dict[int, tuple[list[float], float]]) -> None:
-    env: Any = KukaGymEnv(isDiscrete=discrete)
+@pytest.mark.parametrize(("name", "discrete"), EPISODES)
+def test_robots_move_and_are_rewarded_as_pybullets(name: str, discrete: int) -> None:
+    module, _, kind = name.partition(":")
+    env: Any = getattr(importlib.import_module(f"pybullet_envs.{module}"), kind)(isDiscrete=bool(discrete))
     env.np_random = EvenChance()
     observation, reward = env.reset()[0], 0.0
-    for step in range(6):
-        if step in recorded:
-            assert observation == pytest.approx(recorded[step][0], abs=2e-6)
-            assert reward == pytest.approx(recorded[step][1], abs=0.02)
-        action = (2 * step + 5) % 7 if discrete else 0.5 * np.sin(0.1 * step + np.arange(3))
-        observation, reward, ended, *_ = env.step(action)
+    seeing, rewarding = TOLERANCES[name]
+    for step, (seen, rewarded) in enumerate(RECORDED[name][discrete]):
+        assert observation == pytest.approx(seen, abs=seeing)
+        assert reward == pytest.approx(rewarded, abs=rewarding)
+        observation, reward, ended, *_ = env.step(action_on_our_data(name, bool(discrete), step))
         assert not ended
     env.close()
 

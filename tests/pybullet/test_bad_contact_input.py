@@ -67,7 +67,6 @@ REFUSED_MESHES: dict[str, tuple[dict[str, Any], str]] = {
         "no triangle of the mesh has an area",
     ),
     "a scale of NaN": ({"vertices": SQUARE, "meshScale": [nan, 1, 1]}, "meshScale"),
-    "a scale with two numbers": ({"vertices": SQUARE, "meshScale": [1, 1]}, "meshScale"),
     "no file": ({"fileName": "nowhere.obj"}, "There is no file"),
 }
 
@@ -185,12 +184,10 @@ def test_boxes_that_are_refused(value: float, axes: tuple[int, ...]) -> None:
 def test_boxes_without_size() -> None:
     with pytest.raises(p.error, match=NO_SHAPE):
         p.createCollisionShape(p.GEOM_BOX)
-    with pytest.raises(p.error, match=NO_SHAPE):
-        p.createCollisionShape(p.GEOM_BOX, halfExtents=[1, 1])
     falls_on_the_floor(p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5, 0.5, 0]))
 
 
-@pytest.mark.parametrize("normal", [[0, 0, 0], [nan, 0, 1], [0, 0, inf], [0, 1]])
+@pytest.mark.parametrize("normal", [[0, 0, 0], [nan, 0, 1], [0, 0, inf]])
 def test_planes_that_are_refused(normal: list[float]) -> None:
     with pytest.raises(p.error, match=f"{NO_SHAPE} planeNormal"):
         p.createCollisionShape(p.GEOM_PLANE, planeNormal=normal)
@@ -299,7 +296,6 @@ REFUSED_TIES: dict[str, dict[str, Any]] = {
     "a turning joint": {"jointType": p.JOINT_REVOLUTE},
     "a pivot of NaN": {"parentFramePosition": [nan, 0, 0]},
     "a pivot at infinity": {"childFramePosition": [inf, 0, 0]},
-    "a pivot of two numbers": {"parentFramePosition": [0, 0]},
     "no rotation": {"parentFrameOrientation": [0, 0, 0, 0]},
     "a gear on what has no joint": {"jointType": p.JOINT_GEAR},
 }
@@ -328,7 +324,6 @@ def test_constraints_that_are_refused(name: str) -> None:
     "change",
     [
         {"jointChildPivot": [nan, 0, 0]},
-        {"jointChildPivot": [0, 0]},
         {"jointChildFrameOrientation": [0, 0, 0, 0]},
         {"maxForce": nan},
         {"maxForce": inf},

@@ -350,8 +350,6 @@ VECTORS: list[tuple[str, str, int | None, str]] = [
         4,
         "orientation needs a 4 coordinates, quaternion [x,y,z,w].",
     ),
-    ("resetBaseVelocity", "linearVelocity", 3, "expected at least linearVelocity and/or angularVelocity."),
-    ("resetBaseVelocity", "angularVelocity", 3, "expected at least linearVelocity and/or angularVelocity."),
     ("applyExternalForce", "forceObj", 3, "force needs a 3 coordinates [x,y,z]."),
     ("applyExternalForce", "posObj", 3, "position needs a 3 coordinates [x,y,z]."),
     ("applyExternalTorque", "torqueObj", 3, "torque needs a 3 coordinates [x,y,z]."),

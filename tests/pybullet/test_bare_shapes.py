@@ -1,6 +1,7 @@
 """Nearest points of shapes without bodies; the numbers are those of PyBullet 3.2.7."""
 
 from collections.abc import Iterator
+from math import inf
 from typing import Any
 
 import pytest
@@ -87,7 +88,7 @@ def test_nothing_is_found(shapes, keywords: dict[str, Any]) -> None:
 
 
 def test_places_that_are_none(shapes) -> None:
-    for name, value in (("Position", [1, 2]), ("Position", "x"), ("Orientation", [0, 0, 0, 0])):
+    for name, value in (("Position", "xyz"), ("Position", [0, 0, inf]), ("Orientation", [0, 0, 0, 0])):
         with pytest.raises(p.error, match=r"^getClosestPoints failed\."):
             given: dict[str, Any] = {f"collisionShape{name}B": value}
             p.getClosestPoints(shapes[0], -1, 10, collisionShapeB=shapes[1], **given)

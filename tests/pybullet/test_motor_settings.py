@@ -167,6 +167,14 @@ def test_a_ball_joint_takes_a_quaternion_and_gains_for_all_axes(zoo: int) -> Non
     assert motor(zoo, 3)[TARGET_W] == target[3]
 
 
+@pytest.mark.parametrize("kind", [np.float32, np.int64, np.array])
+def test_gains_are_numbers_of_any_kind(zoo: int, kind: type[Any]) -> None:
+    p.setJointMotorControlMultiDof(
+        zoo, 3, p.POSITION_CONTROL, [0, 0, 0, 1], force=[9], positionGain=kind(1), velocityGain=kind(2)
+    )
+    assert [motor(zoo, 3, axis)[2:4].tolist() for axis in range(3)] == [[1.0, 2.0]] * 3
+
+
 def test_a_ball_joint_takes_gains_by_axis_when_all_are(zoo: int) -> None:
     by_axis = [1.0, 2.0, 3.0]
     p.setJointMotorControlMultiDof(

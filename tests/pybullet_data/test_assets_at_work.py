@@ -41,7 +41,7 @@ def test_it_falls_and_touches_without_trouble(file: str) -> None:
         p.disconnect(client)
 
 
-@pytest.mark.parametrize("file", ["tray/tray.urdf", "tray/traybox.urdf"])
+@pytest.mark.parametrize("file", ["tray/tray.urdf", "tray/traybox.urdf", "tray/tray_textured2.urdf"])
 def test_things_lie_in_a_tray(file: str) -> None:
     client = p.connect(p.DIRECT)
     try:
@@ -51,5 +51,74 @@ def test_things_lie_in_a_tray(file: str) -> None:
         for _ in range(240):
             p.stepSimulation()
         assert p.getBasePositionAndOrientation(cube)[0] == pytest.approx((0.05, 0.05, 0.032), abs=0.01)
+    finally:
+        p.disconnect(client)
+
+
+@pytest.mark.parametrize(
+    ("file", "start", "rest"),
+    [
+        ("objects/mug_col.obj", (0.0, 0.0, 0.15), (0.0, 0.0, 0.017)),
+        ("toys/concave_box.urdf", (0.3, 0.2, 0.3), (0.3, 0.2, 0.01)),
+    ],
+)
+def test_a_ball_goes_into_what_is_hollow(
+    file: str, start: tuple[float, ...], rest: tuple[float, ...]
+) -> None:
+    client = p.connect(p.DIRECT)
+    try:
+        p.setGravity(0, 0, -9.81)
+        if file.endswith(".urdf"):
+            p.loadURDF(str(DATA / file))
+        else:
+            p.createMultiBody(0.0, p.createCollisionShape(p.GEOM_MESH, fileName=str(DATA / file)))
+        ball = p.createMultiBody(0.1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.01), -1, start)
+        for _ in range(240):
+            p.stepSimulation()
+        assert p.getBasePositionAndOrientation(ball)[0] == pytest.approx(rest, abs=0.015)
+    finally:
+        p.disconnect(client)
+
+
+@pytest.mark.parametrize("file", ["duck.obj", "duck.dae"])
+def test_the_duck_is_as_large_in_either_format(file: str) -> None:
+    client = p.connect(p.DIRECT)
+    try:
+        duck = p.createMultiBody(1.0, p.createCollisionShape(p.GEOM_MESH, fileName=str(DATA / file)))
+        low, high = p.getAABB(duck)
+        assert low == pytest.approx((-1.011, 0.053, -0.636), abs=2e-3)
+        assert high == pytest.approx((0.746, 1.68, 0.713), abs=2e-3)
+    finally:
+        p.disconnect(client)
+
+
+def test_fingers_in_stl_files_span_the_bounds_of_the_originals() -> None:
+    client = p.connect(p.DIRECT)
+    try:
+        finger = p.createCollisionShape(p.GEOM_MESH, fileName=str(DATA / "l_finger.stl"))
+        low, high = p.getAABB(p.createMultiBody(1.0, finger))
+        assert low == pytest.approx((-0.0092, -0.009, -0.0278), abs=3e-3)
+        assert high == pytest.approx((0.0954, 0.0458, 0.0278), abs=3e-3)
+    finally:
+        p.disconnect(client)
+
+
+@pytest.mark.parametrize("name", ["ground0.txt", "ground1.txt", "ground2.txt", "Maze.png", "Image8x4.png"])
+def test_height_maps_are_grounds_to_roll_on(name: str) -> None:
+    client = p.connect(p.DIRECT)
+    try:
+        p.setGravity(0, 0, -9.81)
+        field = p.createCollisionShape(
+            p.GEOM_HEIGHTFIELD, meshScale=[0.5, 0.5, 0.5], fileName=str(DATA / "heightmaps" / name)
+        )
+        ground = p.createMultiBody(0.0, field)
+        top = p.getAABB(ground)[1][2]
+        ball = p.createMultiBody(
+            1.0, p.createCollisionShape(p.GEOM_SPHERE, radius=0.3), -1, (0.2, 0.2, top + 0.5)
+        )
+        for _ in range(240):
+            p.stepSimulation()
+        assert p.getBasePositionAndOrientation(ball)[0][2] > -top
+        assert p.getContactPoints(ball, ground)
     finally:
         p.disconnect(client)

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 from original_facts import DATA
-from tools.assets.build import mesh_files, scene_files, texture_files, urdf_files
+from tools.assets.build import binary_files, mesh_files, scene_files, urdf_files
 
 import pybullet_data
 from carom.description import Mesh
@@ -27,7 +27,7 @@ def test_the_folder_is_small() -> None:
 
 
 def test_every_file_is_made_by_the_tools() -> None:
-    made = {*urdf_files(), *scene_files(), *mesh_files(), *texture_files(), "__init__.py", "py.typed"}
+    made = {*urdf_files(), *scene_files(), *mesh_files(), *binary_files(), "__init__.py", "py.typed"}
     kept = {str(path.relative_to(DATA)) for path in DATA.rglob("*") if path.is_file()}
     assert {path for path in kept if "__pycache__" not in path} == made
 

@@ -31,6 +31,7 @@ CLOSED_MESHES = {
     "lathe": simple_meshes.lathe(
         [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0), (0.5, 0.2), (0.0, 0.2)], 12
     ),
+    "ring": simple_meshes.ring(0.5, 0.25, 32, 16),
     "tray": simple_meshes.tray((-1.0, -1.0, 1.0, 1.0), (-2.0, -2.0, 2.0, 2.0), (0.0, 0.5), 0.1),
 }
 HOUSINGS = {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fnmatch import fnmatchcase
 
-_SHORT = "a list of the wrong length is refused; PyBullet takes it for something else"
 _BOUNDS = "bounds are those of where links are now; PyBullet's of where they were when last looked at"
 _IK = "PyBullet does not arrive; Carom does"
 _FILES = "a file that cannot be read or written is an error; PyBullet says nothing"
@@ -39,7 +38,6 @@ MEANT: dict[tuple[str, str, str], str] = {
         "keyword reportHitNumber",
         "value",
     ): "hits count along the ray; PyBullet's as they are found",
-    ("resetBaseVelocity", "*linearVelocity=[[]1, 2]", "*"): _SHORT,
     ("saveWorld", "bad 0*", "raises"): _FILES,
     ("setPhysicsEngineParameter", "keyword constraintSolverType", "later *"): _SOLVER,
     ("setPhysicsEngineParameter", "Dantzig's solver", "later *"): _SOLVER,

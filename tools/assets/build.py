@@ -7,13 +7,26 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from tools.assets.catalogue import HOUSINGS, MATERIALS, MESHES, MODELS, ROBOTS, SCENES, TEXTURES
+from tools.assets.catalogue import (
+    COLLADA_MESHES,
+    HEIGHT_TABLES,
+    HOUSINGS,
+    MATERIALS,
+    MESHES,
+    MODELS,
+    ROBOTS,
+    SCENES,
+    STL_MESHES,
+    TEXTURES,
+)
+from tools.assets.dae_text import dae_text
 from tools.assets.fields import Field
 from tools.assets.mjcf_text import mjcf_text
 from tools.assets.obj_mesh import ObjMesh, material_text
 from tools.assets.parts import Vector3
 from tools.assets.png import png_bytes
 from tools.assets.sdf_text import sdf_text
+from tools.assets.stl_bytes import stl_bytes
 from tools.assets.surface import mesh_of
 from tools.assets.textures import Colours
 from tools.assets.urdf_text import urdf_text
@@ -37,17 +50,20 @@ def scene_files() -> dict[str, str]:
 
 
 def mesh_files() -> dict[str, str]:
-    """The text of every mesh and material file."""
+    """The text of every mesh, material and table of heights."""
     made = {path: material_text(name, texture) for path, (name, texture) in MATERIALS.items()}
     made |= {path: mesh().text() for path, mesh in MESHES.items()}
+    made |= {path: dae_text(mesh(), name) for path, (name, mesh) in COLLADA_MESHES.items()}
+    made |= {path: table() for path, table in HEIGHT_TABLES.items()}
     for folder, (fields, cell) in HOUSINGS.items():
         made |= {f"{folder}/{name}.obj": _housing(*body, cell).text() for name, body in fields().items()}
     return made
 
 
-def texture_files() -> dict[str, bytes]:
-    """The bytes of every picture."""
-    return {path: _picture(path, colours()) for path, colours in TEXTURES.items()}
+def binary_files() -> dict[str, bytes]:
+    """The bytes of every picture and STL file."""
+    made = {path: _picture(path, colours()) for path, colours in TEXTURES.items()}
+    return made | {path: stl_bytes(mesh()) for path, mesh in STL_MESHES.items()}
 
 
 def _picture(path: str, colours: Colours) -> bytes:
@@ -63,7 +79,7 @@ def _picture(path: str, colours: Colours) -> bytes:
 
 def main(names: list[str]) -> None:
     texts = urdf_files() | scene_files() | mesh_files()
-    for path, content in ({path: text.encode() for path, text in texts.items()} | texture_files()).items():
+    for path, content in ({path: text.encode() for path, text in texts.items()} | binary_files()).items():
         if names and not any(name in path for name in names):
             continue
         target = TARGET / path

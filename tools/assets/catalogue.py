@@ -8,11 +8,14 @@ from functools import partial
 import numpy as np
 from tools.assets import (
     arms,
+    blocks_to_sort,
     cubes,
     floors,
     grounds,
+    gym_arms,
     gym_humanoids,
     gym_runners,
+    gym_shapes,
     kuka,
     manipulators,
     panda,
@@ -47,6 +50,7 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "cube_no_rotation.urdf": cubes.cube_no_rotation,
     "cube_rotate.urdf": cubes.cube_rotate,
     "cube_small.urdf": cubes.cube_small,
+    "cloth_z_up.urdf": soft_shapes.cloth,
     "differential/diff_ring.urdf": rovers.diff_ring,
     "domino/domino.urdf": things.domino,
     "duck_vhacd.urdf": toys.duck,
@@ -85,8 +89,11 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "table/table.urdf": things.table,
     "table_square/table_square.urdf": things.table_square,
     "samurai.urdf": soft_shapes.samurai,
+    "toys/concave_box.urdf": blocks_to_sort.concave_box,
     "tray/tray.urdf": things.tray,
+    "tray/tray_textured2.urdf": things.textured_tray,
     "tray/traybox.urdf": things.traybox,
+    "urdf/mug.urdf": toys.mug,
 }
 
 FAMILIES: Mapping[Callable[[str], Robot], tuple[str, ...]] = {
@@ -118,6 +125,15 @@ FAMILIES: Mapping[Callable[[str], Robot], tuple[str, ...]] = {
         "xarm/xarm6_robot_white.urdf",
         "xarm/xarm6_with_gripper.urdf",
     ),
+    manipulators.xarm6_link: (
+        "xarm/base.urdf",
+        "xarm/base_com.urdf",
+        *(f"xarm/link{number}{kind}.urdf" for number in range(1, 7) for kind in ("", "_com")),
+    ),
+    scenes.wsg50_finger: (
+        "gripper/wsg50_one_motor_gripper_left_finger.urdf",
+        "gripper/wsg50_one_motor_gripper_right_finger.urdf",
+    ),
     soft_shapes.teddy: (
         "teddy_large.urdf",
         "teddy_vhacd.urdf",
@@ -135,6 +151,8 @@ SCENE_FAMILIES: Mapping[Callable[[str], scenes.Scene], tuple[str, ...]] = {
         "gripper/wsg50_one_motor_gripper.sdf",
         "gripper/wsg50_one_motor_gripper_new.sdf",
         "gripper/wsg50_one_motor_gripper_new_free_base.sdf",
+        "gripper/wsg50_one_motor_gripper_no_finger.sdf",
+        "gripper/wsg50_with_r2d2_gripper.sdf",
     ),
     scenes.kuka_arm: (
         "kuka_iiwa/kuka_with_gripper.sdf",
@@ -144,6 +162,7 @@ SCENE_FAMILIES: Mapping[Callable[[str], scenes.Scene], tuple[str, ...]] = {
     scenes.stadium: (
         "plane_stadium.sdf",
         "stadium.sdf",
+        "stadium_no_collision.sdf",
     ),
 }
 
@@ -154,16 +173,30 @@ SCENES |= {path: partial(make, path) for make, paths in SCENE_FAMILIES.items() f
 
 MODELS: Mapping[str, Callable[[], Model]] = {
     "mjcf/ant.xml": gym_runners.ant,
-    "mjcf/ground_plane.xml": gym_runners.ground_plane,
+    "mjcf/capsule.xml": partial(gym_shapes.long_shape, "capsule", None),
+    "mjcf/capsule_fromtoX.xml": partial(gym_shapes.long_shape, "capsule", gym_runners.X),
+    "mjcf/capsule_fromtoY.xml": partial(gym_shapes.long_shape, "capsule", gym_runners.Y),
+    "mjcf/capsule_fromtoZ.xml": partial(gym_shapes.long_shape, "capsule", gym_runners.Z),
+    "mjcf/cylinder.xml": partial(gym_shapes.long_shape, "cylinder", None),
+    "mjcf/cylinder_fromtoX.xml": partial(gym_shapes.long_shape, "cylinder", gym_runners.X),
+    "mjcf/cylinder_fromtoY.xml": partial(gym_shapes.long_shape, "cylinder", gym_runners.Y),
+    "mjcf/cylinder_fromtoZ.xml": partial(gym_shapes.long_shape, "cylinder", gym_runners.Z),
+    "mjcf/ground.xml": gym_shapes.ground,
+    "mjcf/ground_plane.xml": gym_shapes.ground_plane,
     "mjcf/half_cheetah.xml": gym_runners.half_cheetah,
+    "mjcf/hello_mjcf.xml": gym_shapes.hello,
     "mjcf/hopper.xml": gym_runners.hopper,
     "mjcf/humanoid.xml": gym_humanoids.humanoid,
+    "mjcf/humanoid_fixed.xml": partial(gym_humanoids.humanoid_symmetric, 0.5, stands_free=False),
     "mjcf/humanoid_symmetric.xml": partial(gym_humanoids.humanoid_symmetric, 0.8),
     "mjcf/humanoid_symmetric_no_ground.xml": partial(gym_humanoids.humanoid_symmetric, 0.5),
     "mjcf/inverted_double_pendulum.xml": gym_runners.inverted_double_pendulum,
     "mjcf/inverted_pendulum.xml": gym_runners.inverted_pendulum,
+    "mjcf/pusher.xml": gym_arms.pusher,
     "mjcf/reacher.xml": gym_runners.reacher,
+    "mjcf/striker.xml": gym_arms.striker,
     "mjcf/swimmer.xml": gym_runners.swimmer,
+    "mjcf/thrower.xml": gym_arms.thrower,
     "mjcf/walker2d.xml": gym_runners.walker2d,
 }
 
@@ -174,6 +207,7 @@ MATERIALS: Mapping[str, tuple[str, str]] = {
     "cube.mtl": ("cube", "cube.png"),
     "textured_sphere_smooth.mtl": ("ball", "ball.png"),
     "soccerball.mtl": ("football", "football.png"),
+    "jenga/jenga.mtl": ("jenga", "jenga.png"),
     "table/table.mtl": ("wood", "table.png"),
     "table_square/table.mtl": ("wood", "table.png"),
 }
@@ -186,8 +220,14 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
     "duck.png": toys.duck_palette,
     "grass.png": textures.grass,
     "football.png": textures.football,
+    "duckCM.png": toys.duck_palette,
+    "jenga/jenga.png": textures.wood,
     "table/table.png": textures.wood,
     "table_square/table.png": textures.wood,
+    "table_square/checker_grid.jpg": partial(
+        textures.chessboard, 8, np.array((1.0, 1.0, 1.0)), np.array((0.0, 0.0, 0.0)), 512
+    ),
+    "tray/tray.jpg": textures.wood,
     "tex256.png": partial(textures.chessboard, 8, np.array((0.9, 0.9, 0.9)), np.array((0.35, 0.4, 0.5)), 256),
     "uvmap.png": textures.colour_grid,
     "checker_grid.jpg": partial(
@@ -197,11 +237,20 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
         textures.chessboard, 2, np.array((1.0, 1.0, 1.0)), np.array((0.6, 0.7, 0.8)), 256
     ),
     "colors16.png": textures.colour_grid,
+    "heightmaps/Image8x4.png": grounds.steps_of_grey,
+    "heightmaps/Maze.png": grounds.maze,
     "heightmaps/gimp_overlay_out.png": grounds.hills_painted,
     "heightmaps/wm_height_out.png": grounds.hills,
 }
 
 TRAY_FLOOR: simple_meshes.Rectangle = (-0.21, -0.21, 0.21, 0.21)
+LARGE_TRAY = partial(
+    simple_meshes.tray_hulls,
+    (-0.42, -0.42, 0.42, 0.42),
+    (-0.5901, -0.5901, 0.5901, 0.5901),
+    (-0.01, 0.2612),
+    0.024,
+)
 
 MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
     "bunny.obj": soft_shapes.bunny_mesh,
@@ -214,10 +263,17 @@ MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
     "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),
     "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
     "bicycle/wheel.obj": rovers.wheel_disc,
+    "cloth_z_up.obj": partial(simple_meshes.sheet, 1.0, 4),
     "cube.obj": partial(simple_meshes.textured_box, ("cube", "cube.mtl")),
+    "domino/domino.obj": blocks_to_sort.domino_tile,
     "duck.obj": toys.duck_mesh,
     "franka_panda/meshes/finger.obj": panda.finger_hull,
+    "jenga/jenga.obj": blocks_to_sort.jenga_brick,
+    "lego/lego.obj": blocks_to_sort.lego_brick,
+    "lego/lego_vhacd.obj": blocks_to_sort.lego_hulls,
     "objects/mug.obj": toys.mug_mesh,
+    "objects/mug_col.obj": toys.mug_hulls,
+    "quadruped/tmotor3.obj": blocks_to_sort.motor,
     "sphere_smooth.obj": partial(simple_meshes.globe, 1.0, 24, 14),
     "textured_sphere_smooth.obj": partial(
         simple_meshes.globe, 1.0, 24, 14, ("ball", "textured_sphere_smooth.mtl")
@@ -226,12 +282,21 @@ MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
     "table/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
     "table_square/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
     "teddy.obj": soft_shapes.teddy_mesh,
+    "teddy2_VHACD_CHs.obj": soft_shapes.teddy_hulls,
+    "torus/torus_textured.obj": partial(simple_meshes.ring, 0.5, 0.25, 32, 16),
+    "toys/concave_box.obj": blocks_to_sort.concave_box_mesh,
+    "toys/cube.obj": blocks_to_sort.cube,
+    "toys/cylinder.obj": blocks_to_sort.cylinder,
+    "toys/prism.obj": blocks_to_sort.prism,
+    "toys/shape_sorter.obj": blocks_to_sort.shape_sorter,
     "tray/tray.obj": partial(simple_meshes.tray, TRAY_FLOOR, (-0.3, -0.3, 0.3, 0.3), (-0.005, 0.125), 0.012),
     "tray/tray_solid.obj": partial(
         simple_meshes.tray_hulls, TRAY_FLOOR, (-0.2969, -0.295, 0.2968, 0.3204), (-0.005, 0.1334), 0.012
     ),
 }
 
+MESHES |= {f"urdf/{name}.obj": MESHES[f"objects/{name}.obj"] for name in ("mug", "mug_col")}
+MESHES |= {f"tray/tray_textured{kind}.obj": LARGE_TRAY for kind in ("", "2", "4")}
 MESHES |= {
     f"random_urdfs/{n:03d}/{n:03d}.obj": partial(soft_shapes.blob_mesh, n) for n in range(soft_shapes.BLOBS)
 }
@@ -241,3 +306,20 @@ HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vec
     "kuka_iiwa/meshes": (kuka.fields, 0.0235),
 }
 """Folders of blended bodies: the fields, and the grid cell they are meshed with [m]."""
+
+STL_MESHES: Mapping[str, Callable[[], ObjMesh]] = {
+    "l_finger.stl": partial(manipulators.finger_mesh, (-0.0092, -0.009, -0.0278), (0.0954, 0.0458, 0.0278)),
+    "l_finger_collision.stl": partial(
+        manipulators.finger_mesh, (-0.0082, -0.0039, -0.0276), (0.0953, 0.0458, 0.0274)
+    ),
+    "l_finger_tip.stl": partial(
+        manipulators.finger_mesh, (-0.0256, -0.0159, -0.0115), (0.0312, 0.0288, 0.0115)
+    ),
+}
+
+COLLADA_MESHES: Mapping[str, tuple[str, Callable[[], ObjMesh]]] = {"duck.dae": ("duck", toys.duck_mesh)}
+"""The name within the file, and the mesh."""
+
+HEIGHT_TABLES: Mapping[str, Callable[[], str]] = {
+    f"heightmaps/ground{number}.txt": partial(grounds.heights_text, 0.31 * number) for number in range(3)
+}

@@ -11,6 +11,9 @@ STONE_BOUNDS = ((-0.24635, -0.24648, -0.00062), (0.24934, 0.2492, 0.17287))
 LAND_CORNER, LAND_POINTS, LAND_HEIGHT = -15.0, 30, 0.1
 """The lowest x and y of the land, a corner at every metre, and how far it rises and falls [m]."""
 
+TABLE_POINTS, TABLE_HEIGHT = 96, 4.0
+"""Points along each side of a table of heights, and how far those rise and fall [m]."""
+
 
 def _waves(u: Colours, v: Colours) -> Colours:
     """Heights from -1 to 1 over the unit square: a few waves that cross and bend each other."""
@@ -84,3 +87,26 @@ def hills_painted() -> Colours:
 def _square(size: int) -> tuple[Colours, Colours]:
     v, u = np.mgrid[0:size, 0:size]
     return (u + 0.5) / size, 1.0 - (v + 0.5) / size
+
+
+def heights_text(phase: float) -> str:
+    """A table of heights [m] of rolling land, for a height field; the phase tells one from another."""
+    u, v = _square(TABLE_POINTS)
+    rows = TABLE_HEIGHT * _waves(u + phase, v)
+    return "\n".join(",".join(f"{height:.2f}" for height in row) for row in rows) + "\n"
+
+
+def maze() -> Colours:
+    """Walls of a maze, white on black: rows of walls with one gap each, now left, now right."""
+    cells = np.zeros((16, 16))
+    cells[[0, -1], :] = cells[:, [0, -1]] = 1.0
+    for number, row in enumerate(range(2, 15, 2)):
+        cells[row, 1:-1] = 1.0
+        cells[row, 1 if number % 2 else -2] = 0.0
+    return np.repeat(np.kron(cells, np.ones((16, 16)))[..., None], 3, axis=2).astype(np.float64)
+
+
+def steps_of_grey() -> Colours:
+    """8 by 16 points, from black to white."""
+    heights: Colours = np.linspace(0.0, 1.0, 128).reshape(16, 8)
+    return np.repeat(heights[..., None], 3, axis=2)

@@ -74,7 +74,7 @@ def _arm(side: str, sign: float) -> Body:
     return Body(f"{side}_upper_arm", place, joints=shoulder, geoms=(upper,), bodies=(forearm,))
 
 
-def _person(right_leg: Body, left_leg: Body) -> Body:
+def _person(right_leg: Body, left_leg: Body, stands_free: bool = True) -> Body:
     pelvis = Body(
         "pelvis",
         (0.0, 0.0, -0.165),
@@ -103,23 +103,25 @@ def _person(right_leg: Body, left_leg: Body) -> Body:
             _across(-0.01, -0.12, 0.06, 0.06),
         ),
         bodies=(waist, _arm("right", -1.0), _arm("left", 1.0)),
-        free="root",
+        free="root" if stands_free else None,
+        held=None if stands_free else "root",
     )
 
 
-def _model(friction: float, *legs: Body, world: tuple[Geom, ...] = ()) -> Model:
+def _model(friction: float, *world: Body | Geom) -> Model:
     about = "A person of capsules and balls."
-    return Model("humanoid", about, (*world, _person(*legs)), (friction, 0.1, 0.1), angle="degree")
+    return Model("humanoid", about, world, (friction, 0.1, 0.1), angle="degree")
 
 
-def humanoid_symmetric(friction: float) -> Model:
-    """Balls for feet."""
+def humanoid_symmetric(friction: float, stands_free: bool = True) -> Model:
+    """Balls for feet; the torso hangs in the air unless it stands free."""
     right = _leg("right", -1.0, _ball_foot("right"), -120.0)
-    return _model(friction, right, _leg("left", 1.0, _ball_foot("left"), -120.0))
+    left = _leg("left", 1.0, _ball_foot("left"), -120.0)
+    return _model(friction, _person(right, left, stands_free))
 
 
 def humanoid() -> Model:
     """Feet with two soles, and a floor."""
     right = _leg("right", -1.0, _foot("right", -1.0), -110.0)
     left = _leg("left", 1.0, _foot("left", 1.0), -120.0)
-    return _model(0.5, right, left, world=(Geom("plane", (100.0, 100.0, 0.2), "floor", rgba=FLOOR),))
+    return _model(0.5, Geom("plane", (100.0, 100.0, 0.2), "floor", rgba=FLOOR), _person(right, left))

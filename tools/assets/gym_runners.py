@@ -247,8 +247,3 @@ def reacher() -> Model:
     ground = Geom("plane", (1.0, 1.0, 10.0), "ground", rgba=FLOOR)
     world = (ground, *sides, root, inner, target)
     return Model("reacher", "An arm of two links and a target to reach.", world, rgba=BLUE, touch=NOTHING)
-
-
-def ground_plane() -> Model:
-    floor = Geom("plane", (1000.0, 1000.0, 0.125), "floor", rgba=FLOOR)
-    return Model("ground_plane", "A floor.", (floor,), MODEST)

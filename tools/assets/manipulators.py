@@ -7,11 +7,16 @@ from dataclasses import replace
 
 from tools.assets.envelope import Envelope, rod
 from tools.assets.measured import Dress, Filler, dressed
-from tools.assets.parts import Paint, Robot, Shape
+from tools.assets.obj_mesh import ObjMesh
+from tools.assets.parts import Paint, Robot, Shape, Vector3
+from tools.assets.simple_meshes import blocks, stretched
 
 WHITE = Paint("white", (0.92, 0.93, 0.94, 1.0), (0.4, 0.4, 0.4))
 GREY = Paint("grey", (0.5, 0.52, 0.55, 1.0), (0.4, 0.4, 0.4))
 DARK = Paint("dark", (0.16, 0.17, 0.19, 1.0), (0.3, 0.3, 0.3))
+
+
+Block = tuple[Vector3, Vector3]
 
 
 def _base(room: Envelope) -> tuple[Shape, ...]:
@@ -133,6 +138,12 @@ def xarm6(file: str) -> Robot:
     return dressed(file, "An arm with six joints.", Dress(paint, XARM))
 
 
+def xarm6_link(file: str) -> Robot:
+    """One link of the arm, held by the world."""
+    dress = Dress({"*": WHITE}, {**XARM, "base": _base})
+    return dressed(file, "A link of an arm with six joints.", dress)
+
+
 def _finger_of_pr2(room: Envelope) -> tuple[Shape, ...]:
     """A root at the joint and a finger that bends away from the middle."""
     low, high = room.inner("y")
@@ -143,6 +154,13 @@ def _finger_of_pr2(room: Envelope) -> tuple[Shape, ...]:
     return room.box(x=(None, 0.04), y=(-0.025, None)), room.box(
         x=(0.015, None), y=(None, -0.02), z=(-0.012, 0.012)
     )
+
+
+def finger_mesh(low: Vector3, high: Vector3) -> ObjMesh:
+    """A root at the joint and a finger that bends away, as a mesh that spans given bounds."""
+    root: Block = ((0.0, 0.0, 0.0), (0.45, 0.6, 1.0))
+    finger: Block = ((0.2, 0.5, 0.25), (1.0, 1.0, 0.75))
+    return stretched(blocks([root, finger]), low, high)
 
 
 def pr2_gripper() -> Robot:

@@ -16,15 +16,17 @@ class Geom:
 
     Attributes:
         turn: Axis and angle [rad]; PyBullet takes it for radians whatever the model says.
+        touch: Groups it is in, and those it touches, where they are not those of the model.
     """
 
-    type: Literal["capsule", "sphere", "cylinder", "plane"]
+    type: Literal["box", "capsule", "sphere", "cylinder", "plane"]
     size: tuple[float, ...]
     name: str = ""
     pos: Vector3 = ZERO
     ends: tuple[Vector3, Vector3] | None = None
     turn: tuple[Vector3, float] | None = None
     rgba: tuple[float, float, float, float] | None = None
+    touch: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,9 @@ class Body:
     """A body, its joints, its geoms and the bodies on it.
 
     Attributes:
-        free: Name of the joint that lets it fly, if it has one.
+        name: May be empty: PyBullet then numbers its link.
+        free: Name of the joint that lets it fly, if it has one; the name may be empty.
+        held: Name of the joint that holds it in the world, if it has one.
         mass: Instead of what the volume of its geoms weighs [kg].
     """
 
@@ -55,6 +59,7 @@ class Body:
     bodies: tuple[Body, ...] = ()
     free: str | None = None
     mass: float | None = None
+    held: str | None = None
 
 
 @dataclass(frozen=True)
@@ -78,8 +83,7 @@ class Model:
 def mjcf_text(model: Model) -> str:
     """The whole file; colours and friction are defaults at its top."""
     friction, rgba = _numbers(model.friction), _numbers(model.rgba)
-    group, mask = model.touch
-    touch = "" if model.touch == (1, 1) else f' contype="{group}" conaffinity="{mask}"'
+    touch = "" if model.touch == (1, 1) else _touch(model.touch)
     world = [line for item in model.world for line in _item(item)]
     body = [
         f'<compiler angle="{model.angle}" coordinate="local" inertiafromgeom="true"/>',
@@ -91,7 +95,8 @@ def mjcf_text(model: Model) -> str:
         "</worldbody>",
     ]
     about = f"<!-- {model.about} Written by tools/assets of Carom; MIT licence. -->"
-    return "\n".join([about, f'<mujoco model="{model.name}">', *_deeper(body), "</mujoco>", ""])
+    opening = f'<mujoco model="{model.name}">' if model.name else "<mujoco>"
+    return "\n".join([about, opening, *_deeper(body), "</mujoco>", ""])
 
 
 def _numbers(values: tuple[float, ...]) -> str:
@@ -107,16 +112,27 @@ def _item(item: Body | Geom) -> list[str]:
 
 
 def _body(body: Body) -> list[str]:
-    opening = f'<body name="{body.name}"' + _vector("pos", body.pos)
+    opening = "<body" + _name(body.name) + _vector("pos", body.pos)
     if body.quat is not None:
         opening += f' quat="{_numbers(body.quat)}"'
-    inside = [] if body.free is None else [f'<joint name="{body.free}" type="free" limited="false"/>']
+    roots = ((body.free, "free"), (body.held, "fixed"))
+    inside = [
+        f'<joint{_name(name)} type="{kind}" limited="false"/>' for name, kind in roots if name is not None
+    ]
     if body.mass is not None:
         inside.append(f'<inertial pos="0 0 0" mass="{body.mass:g}"/>')
     inside += [_joint(joint) for joint in body.joints]
     inside += [_geom(geom) for geom in body.geoms]
     inside += [line for child in body.bodies for line in _body(child)]
     return [opening + ">", *_deeper(inside), "</body>"]
+
+
+def _name(name: str) -> str:
+    return f' name="{name}"' if name else ""
+
+
+def _touch(touch: tuple[int, int]) -> str:
+    return f' contype="{touch[0]}" conaffinity="{touch[1]}"'
 
 
 def _vector(name: str, value: Vector3) -> str:
@@ -131,7 +147,7 @@ def _joint(joint: Hinge) -> str:
 
 
 def _geom(geom: Geom) -> str:
-    text = "<geom" + (f' name="{geom.name}"' if geom.name else "") + f' type="{geom.type}"'
+    text = "<geom" + _name(geom.name) + f' type="{geom.type}"'
     text += f' size="{_numbers(geom.size)}"' + _vector("pos", geom.pos)
     if geom.ends is not None:
         text += f' fromto="{_numbers(geom.ends[0] + geom.ends[1])}"'
@@ -140,4 +156,6 @@ def _geom(geom: Geom) -> str:
         text += f' axisangle="{_numbers(axis)} {angle:.13g}"'
     if geom.rgba is not None:
         text += f' rgba="{_numbers(geom.rgba)}"'
+    if geom.touch is not None:
+        text += _touch(geom.touch)
     return text + "/>"

@@ -74,6 +74,31 @@ class ObjParts:
         return HEADER + "\n".join(lines) + "\n"
 
 
+def together(meshes: Sequence[ObjMesh], material: tuple[str, str] | None = None) -> ObjMesh:
+    """Several meshes as one. All have normals or none, all are textured or none."""
+    first = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])[:-1]
+    faces = [
+        tuple(corner + start for corner in face)
+        for mesh, start in zip(meshes, first.tolist(), strict=True)
+        for face in mesh.faces
+    ]
+    normals = [mesh.normals for mesh in meshes if mesh.normals is not None]
+    textures = [mesh.texture for mesh in meshes if mesh.texture is not None]
+    return ObjMesh(
+        np.vstack([mesh.vertices for mesh in meshes]),
+        faces,
+        np.vstack(normals) if normals else None,
+        np.vstack(textures) if textures else None,
+        material,
+    )
+
+
+def triangles(mesh: ObjMesh) -> NDArray[np.int64]:
+    """(n, 3) corner numbers of its faces, cut into fans."""
+    fans = [(face[0], face[i], face[i + 1]) for face in mesh.faces for i in range(1, len(face) - 1)]
+    return np.array(fans, np.int64)
+
+
 def _rows(tag: str, values: NDArray[np.float64], decimals: int) -> list[str]:
     return [tag + " " + " ".join(_short(x, decimals) for x in row) for row in values]
 

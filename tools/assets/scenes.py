@@ -45,6 +45,11 @@ def wsg50(file: str) -> Scene:
     return _scene(file, "A gripper with two parallel fingers.", Dress(GRIPPER_PAINT, more=seen))
 
 
+def wsg50_finger(file: str) -> Robot:
+    """One of its fingers, on its own."""
+    return dressed(file, "A finger of a gripper.", Dress({"*": RUBBER}, inertia_scaling=3.0))
+
+
 def stadium(file: str) -> Scene:
     """A floor of grass."""
     floor = Shape(Mesh("grass.obj"), paint=GRASS)

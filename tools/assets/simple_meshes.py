@@ -73,6 +73,49 @@ def globe(radius: float, meridians: int, parallels: int, material: tuple[str, st
     return ObjMesh(radius * outward, faces, outward, texture, material)
 
 
+def ellipsoids(middles_and_halves: Sequence[tuple[Corner, Corner]]) -> ObjParts:
+    """Ellipsoids along the axes, each a hull, by their middles and half lengths."""
+    return ObjParts(
+        [
+            stretched(globe(1.0, 12, 8), *(tuple(np.add(c, np.multiply(s, r)).tolist()) for s in (-1.0, 1.0)))
+            for c, r in middles_and_halves
+        ]
+    )
+
+
+def sheet(half: float, cells: int) -> ObjMesh:
+    """A horizontal square around the origin, cut into cells of two triangles."""
+    along = np.linspace(-half, half, cells + 1)
+    y, x = np.meshgrid(along, along, indexing="ij")
+    row = cells + 1
+    faces: list[tuple[int, ...]] = []
+    for corner in (j * row + i for j in range(cells) for i in range(cells)):
+        faces += [(corner, corner + 1, corner + row + 1), (corner, corner + row + 1, corner + row)]
+    return ObjMesh(np.column_stack((x.ravel(), y.ravel(), np.zeros(x.size))), faces)
+
+
+def ring(radius: float, thickness: float, segments: int, sides: int) -> ObjMesh:
+    """A closed torus about y, smooth-shaded.
+
+    Args:
+        radius: From the middle to that of the tube [m].
+        thickness: Radius of the tube [m].
+        segments: Facets around the axis.
+        sides: Facets around the tube.
+    """
+    around, across = np.meshgrid(np.arange(segments), np.arange(sides), indexing="ij")
+    turn, tilt = 2.0 * np.pi * around.ravel() / segments, 2.0 * np.pi * across.ravel() / sides
+    normals = np.column_stack((np.cos(turn) * np.cos(tilt), np.sin(tilt), -np.sin(turn) * np.cos(tilt)))
+    middles = radius * np.column_stack((np.cos(turn), np.zeros(turn.size), -np.sin(turn)))
+    faces: list[tuple[int, ...]] = []
+    for i in range(segments):
+        for j in range(sides):
+            here, beyond = i * sides, (i + 1) % segments * sides
+            after = (j + 1) % sides
+            faces.append((here + j, beyond + j, beyond + after, here + after))
+    return ObjMesh(middles + thickness * normals, faces, normals)
+
+
 def lathe(profile: list[tuple[float, float]], segments: int) -> ObjMesh:
     """A body of revolution about z, smooth-shaded.
 

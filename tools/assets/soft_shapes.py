@@ -6,9 +6,9 @@ import numpy as np
 from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, rod
 from tools.assets.measured import Dress, dressed, fitted
-from tools.assets.obj_mesh import ObjMesh
-from tools.assets.parts import Paint, Robot, Shape
-from tools.assets.simple_meshes import stretched
+from tools.assets.obj_mesh import ObjMesh, ObjParts
+from tools.assets.parts import Mesh, Paint, Robot, Shape
+from tools.assets.simple_meshes import ellipsoids, stretched
 from tools.assets.surface import mesh_of
 
 FUR = Paint("fur", (0.62, 0.42, 0.24, 1.0))
@@ -21,6 +21,7 @@ COLOURS = (
     (0.56, 0.38, 0.66),
 )
 BLOBS = 10
+TEDDY_MIDDLE = (0.6787, 0.6611, 0.323)
 BUNNY_BOUNDS = ((-0.4595, -0.6665, -0.959), (0.4666, 0.7769, 1.0157))
 
 
@@ -54,6 +55,34 @@ def teddy_mesh() -> ObjMesh:
         ball((0.0, 0.42, 0.3), 0.15),
     )
     return _meshed(blend(*trunk, *pairs, width=0.1), 1.1, 0.13)
+
+
+def teddy_hulls() -> ObjParts:
+    """A teddy as hulls of its parts, y upwards, where the original has them."""
+    x, y, z = TEDDY_MIDDLE
+    return ellipsoids(
+        [
+            ((x, y - 0.1, z), (0.22, 0.25, 0.2)),
+            ((x, y + 0.25, z), (0.19, 0.18, 0.18)),
+            ((x, y + 0.22, z + 0.18), (0.07, 0.07, 0.1337)),
+            *(
+                part
+                for side in (-1.0, 1.0)
+                for part in (
+                    ((x + side * 0.15, y + 0.406, z), (0.07, 0.06, 0.05)),
+                    ((x + side * 0.26, y, z + 0.05), (0.1204, 0.08, 0.08)),
+                    ((x + side * 0.2, y - 0.346, z + 0.1), (0.09, 0.12, 0.2)),
+                )
+            ),
+            ((x, y - 0.15, z - 0.2137), (0.1, 0.1, 0.1)),
+        ]
+    )
+
+
+def cloth() -> Robot:
+    """A box that is seen as a square of cloth."""
+    seen = Shape(Mesh("cloth_z_up.obj"), paint=Paint("white", (1.0, 1.0, 1.0, 1.0)))
+    return dressed("cloth_z_up.urdf", "A box seen as cloth.", Dress({"*": STONE}, seen={"*": (seen,)}))
 
 
 def bunny_mesh() -> ObjMesh:

@@ -75,6 +75,14 @@ def traybox() -> Robot:
     )
 
 
+def textured_tray() -> Robot:
+    """A tray twice as large as its file says, which touches with its floor and walls."""
+    shape = Mesh("tray_textured2.obj", (0.5, 0.5, 0.5))
+    inertial = Inertial(0.0, tensor=diagonal(0.0, 0.0, 0.0))
+    link = Link("base_link", inertial, (Shape(shape, paint=STEEL),), (Shape(shape),))
+    return Robot("tabletop", "A steel tray of a floor and four slanting walls.", (link,))
+
+
 def tray() -> Robot:
     """The tray as one solid: PyBullet takes the convex hull of its mesh, so things rest on its rim."""
     shape = Mesh("tray_solid.obj")

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, rod
-from tools.assets.obj_mesh import ObjMesh, ObjParts
-from tools.assets.parts import Cylinder, Inertial, Link, Mesh, Paint, Robot, Shape, Vector3
-from tools.assets.simple_meshes import globe, lathe, stretched
+from tools.assets.obj_mesh import ObjMesh, ObjParts, together
+from tools.assets.parts import Cylinder, Inertial, Link, Mesh, Paint, Robot, Shape
+from tools.assets.simple_meshes import blocks, ellipsoids, globe, lathe
 from tools.assets.surface import mesh_of
 from tools.assets.textures import Colours
 
@@ -21,6 +23,8 @@ MUG_BOUNDS = Envelope(
     (-0.04400000113249, -0.04400000033593, -0.003000000745058),
     (0.04400000113249, 0.08363300033593, 0.1030000007451),
 )
+WALLS = 12
+"""Hulls of the mug's wall."""
 HULL_MARGIN = 0.002
 """A cylinder touches as a hull, whose bounds PyBullet widens by this [m]."""
 MIDDLE = 0.0018
@@ -76,20 +80,6 @@ def _moved(mesh: ObjMesh, by: tuple[float, float, float]) -> ObjMesh:
     return ObjMesh(mesh.vertices + np.array(by), mesh.faces, mesh.normals, mesh.texture)
 
 
-def _together(meshes: list[ObjMesh], material: tuple[str, str] | None = None) -> ObjMesh:
-    """Several meshes as one; all are textured, or none is."""
-    first = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])[:-1]
-    faces = [
-        tuple(corner + start for corner in face)
-        for mesh, start in zip(meshes, first.tolist(), strict=True)
-        for face in mesh.faces
-    ]
-    normals = [mesh.normals for mesh in meshes if mesh.normals is not None]
-    textures = [mesh.texture for mesh in meshes if mesh.texture is not None]
-    vertices = np.vstack([mesh.vertices for mesh in meshes])
-    return ObjMesh(vertices, faces, np.vstack(normals), np.vstack(textures) if textures else None, material)
-
-
 def duck_mesh() -> ObjMesh:
     """The duck, y upwards, looking along -x, in its own large units."""
     low, high = np.array((-0.056, -0.002, -0.038)), np.array((0.042, 0.09, 0.042))
@@ -102,24 +92,19 @@ def duck_mesh() -> ObjMesh:
         _coloured(mesh_of(_beak(), low, high, 0.004), ORANGE),
         *eyes,
     ]
-    whole = _together(parts, ("duck", "duck.mtl"))
+    whole = together(parts, ("duck", "duck.mtl"))
     return ObjMesh(DUCK_UNITS * whole.vertices, whole.faces, whole.normals, whole.texture, whole.material)
 
 
 def duck_hulls() -> ObjParts:
     """What the duck touches with as hulls, in the units of its mesh: body, tail, head and beak."""
-    ellipsoids: tuple[tuple[Vector3, Vector3], ...] = (
+    middles_and_halves = (
         ((-0.05, 0.62, 0.036), (0.6, 0.526, 0.58)),
         ((0.45, 0.85, 0.036), (0.238, 0.25, 0.3)),
         ((-0.42, 1.22, 0.036), (0.4, 0.421, 0.4)),
         ((-0.82, 1.19, 0.036), (0.147, 0.12, 0.22)),
     )
-    return ObjParts(
-        [
-            stretched(globe(1.0, 12, 8), *(tuple(np.add(c, np.multiply(s, r)).tolist()) for s in (-1.0, 1.0)))
-            for c, r in ellipsoids
-        ]
-    )
+    return ellipsoids(middles_and_halves)
 
 
 def duck() -> Robot:
@@ -149,7 +134,35 @@ def mug_mesh() -> ObjMesh:
     outside = [(0.0, 0.0), (0.034, 0.0), (0.0375, 0.0008), (0.04, 0.0035), (0.041, 0.007), (0.041, 0.0965)]
     rim = [(0.0404, 0.0988), (0.039, 0.1), (0.0375, 0.0988), (0.037, 0.0965)]
     inside = [(0.037, 0.012), (0.036, 0.009), (0.033, 0.0075), (0.03, 0.007), (0.0, 0.007)]
-    return _together([lathe([*outside, *rim, *inside], 28), mesh_of(handle, low, high, 0.0047)])
+    return together([lathe([*outside, *rim, *inside], 28), mesh_of(handle, low, high, 0.0047)])
+
+
+def mug_hulls() -> ObjParts:
+    """What the mug touches with as hulls: floor, wall and handle, so that things go into it."""
+    outer, inner, bottom, top = 0.041, 0.037, 0.007, 0.1
+    turns = 2.0 * np.pi * np.arange(WALLS + 1) / WALLS
+    walls = [
+        [
+            (radius * np.cos(turn), radius * np.sin(turn), height)
+            for height in (0.0, top)
+            for turn, radius in ((first, inner), (first, outer), (second, outer), (second, inner))
+        ]
+        for first, second in pairwise(turns)
+    ]
+    sides = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+    floor = lathe([(0.0, 0.0), (inner, 0.0), (inner, bottom), (0.0, bottom)], WALLS)
+    bars = (
+        ((-0.006, 0.039, 0.072), (0.006, 0.076, 0.083)),
+        ((-0.006, 0.069, 0.026), (0.006, 0.0806, 0.076)),
+        ((-0.006, 0.039, 0.017), (0.006, 0.07, 0.028)),
+    )
+    return ObjParts(
+        [
+            ObjMesh(floor.vertices, floor.faces),
+            *(ObjMesh(np.array(corners), sides) for corners in walls),
+            *(blocks([bar]) for bar in bars),
+        ]
+    )
 
 
 def mug() -> Robot:

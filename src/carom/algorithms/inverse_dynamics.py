@@ -40,13 +40,24 @@ def inverse_dynamics(
     Returns:
         Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base
         along its own axes before them.
+
+    Raises:
+        ValueError: A sequence has the wrong length, something is not finite, or the forces would not be.
     """
     gravity = body.world.parameters.gravity
     if body.fixed_base:
         first = body.first_position
         own = body.world.position[first + 3 : first + BASE_POSITIONS]
         gravity = _gravity_seen_from(body, own if base_orientation is None else base_orientation)
-    return np.array(moving_tree(body).motion.forces(positions, velocities, accelerations, gravity))
+    tree = moving_tree(body)
+    positions_count = tree.coordinates + (BASE_POSITIONS if tree.free else 0)
+    if (len(positions), len(velocities), len(accelerations)) != (positions_count, tree.dofs, tree.dofs):
+        raise ValueError(
+            f"it does not fit the body, which takes {positions_count} positions and {tree.dofs} velocities"
+        )
+    if not tree.dofs:
+        return np.zeros(0)
+    return np.array(tree.forces_of_motion(gravity, positions, velocities, accelerations))
 
 
 def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> Vector3:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
-from math import inf
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.algorithms.motion import Motion, Numbers
+from carom.algorithms.ask import Ask
+from carom.algorithms.motion import forces_of_motion
 from carom.algorithms.nodes import End, Node, body_nodes
 from carom.algorithms.tree.dynamics import inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
-from carom.model.arrays import ArrayTable, numbers_of
+from carom.model.arrays import ArrayTable
 from carom.model.codes import BASE_VELOCITIES, POSITION_COUNT
 from carom.model.launch import Launch
 from carom.model.real import NUMPY_REAL
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from carom.body import Body
 
 Rows = tuple[tuple[float, ...], ...]
+Numbers = Sequence[float] | np.ndarray
 
 _DEVICE = "cpu"
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
@@ -73,7 +74,7 @@ class MovingTree:
                 "axis": self.dofs,
                 "end": len(ends),
                 "input": first_rate + 2 * self.joint_dofs,
-                "output": max(self.dofs + 1, _JACOBIAN_ROWS * self.dofs),
+                "output": _JACOBIAN_ROWS * self.dofs,
                 "matrix": self.dofs * self.dofs,
             }
         )
@@ -87,7 +88,6 @@ class MovingTree:
         self._put_point = self._writer(0, 3)
         self._put_positions = self._writer(first_position, self.coordinates)
         self._put_motion = self._writer(first_position, self.coordinates + 2 * self.joint_dofs)
-        self._arriving = numbers_of(self.arrays["output"])[self.dofs :]
         self._row = Struct(f"{self.dofs}{_TYPE_CODE}")
         used = {"output": _JACOBIAN_ROWS * self.dofs, "matrix": self.dofs * self.dofs}
         self._output, self._matrix = (
@@ -121,9 +121,10 @@ class MovingTree:
             raise ValueError("the question does not fit the tree")
         self._put_motion(*positions, *rates, *accelerations)
         self._find_forces()
-        if not -inf < self._arriving[0] < inf:
+        forces = self._row.unpack_from(self._output)
+        if forces and forces[0] != forces[0]:
             raise ValueError("the forces are not finite")
-        return self._row.unpack_from(self._output)
+        return forces
 
     def mass_matrix(self, positions: Numbers) -> Rows:
         """Rows of the symmetric mass matrix, (`dofs`, `dofs`), at joint positions as in `forces`."""
@@ -154,14 +155,14 @@ class MovingTree:
         return rows[:3], rows[3:]
 
     @cached_property
-    def motion(self) -> Motion:
-        """What is asked about the forces behind its motions."""
-        return Motion(self)
+    def forces_of_motion(self) -> Ask:
+        """What is asked for the forces behind its motions."""
+        return forces_of_motion(self)
 
     @cached_property
-    def motion_in_pybullet(self) -> Motion:
-        """The same with PyBullet's idea of where gravity points."""
-        return Motion(self, opposite_order=True)
+    def forces_in_pybullet(self) -> Ask:
+        """The same with PyBullet's coordinates, and its idea of where gravity points."""
+        return forces_of_motion(self, as_pybullet=True)
 
     @cached_property
     def _find_forces(self) -> Callable[[], None]:

@@ -131,8 +131,8 @@ class KernelStructs(dict[str, Any]):
     running it, and most of what a world's users do between two steps leaves its arrays where they are.
     """
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, **structs: Any) -> None:
+        super().__init__(structs)
         self._launches: dict[Any, tuple[dict[str, Any], Launch]] = {}
 
     def launch(self, kernel: Any, device: str, **scalars: float) -> Launch:
@@ -153,6 +153,13 @@ class KernelStructs(dict[str, Any]):
                     made.replace_struct(indices[name], argument)
         self._launches[kernel] = arguments, made
         return made
+
+    def changed(self, name: str) -> None:
+        """Let the launches made before know that fields of a struct have other values now."""
+        struct = self[name]
+        for kernel, (arguments, made) in self._launches.items():
+            if arguments.get(name) is struct:
+                made.replace_struct(argument_indices(kernel)[name], struct)
 
 
 def launch(kernel: Any, structs: KernelStructs, device: str, **scalars: float) -> Launch:

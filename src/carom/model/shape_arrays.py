@@ -262,16 +262,18 @@ class ShapeArrays:
 
     def write_surface(self, link_row: int, surface: Surface, names: Iterable[str] | None = None) -> None:
         """Take over how a link touches, or of all that has changed, by name, what matters for it."""
-        body, link = self._body_of(link_row)
         numpy = self.table.numpy
         for name in _SURFACE_FIELDS if names is None else names:
             field = _SURFACE_FIELDS.get(name)
             if field is None:
                 continue
             rows = link_row if field.startswith("link") else self._shapes_of(link_row)
-            if field != "shape_margin" or body.own_margin[link]:
-                numpy[field][rows] = getattr(surface, name)
-                self.changes += field == "shape_margin"
+            if field == "shape_margin":
+                body, link = self._body_of(link_row)
+                if not body.own_margin[link]:
+                    continue
+                self.changes += 1
+            numpy[field][rows] = getattr(surface, name)
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
         """Put a link in the group of fixed bases, which do not touch each other, or of the rest."""

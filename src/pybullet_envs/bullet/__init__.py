@@ -4,6 +4,8 @@ from pybullet_envs.bullet.cartpole_bullet import CartPoleBulletEnv, CartPoleCont
 from pybullet_envs.bullet.kuka_diverse_object_gym_env import KukaDiverseObjectEnv
 from pybullet_envs.bullet.kukaCamGymEnv import KukaCamGymEnv
 from pybullet_envs.bullet.kukaGymEnv import KukaGymEnv
+from pybullet_envs.bullet.minitaur_duck_gym_env import MinitaurBulletDuckEnv
+from pybullet_envs.bullet.minitaur_gym_env import MinitaurBulletEnv
 from pybullet_envs.bullet.racecarGymEnv import RacecarGymEnv
 from pybullet_envs.bullet.racecarZEDGymEnv import RacecarZEDGymEnv
 
@@ -13,6 +15,8 @@ __all__ = [
     "KukaCamGymEnv",
     "KukaDiverseObjectEnv",
     "KukaGymEnv",
+    "MinitaurBulletDuckEnv",
+    "MinitaurBulletEnv",
     "RacecarGymEnv",
     "RacecarZEDGymEnv",
 ]

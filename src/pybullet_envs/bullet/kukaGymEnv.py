@@ -9,9 +9,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-import pybullet_data
 from pybullet_envs.bullet.kuka import Kuka
-from pybullet_envs.env_bases import BulletEnv
+from pybullet_envs.bullet.urdf_env import UrdfEnv
 
 _FINGER_OPEN = 0.3
 _CLOSING_STEPS, _LIFTING_STEPS = 100, 1000
@@ -19,7 +18,7 @@ _CLOSING_STEPS, _LIFTING_STEPS = 100, 1000
 _CHOICES = ((0, 0, 0), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1))
 
 
-class KukaGymEnv(BulletEnv):
+class KukaGymEnv(UrdfEnv):
     """The gripper sinks by 2 mm a step; where it meets the tray it closes and lifts, which ends the episode.
 
     Observation: position and roll, pitch and yaw of the gripper, then position across and yaw of the block as
@@ -31,7 +30,7 @@ class KukaGymEnv(BulletEnv):
         blockUid: The block.
     """
 
-    picture_size = (960, 720)
+    _timeStep = 1.0 / 240.0
     _camera = (1.3, 180.0, -40.0)
     _step_size = 0.005
     _turn_size = 0.05
@@ -56,10 +55,10 @@ class KukaGymEnv(BulletEnv):
         maxSteps: int = 1000,
         render_mode: str | None = None,
     ) -> None:
-        """Makes the environment and its world.
+        """Makes the environment and its world; see `UrdfEnv`.
 
         Args:
-            urdfRoot: The folder of the files; that of `pybullet_data` where not given.
+            urdfRoot: The folder of the files.
             actionRepeat: Steps of the simulation for each of the environment.
             isEnableSelfCollision: Kept, but of no effect.
             renders: Whether to open a window.
@@ -67,17 +66,9 @@ class KukaGymEnv(BulletEnv):
             maxSteps: Steps after which an episode ends.
             render_mode: `human`, `rgb_array` or none.
         """
-        super().__init__(renders, render_mode)
-        self._timeStep = 1.0 / 240.0
-        self._urdfRoot = pybullet_data.getDataPath() if urdfRoot is None else urdfRoot
-        self._actionRepeat = actionRepeat
-        self._isEnableSelfCollision = isEnableSelfCollision
-        self._isDiscrete = isDiscrete
         self._maxSteps = maxSteps
-        self._connect()
+        super().__init__(urdfRoot, actionRepeat, isEnableSelfCollision, renders, isDiscrete, render_mode)
         self._p.resetDebugVisualizerCamera(1.3, 180, -41, [0.52, -0.2, -0.33])
-        self.action_space = self._actions()
-        self.observation_space = self._observations()
         self._begin()
 
     def _actions(self) -> gymnasium.spaces.Space[Any]:
@@ -88,16 +79,8 @@ class KukaGymEnv(BulletEnv):
     def _observations(self) -> gymnasium.spaces.Box:
         return gymnasium.spaces.Box(-100.0, 100.0, (9,), np.float32)
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode with the block somewhere on the tray."""
-        super().reset(seed=seed)
-        self._connect()
-        self._begin()
-        return self.getExtendedObservation(), {}
-
     def _begin(self) -> None:
+        """Puts the block somewhere on the tray."""
         self.terminated = False
         self._envStepCounter = 0
         self._lay_table()
@@ -183,7 +166,7 @@ class KukaGymEnv(BulletEnv):
         points = self._p.getClosestPoints(
             self.blockUid, self._kuka.kukaUid, 1000, -1, self._kuka.kukaEndEffectorIndex
         )
-        reward = -10.0 * min(point[8] for point in points) if points else -1000.0
+        reward = -10.0 * points[0][8] if points else -1000.0
         if self._block_position()[2] > self._lifted_height:
             reward += self._success
         return reward

@@ -10,15 +10,14 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-import pybullet_data
 from pybullet_envs.bullet.racecar import Racecar
-from pybullet_envs.env_bases import BulletEnv
+from pybullet_envs.bullet.urdf_env import UrdfEnv
 
 _MOST_STEPS = 1000
 _LOCK = 0.6
 
 
-class RacecarGymEnv(BulletEnv):
+class RacecarGymEnv(UrdfEnv):
     """A ball lies 5 to 7 m away; the nearer the car comes, the better.
 
     Observation: where the ball is, as the car sees it, forward and to the left [m]. Action: throttle and
@@ -26,8 +25,7 @@ class RacecarGymEnv(BulletEnv):
     Reward: the distance of car and ball, negative.
     """
 
-    picture_size = (960, 720)
-    _camera = (3.0, 0.0, -30.0)
+    _timeStep = 0.01
     _ball_file = "sphere2.urdf"
     _stadium_height = 0.0
 
@@ -40,39 +38,29 @@ class RacecarGymEnv(BulletEnv):
         renders: bool = False,
         render_mode: str | None = None,
     ) -> None:
-        """Makes the environment and its world.
+        """Makes the environment and its world; see `UrdfEnv`.
 
         Args:
-            urdfRoot: The folder of the files; that of `pybullet_data` where not given.
+            urdfRoot: The folder of the files.
             actionRepeat: Steps of the simulation for each of the environment.
             isEnableSelfCollision: Kept, but of no effect.
             isDiscrete: Whether the action is one of 9 choices.
             renders: Whether to open a window.
             render_mode: `human`, `rgb_array` or none.
         """
-        super().__init__(renders, render_mode)
-        self._timeStep = 0.01
-        self._urdfRoot = pybullet_data.getDataPath() if urdfRoot is None else urdfRoot
-        self._actionRepeat = actionRepeat
-        self._isEnableSelfCollision = isEnableSelfCollision
-        self._isDiscrete = isDiscrete
+        super().__init__(urdfRoot, actionRepeat, isEnableSelfCollision, renders, isDiscrete, render_mode)
         self._ballUniqueId = -1
-        self._envStepCounter = 0
-        self.action_space: gymnasium.spaces.Space[Any] = (
-            gymnasium.spaces.Discrete(9) if isDiscrete else gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
-        )
-        self.observation_space = self._observations()
-        self._connect()
+
+    def _actions(self) -> gymnasium.spaces.Space[Any]:
+        if self._isDiscrete:
+            return gymnasium.spaces.Discrete(9)
+        return gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
 
     def _observations(self) -> gymnasium.spaces.Box:
         return gymnasium.spaces.Box(-1000.0, 1000.0, (2,), np.float32)
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode with the ball in some direction."""
-        super().reset(seed=seed)
-        self._connect()
+    def _begin(self) -> None:
+        """Puts the ball down in some direction."""
         bullet = self._p
         bullet.resetSimulation()
         bullet.setTimeStep(self._timeStep)
@@ -89,7 +77,6 @@ class RacecarGymEnv(BulletEnv):
         self._envStepCounter = 0
         for _ in range(100):
             bullet.stepSimulation()
-        return self.getExtendedObservation(), {}
 
     def getExtendedObservation(self) -> np.ndarray:
         """What is observed now."""
@@ -122,4 +109,4 @@ class RacecarGymEnv(BulletEnv):
 
     def _reward(self) -> float:
         points = self._p.getClosestPoints(self._racecar.racecarUniqueId, self._ballUniqueId, 10000)
-        return -min(point[8] for point in points) if points else -1000.0
+        return -points[0][8] if points else -1000.0

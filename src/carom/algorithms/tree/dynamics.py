@@ -8,16 +8,22 @@ import warp as wp
 
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
 from carom.model.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
-from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, fuse_multiply_add, kernel, real
+from carom.model.real import Int32, Matrix3, Quaternion, Reals, Vector3, func, fuse_multiply_add, kernel, real
 from carom.physics.rotation import axis_rotation, rotation_matrix
 
 fuse_multiply_add(__name__)
 
 
 @func
-def input_vector(tree: Tree, first: Int32) -> Vector3:
-    """Three numbers of the question."""
-    return Vector3(tree.input[first], tree.input[first + 1], tree.input[first + 2])
+def vector_at(numbers: Reals, first: Int32) -> Vector3:
+    """Three numbers of an array."""
+    return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
+
+
+@func
+def first_rate(sizes: TreeSizes) -> Int32:
+    """Where in `input` the rate of dof 0 would be: those of a free base are not there."""
+    return BASE_MOTION + sizes.coordinates - sizes.base_dofs
 
 
 @func
@@ -43,82 +49,136 @@ def turned_back(r: Matrix3, v: Vector3) -> Vector3:
 
 
 @func
-def place(tree: Tree, node: Int32):
-    """Find the frame of a node in its parent's, from the positions of its joint."""
+def joint_turn(tree: Tree, node: Int32) -> Matrix3:
+    """The rotation from the frame of a node to its parent's, from the positions of its joint."""
     turn = tree.node[node].turn
+    kind = tree.node[node].joint_type
+    q = BASE_MOTION + tree.node[node].first_position
+    if kind == REVOLUTE:
+        return turned_about_z(turn, tree.input[q])
+    if kind == SPHERICAL:
+        rotation = Quaternion(tree.input[q], tree.input[q + 1], tree.input[q + 2], tree.input[q + 3])
+        return turn * rotation_matrix(wp.normalize(rotation))
+    if kind == PLANAR:
+        axis = wp.normalize(tree.dof[tree.node[node].first_dof].angular)
+        return turn * rotation_matrix(axis_rotation(axis, tree.input[q]))
+    return turn
+
+
+@func
+def joint_origin(tree: Tree, node: Int32) -> Vector3:
+    """The origin of a node in the frame of its parent, from the positions of its joint."""
     origin = tree.node[node].origin
     kind = tree.node[node].joint_type
     q = BASE_MOTION + tree.node[node].first_position
     dof = tree.node[node].first_dof
-    if kind == REVOLUTE:
-        turn = turned_about_z(turn, tree.input[q])
-    elif kind == PRISMATIC:
-        origin += turn * (tree.dof[dof].linear * tree.input[q])
-    elif kind == SPHERICAL:
-        rotation = Quaternion(tree.input[q], tree.input[q + 1], tree.input[q + 2], tree.input[q + 3])
-        turn = turn * rotation_matrix(wp.normalize(rotation))
-    elif kind == PLANAR:
+    if kind == PRISMATIC:
+        return origin + tree.node[node].turn * (tree.dof[dof].linear * tree.input[q])
+    if kind == PLANAR:
         # The translations are measured along axes that do not turn with the joint.
         slide = tree.dof[dof + 1].linear * tree.input[q + 1] + tree.dof[dof + 2].linear * tree.input[q + 2]
-        origin += turn * slide
-        turn = turn * rotation_matrix(axis_rotation(wp.normalize(tree.dof[dof].angular), tree.input[q]))
-    tree.motion[node].turn = turn
-    tree.motion[node].origin = origin
+        return origin + tree.node[node].turn * slide
+    return origin
 
 
 @func
-def newton_euler(sizes: TreeSizes, tree: Tree, accelerated: Int32):
-    """Leave the forces of the dofs in `output`: of the motion of the base and the positions and rates.
+def place(tree: Tree, node: Int32):
+    """Find the frame of a node in its parent's."""
+    tree.motion[node].turn = joint_turn(tree, node)
+    tree.motion[node].origin = joint_origin(tree, node)
+
+
+@func
+def place_nodes(tree: Tree, count: Int32):
+    """Find the frames of the first nodes: all in one loop, where processors are at several at a time."""
+    for node in range(count):
+        place(tree, node)
+
+
+@func
+def newton_euler(
+    sizes: TreeSizes,
+    tree: Tree,
+    omega: Vector3,
+    alpha: Vector3,
+    acceleration: Vector3,
+    joints: Reals,
+    rates: Int32,
+    accelerations: Int32,
+):
+    """Leave the forces of the dofs in `output`, from the positions in `input` and what is given.
 
     Args:
         sizes: Sizes of the tree.
         tree: The tree.
-        accelerated: 1: accelerations are given as well; 0: they are 0.
+        omega: Angular velocity of the base.
+        alpha: Its derivative.
+        acceleration: Acceleration of the base less gravity.
+        joints: Numbers about the dofs.
+        rates: Where among them the rate of dof 0 is, or would be.
+        accelerations: The same for accelerations; negative where all of them are 0.
     """
-    rates = BASE_MOTION + sizes.coordinates - sizes.base_dofs
-    accelerations = rates + sizes.dofs - sizes.base_dofs
-    omega = input_vector(tree, 0)
-    alpha = input_vector(tree, 3)
-    acceleration = input_vector(tree, 6)
-    swing = swing_matrix(omega, alpha)
-    keep_motion(tree, 0, omega, alpha, acceleration, swing)
+    keep_motion(tree, 0, omega, alpha, acceleration)
+    keep_forces(tree, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
+    place_nodes(tree, sizes.nodes)
     for node in range(1, sizes.nodes):
-        place(tree, node)
         parent = tree.node[node].parent
         # Most nodes hang on the one before, whose motion is still at hand.
         if parent != node - 1:
             omega = tree.motion[parent].omega
             alpha = tree.motion[parent].alpha
             acceleration = tree.motion[parent].acceleration
-            swing = tree.motion[parent].swing
-        turn = tree.motion[node].turn
-        acceleration = turned_back(turn, acceleration + swing * tree.motion[node].origin)
-        omega = turned_back(turn, omega)
-        alpha = turned_back(turn, alpha)
-        dof = tree.node[node].first_dof
-        if tree.node[node].joint_type == REVOLUTE:
-            spin = tree.dof[dof].angular[2] * tree.input[rates + dof]
-            alpha += Vector3(omega[1] * spin, -omega[0] * spin, 0.0)
-            omega += Vector3(0.0, 0.0, spin)
-            if accelerated == 1:
-                alpha += Vector3(0.0, 0.0, tree.dof[dof].angular[2] * tree.input[accelerations + dof])
-        else:
-            joint_omega = Vector3(0.0, 0.0, 0.0)
-            joint_velocity = Vector3(0.0, 0.0, 0.0)
-            for k in range(tree.node[node].dof_count):
-                rate = tree.input[rates + dof + k]
-                joint_omega += tree.dof[dof + k].angular * rate
-                joint_velocity += tree.dof[dof + k].linear * rate
-                if accelerated == 1:
-                    change = tree.input[accelerations + dof + k]
-                    alpha += tree.dof[dof + k].angular * change
-                    acceleration += tree.dof[dof + k].linear * change
-            alpha += wp.cross(omega, joint_omega)
-            acceleration += wp.cross(2.0 * omega + joint_omega, joint_velocity)
-            omega += joint_omega
-        swing = swing_matrix(omega, alpha)
-        keep_motion(tree, node, omega, alpha, acceleration, swing)
+        omega, alpha, acceleration = moved_on(
+            tree, node, omega, alpha, acceleration, joints, rates, accelerations
+        )
+        keep_motion(tree, node, omega, alpha, acceleration)
+        keep_forces(tree, node, omega, alpha, acceleration, swing_matrix(omega, alpha))
     gather_forces(sizes, tree)
+
+
+@func
+def moved_on(
+    tree: Tree,
+    node: Int32,
+    omega: Vector3,
+    alpha: Vector3,
+    acceleration: Vector3,
+    joints: Reals,
+    rates: Int32,
+    accelerations: Int32,
+):
+    """The motion of a node, in its own frame, by that of its parent."""
+    turn = tree.motion[node].turn
+    swing = swing_matrix(omega, alpha)
+    linear = turned_back(turn, acceleration + swing * tree.motion[node].origin)
+    angular = turned_back(turn, omega)
+    change = turned_back(turn, alpha)
+    dof = tree.node[node].first_dof
+    if tree.node[node].joint_type == REVOLUTE:
+        per_rate = tree.dof[dof].angular[2]
+        spin = per_rate * joints[rates + dof]
+        spin_up = real(0.0)
+        if accelerations >= 0:
+            spin_up = per_rate * joints[accelerations + dof]
+        return (
+            Vector3(angular[0], angular[1], angular[2] + spin),
+            Vector3(change[0] + angular[1] * spin, change[1] - angular[0] * spin, change[2] + spin_up),
+            linear,
+        )
+    joint_omega = Vector3(0.0, 0.0, 0.0)
+    joint_velocity = Vector3(0.0, 0.0, 0.0)
+    for other in range(dof, dof + tree.node[node].dof_count):
+        rate = joints[rates + other]
+        joint_omega += tree.dof[other].angular * rate
+        joint_velocity += tree.dof[other].linear * rate
+        if accelerations >= 0:
+            change += tree.dof[other].angular * joints[accelerations + other]
+            linear += tree.dof[other].linear * joints[accelerations + other]
+    return (
+        angular + joint_omega,
+        change + wp.cross(angular, joint_omega),
+        linear + wp.cross(2.0 * angular + joint_omega, joint_velocity),
+    )
 
 
 @func
@@ -134,14 +194,18 @@ def swing_matrix(omega: Vector3, alpha: Vector3) -> Matrix3:
 
 
 @func
-def keep_motion(
-    tree: Tree, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3, swing: Matrix3
-):
-    """Keep the motion of a node, and the force and the torque about its origin that it takes."""
+def keep_motion(tree: Tree, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3):
+    """Keep the motion of a node, for the nodes that hang on it."""
     tree.motion[node].omega = omega
     tree.motion[node].alpha = alpha
     tree.motion[node].acceleration = acceleration
-    tree.motion[node].swing = swing
+
+
+@func
+def keep_forces(
+    tree: Tree, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3, swing: Matrix3
+):
+    """Keep the force and the torque about its origin that the motion of a node takes."""
     moment = tree.node[node].moment
     inertia = tree.node[node].inertia
     tree.motion[node].force = tree.node[node].mass * acceleration + swing * moment
@@ -154,7 +218,7 @@ def keep_motion(
 def gather_forces(sizes: TreeSizes, tree: Tree):
     """Pass the forces of the nodes on to their parents, and leave what the dofs have of them in `output`.
 
-    Behind them goes a number that is finite if everything is: the sum of what arrives at the base.
+    The first of them is NaN if not everything is finite: so a look at one number is enough.
     """
     for behind in range(sizes.nodes):
         node = sizes.nodes - 1 - behind
@@ -175,7 +239,9 @@ def gather_forces(sizes: TreeSizes, tree: Tree):
             tree.motion[parent].force += force
             tree.motion[parent].torque += turn * torque + wp.cross(tree.motion[node].origin, force)
         else:
-            tree.output[sizes.dofs] = force[0] + force[1] + force[2] + torque[0] + torque[1] + torque[2]
+            # Everything arrives at the base.
+            zero = 0.0 * (force[0] + force[1] + force[2] + torque[0] + torque[1] + torque[2])
+            tree.output[0] += zero
 
 
 @func
@@ -256,14 +322,25 @@ def shift(c: Vector3, moment: Vector3) -> Matrix3:
 @kernel
 def inverse_dynamics_kernel(sizes: TreeSizes, tree: Tree):
     """Leave in `output` the forces that cause the motion in `input`."""
-    newton_euler(sizes, tree, 1)
+    rates = first_rate(sizes)
+    motion = tree.input
+    newton_euler(
+        sizes,
+        tree,
+        vector_at(motion, 0),
+        vector_at(motion, 3),
+        vector_at(motion, 6),
+        motion,
+        rates,
+        rates + sizes.dofs - sizes.base_dofs,
+    )
 
 
 @kernel
 def mass_matrix_kernel(sizes: TreeSizes, tree: Tree):
     """Leave the mass matrix at the positions in `input` in `matrix`."""
+    place_nodes(tree, sizes.nodes)
     for node in range(sizes.nodes):
-        place(tree, node)
         place_in_base(tree, node)
     composite_inertia(sizes, tree)
 
@@ -272,10 +349,10 @@ def mass_matrix_kernel(sizes: TreeSizes, tree: Tree):
 def jacobian_kernel(sizes: TreeSizes, tree: Tree, end: Int32):
     """Leave the Jacobian of a point in `output`: three rows of velocity, three of angular velocity."""
     last = tree.end[end].node
+    place_nodes(tree, last + 1)
     for node in range(last + 1):
-        place(tree, node)
         place_in_base(tree, node)
-    on_node = tree.end[end].origin + tree.end[end].turn * input_vector(tree, 0)
+    on_node = tree.end[end].origin + tree.end[end].turn * vector_at(tree.input, 0)
     point = tree.motion[last].position + tree.motion[last].rotation * on_node
     for entry in range(6 * sizes.dofs):
         tree.output[entry] = 0.0

@@ -4,9 +4,9 @@ import math
 
 import warp as wp
 
-from carom.algorithms.tree.dynamics import newton_euler, turned_back
+from carom.algorithms.tree.dynamics import newton_euler, turned_back, vector_at
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
-from carom.model.codes import BASE_POSITIONS
+from carom.model.codes import BASE_POSITIONS, SPHERICAL
 from carom.model.real import Int32, Quaternion, Reals, Vector3, func, fuse_multiply_add, kernel, real
 from carom.physics.rotation import rotation_matrix
 
@@ -17,12 +17,6 @@ NOT_FINITE = real(math.inf)
 GIMBAL_LOCK = real(0.99999)
 # Where a question begins to be about the tree; gravity comes before.
 POSE = wp.constant(3)
-
-
-@func
-def vector_at(numbers: Reals, first: Int32) -> Vector3:
-    """Three numbers of an array."""
-    return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
 
 
 @func
@@ -60,6 +54,48 @@ def turned_back_in_opposite_order(q: Quaternion, v: Vector3) -> Vector3:
 
 
 @func
+def rotation_by_angles(roll: real, pitch: real, yaw: real) -> Quaternion:
+    """The rotation by a roll about x, then a pitch about y, then a yaw about z, all fixed axes."""
+    sr, cr = wp.sin(0.5 * roll), wp.cos(0.5 * roll)
+    sp, cp = wp.sin(0.5 * pitch), wp.cos(0.5 * pitch)
+    sy, cy = wp.sin(0.5 * yaw), wp.cos(0.5 * yaw)
+    return Quaternion(
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+@func
+def take_positions(sizes: TreeSizes, tree: Tree, question: Reals, first: Int32, by_angles: Int32):
+    """Fill `input` with the positions of the joints that begin at `first` in the question.
+
+    Args:
+        sizes: Sizes of the tree.
+        tree: The tree.
+        question: The question.
+        first: Where they begin.
+        by_angles: 1: spherical joints have roll, pitch and yaw instead of a quaternion.
+    """
+    joint_dofs = sizes.dofs - sizes.base_dofs
+    if by_angles == 0 or sizes.coordinates == joint_dofs:
+        for i in range(sizes.coordinates):
+            tree.input[BASE_MOTION + i] = question[first + i]
+        return
+    for node in range(1, sizes.nodes):
+        given = first + tree.node[node].first_dof - sizes.base_dofs
+        q = BASE_MOTION + tree.node[node].first_position
+        if tree.node[node].joint_type == SPHERICAL:
+            turn = rotation_by_angles(question[given], question[given + 1], question[given + 2])
+            for i in range(4):
+                tree.input[q + i] = turn[i]
+        else:
+            for i in range(tree.node[node].dof_count):
+                tree.input[q + i] = question[given + i]
+
+
+@func
 def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
     """Gravity along the axes of a free base; not finite if its quaternion is no rotation."""
     gravity = vector_at(question, 0)
@@ -72,15 +108,8 @@ def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
     return turned_back(rotation_matrix(wp.normalize(turn)), gravity)
 
 
-@func
-def put(tree: Tree, first: Int32, vector: Vector3):
-    """Three numbers for `newton_euler`."""
-    for axis in range(3):
-        tree.input[first + axis] = vector[axis]
-
-
 @kernel
-def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, opposite_order: Int32):
+def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, as_pybullet: Int32):
     """Leave in `output` the forces that cause a motion; of a free base force, then torque.
 
     Args:
@@ -90,7 +119,8 @@ def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, opposite_order:
             gravity is in world axes; position and quaternion of the base come before the other positions,
             its angular velocity and its velocity along its own axes before the other rates, and their
             derivatives likewise.
-        opposite_order: 1: gravity at a free base as PyBullet has it.
+        as_pybullet: 1: gravity at a free base has the direction PyBullet gives it, and spherical joints have
+            roll, pitch and yaw.
     """
     positions = POSE + 0
     acceleration = -vector_at(question, 0)
@@ -99,29 +129,22 @@ def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, opposite_order:
     unused = real(0.0)
     if sizes.base_dofs > 0:
         positions += BASE_POSITIONS
-        rates = positions + sizes.coordinates
-        accelerations = rates + sizes.dofs
+    rates = positions + sizes.coordinates
+    if as_pybullet == 1:
+        rates = positions + sizes.dofs - sizes.base_dofs
+    if sizes.base_dofs > 0:
         omega = vector_at(question, rates)
-        alpha = vector_at(question, accelerations)
-        acceleration = vector_at(question, accelerations + 3) - gravity_in_base(question, opposite_order)
+        alpha = vector_at(question, rates + sizes.dofs)
+        own = vector_at(question, rates + sizes.dofs + 3)
+        acceleration = own - gravity_in_base(question, as_pybullet)
         # What has no influence has to be finite, too.
         idle = vector_at(question, POSE) + vector_at(question, rates + 3)
         unused = 0.0 * (idle[0] + idle[1] + idle[2])
-    put(tree, 0, omega)
-    put(tree, 3, alpha)
-    put(tree, 6, acceleration)
-    joint_dofs = sizes.dofs - sizes.base_dofs
-    for i in range(sizes.coordinates):
-        tree.input[BASE_MOTION + i] = question[positions + i]
-    first = positions + sizes.coordinates + sizes.base_dofs
-    to = BASE_MOTION + sizes.coordinates
-    for i in range(joint_dofs):
-        tree.input[to + i] = question[first + i]
-        tree.input[to + joint_dofs + i] = question[first + sizes.dofs + i]
-    newton_euler(sizes, tree, 1)
+    take_positions(sizes, tree, question, positions, as_pybullet)
+    newton_euler(sizes, tree, omega, alpha, acceleration, question, rates, rates + sizes.dofs)
     if sizes.base_dofs > 0:
-        tree.output[sizes.dofs] += unused
+        unused += 0.0 * tree.output[0]
         for axis in range(3):
             torque = tree.output[axis]
-            tree.output[axis] = tree.output[3 + axis]
+            tree.output[axis] = tree.output[3 + axis] + unused
             tree.output[3 + axis] = torque

@@ -4,7 +4,13 @@ import math
 
 import warp as wp
 
-from carom.algorithms.tree.dynamics import composite_inertia, newton_euler, place_in_base
+from carom.algorithms.tree.dynamics import (
+    composite_inertia,
+    first_rate,
+    newton_euler,
+    place_in_base,
+    vector_at,
+)
 from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
 from carom.model.codes import SPHERICAL
 from carom.model.real import Int32, Quaternion, Reals, Vector3, func, fuse_multiply_add, kernel, real
@@ -59,10 +65,10 @@ def advanced(start: Quaternion, rate: Vector3, time_step: real) -> Quaternion:
 @func
 def wanted_torques(sizes: TreeSizes, tree: Tree, control: Control, time_step: real):
     """Fill `dof_torque`: from where the joints will be after a step at their rates to their targets."""
+    rates = first_rate(sizes)
     for node in range(sizes.nodes):
         q = tree.node[node].first_position
         first = tree.node[node].first_dof
-        rates = BASE_MOTION + sizes.coordinates - sizes.base_dofs
         turn = Vector3(0.0, 0.0, 0.0)
         if tree.node[node].joint_type == SPHERICAL:
             start = quaternion_at(tree.input, BASE_MOTION + q)
@@ -121,7 +127,17 @@ def solve(sizes: TreeSizes, tree: Tree, control: Control, first: Int32, time_ste
 @kernel
 def stable_pd_kernel(sizes: TreeSizes, tree: Tree, control: Control, base_is_held: Int32, time_step: real):
     """Leave in `dof_torque` the torques for the next step."""
-    newton_euler(sizes, tree, 0)
+    still = Int32(-1)
+    newton_euler(
+        sizes,
+        tree,
+        vector_at(tree.input, 0),
+        vector_at(tree.input, 3),
+        vector_at(tree.input, 6),
+        tree.input,
+        first_rate(sizes),
+        still,
+    )
     for node in range(sizes.nodes):
         place_in_base(tree, node)
     composite_inertia(sizes, tree)

@@ -1,0 +1,98 @@
+"""Functions that write a question to memory, have it answered, and read the answer, at the least cost.
+
+Spreading several lists out in one call, `pack(memory, first, *positions, *rates)`, makes a list and then a
+tuple of all their items. For a few items it is quicker to unpack them into variables and to pass these, for
+many to write each list by itself. The former takes source code for each number of items; so it is made, as
+that of `namedtuple` is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from itertools import accumulate
+from struct import Struct
+from types import CodeType
+from typing import Any
+
+import numpy as np
+
+from carom.model.real import NUMPY_REAL
+
+Ask = Callable[..., tuple[float, ...]]
+
+_TYPE = np.dtype(NUMPY_REAL)
+# Calls with more arguments are slow.
+_MOST_ITEMS = 27
+_SOURCE = """
+def ask(setting, {lists}):
+    global seen
+    if setting is not seen:
+        write_setting(*setting)
+        seen = setting
+    {writing}
+    answer_it()
+    result = unpack(answer)
+    if result[0] != result[0]:
+        raise ValueError("the answer is not finite")
+    return result
+"""
+
+
+def asking(
+    counts: Sequence[int],
+    question: memoryview[float],
+    answer_it: Callable[[], None],
+    answer: memoryview[float],
+    size: int,
+) -> Ask:
+    """A function that asks questions that are lists of numbers.
+
+    Args:
+        counts: How many numbers are in each of its arguments. The first argument is a setting: taken for the
+            same as long as it is the same object.
+        question: Where they go, one list after the other.
+        answer_it: Answers the question.
+        answer: Where the answer is.
+        size: How many numbers it has, at least 1.
+
+    Returns:
+        The function. It raises `struct.error` or `ValueError` for a list of another length, `struct.error`
+        for what is no number, `TypeError` for what is no list, and `ValueError` if the first number of the
+        answer is NaN.
+    """
+    memory = question.cast("B")
+    setting, *lists = counts
+    firsts = [first * _TYPE.itemsize for first in accumulate(counts)]
+    names: dict[str, Any] = {
+        "seen": None,
+        "write_setting": partial(_struct(setting).pack_into, memory, 0),
+        "pack": _struct(sum(lists)).pack_into,
+        "memory": memory,
+        "first": firsts[0],
+        "answer_it": answer_it,
+        "unpack": _struct(size).unpack_from,
+        "answer": answer.cast("B"),
+    }
+    for number, (first, count) in enumerate(zip(firsts, lists, strict=False)):
+        names[f"write_{number}"] = partial(_struct(count).pack_into, memory, first)
+    exec(_code(tuple(lists)), names)
+    return names["ask"]
+
+
+@cache
+def _code(counts: tuple[int, ...]) -> CodeType:
+    """What defines `ask` for lists of so many numbers."""
+    lists = [f"list_{number}" for number in range(len(counts))]
+    if sum(counts) > _MOST_ITEMS:
+        writing = [f"write_{number}(*list_{number})" for number in range(len(counts))]
+    else:
+        items = [[f"item_{number}_{k}" for k in range(count)] for number, count in enumerate(counts)]
+        writing = [f"[{', '.join(own)}] = {given}" for own, given in zip(items, lists, strict=True)]
+        writing.append(f"pack(memory, first, {', '.join(name for own in items for name in own)})")
+    source = _SOURCE.format(lists=", ".join(lists), writing="; ".join(writing))
+    return compile(source, f"<a question of {counts} numbers>", "exec")
+
+
+def _struct(count: int) -> Struct:
+    return Struct(f"{count}{_TYPE.char}")

@@ -1,0 +1,25 @@
+"""A Minitaur with a duck on its back."""
+
+from __future__ import annotations
+
+import os
+
+from pybullet_envs.bullet.minitaur_gym_env import MinitaurBulletEnv
+
+duckStartPos = (0.0, 0.0, 0.25)
+duckStartOrn = (0.5, 0.5, 0.5, 0.5)
+
+
+class MinitaurBulletDuckEnv(MinitaurBulletEnv):
+    """As `MinitaurBulletEnv`; an episode also ends when the duck touches the ground."""
+
+    def _load_things(self) -> None:
+        file = os.path.join(self._urdf_root, "duck_vhacd.urdf")
+        self._duckId = self._p.loadURDF(file, duckStartPos, duckStartOrn)
+
+    def lost_duck(self) -> bool:
+        """Whether the duck touches the ground."""
+        return len(self._p.getContactPoints(self._duckId, self._ground_id)) > 0
+
+    def _termination(self) -> bool:
+        return self.lost_duck() or super()._termination()

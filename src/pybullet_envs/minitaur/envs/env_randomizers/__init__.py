@@ -1,0 +1,1 @@
+"""What makes Minitaurs differ, pushes them, and puts blocks in their way."""

@@ -1,0 +1,33 @@
+"""Minitaurs that differ in mass, battery, damping and grip."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pybullet_envs.bullet import minitaur_env_randomizer
+from pybullet_envs.bullet.minitaur_env_randomizer import (
+    BATTERY_VOLTAGE_RANGE,
+    MINITAUR_BASE_MASS_ERROR_RANGE,
+    MINITAUR_LEG_FRICTION,
+    MINITAUR_LEG_MASS_ERROR_RANGE,
+    MOTOR_VISCOUS_DAMPING_RANGE,
+)
+from pybullet_envs.minitaur.envs.env_randomizer_base import EnvRandomizerBase
+
+__all__ = [
+    "BATTERY_VOLTAGE_RANGE",
+    "MINITAUR_BASE_MASS_ERROR_RANGE",
+    "MINITAUR_LEG_FRICTION",
+    "MINITAUR_LEG_MASS_ERROR_RANGE",
+    "MOTOR_VISCOUS_DAMPING_RANGE",
+    "MinitaurEnvRandomizer",
+]
+
+
+class MinitaurEnvRandomizer(minitaur_env_randomizer.MinitaurEnvRandomizer, EnvRandomizerBase):
+    """Changes a `MinitaurGymEnv`: all of the chassis by the same share, each link of the legs by its own."""
+
+    def _draw_base_mass(self, robot: Any, share: float) -> None:
+        robot.SetBaseMasses(np.multiply(share, robot.GetBaseMassesFromURDF()))

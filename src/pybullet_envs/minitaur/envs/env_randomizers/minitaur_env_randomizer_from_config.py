@@ -1,0 +1,72 @@
+"""Minitaurs that differ in what a configuration lists."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from pybullet_envs.minitaur.envs.env_randomizer_base import EnvRandomizerBase
+from pybullet_envs.minitaur.envs.env_randomizers import minitaur_env_randomizer_config
+
+SIMULATION_TIME_STEP = 0.001
+
+Draw = Callable[..., Any]
+"""Draws one number, or as many as asked for."""
+
+
+class MinitaurEnvRandomizerFromConfig(EnvRandomizerBase):
+    """Changes a `MinitaurGymEnv` at each `reset`."""
+
+    def __init__(self, config: str | None = None) -> None:
+        """Makes one.
+
+        Args:
+            config: The name of a function of `minitaur_env_randomizer_config`; `all_params` where not given.
+
+        Raises:
+            ValueError: There is none, or it lists what cannot be drawn.
+        """
+        ranges_of: Any = getattr(minitaur_env_randomizer_config, config or "all_params", None)
+        if not isinstance(ranges_of, FunctionType):
+            raise ValueError(f"Config {config} is not found.")
+        self._ranges: dict[str, tuple[float, float]] = ranges_of()
+        if unknown := self._ranges.keys() - _CHANGES.keys():
+            raise ValueError(f"Config {config} has {sorted(unknown)}, of which nothing is known.")
+
+    def randomize_env(self, env: Any) -> None:
+        """Draws all that the configuration lists."""
+        for name, (low, high) in self._ranges.items():
+
+            def draw(count: int | None = None, low: float = low, high: float = high) -> Any:
+                return env.np_random.uniform(low, high, count)
+
+            _CHANGES[name](env, draw)
+
+
+def _masses(env: Any, draw: Draw) -> None:
+    robot = env.minitaur
+    robot.SetBaseMasses(np.multiply(draw(), robot.GetBaseMassesFromURDF()))
+    robot.SetLegMasses(np.multiply(draw(), robot.GetLegMassesFromURDF()))
+
+
+def _inertias(env: Any, draw: Draw) -> None:
+    robot = env.minitaur
+    robot.SetBaseInertias(np.multiply(draw(), robot.GetBaseInertiasFromURDF()))
+    robot.SetLegInertias(np.multiply(draw(), robot.GetLegInertiasFromURDF()))
+
+
+_CHANGES: dict[str, Callable[[Any, Draw], None]] = {
+    "mass": _masses,
+    "inertia": _inertias,
+    "motor strength": lambda env, draw: env.minitaur.SetMotorStrengthRatios(draw(env.minitaur.num_motors)),
+    "motor friction": lambda env, draw: env.minitaur.SetMotorViscousDamping(draw()),
+    "control step": lambda env, draw: env.set_time_step(draw(), SIMULATION_TIME_STEP),
+    "latency": lambda env, draw: env.minitaur.SetControlLatency(draw()),
+    "lateral friction": lambda env, draw: env.minitaur.SetFootFriction(draw()),
+    "restitution": lambda env, draw: env.minitaur.SetFootRestitution(draw()),
+    "battery": lambda env, draw: env.minitaur.SetBatteryVoltage(draw()),
+    "joint friction": lambda env, draw: env.minitaur.SetJointFriction(draw(env.minitaur.GetNumKneeJoints())),
+}

@@ -1,0 +1,71 @@
+"""A Minitaur that walks without any gait given."""
+
+from __future__ import annotations
+
+from pybullet_envs.minitaur.envs.leg_pose_env import LegPoseEnv
+from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, Randomizers
+
+INIT_EXTENSION_POS = 2.0
+INIT_SWING_POS = 0.0
+_MOST_ACTION = 0.5
+
+
+class MinitaurReactiveEnv(LegPoseEnv):
+    """A Minitaur is to come far along x, by what it does with its legs.
+
+    Observation: roll, pitch [rad], their rates [rad/s], and the angles of the motors [rad]. Action: swing of
+    each leg and then its extension, added to those of a stand, up to 0.5 rad. Reward: as `MinitaurGymEnv`. An
+    episode ends when the robot leans by more than 0.3 rad.
+    """
+
+    metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 166}  # noqa: RUF012  # as Gymnasium has it
+
+    def __init__(
+        self,
+        urdf_version: str | None = None,
+        energy_weight: float = 0.005,
+        control_time_step: float = 0.006,
+        action_repeat: int = 6,
+        control_latency: float = 0.02,
+        pd_latency: float = 0.003,
+        on_rack: bool = False,
+        motor_kp: float = 1.0,
+        motor_kd: float = 0.015,
+        remove_default_joint_damping: bool = True,
+        render: bool = False,
+        num_steps_to_log: int = 1000,
+        accurate_motor_model_enabled: bool = True,
+        use_angle_in_observation: bool = True,
+        hard_reset: bool = False,
+        env_randomizer: Randomizers = None,
+        log_path: str | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        """Makes the environment; see `MinitaurGymEnv` for the arguments that have the same names.
+
+        `use_angle_in_observation` says whether the angles of the motors are observed.
+        """
+        super().__init__(
+            actions=NUM_MOTORS,
+            bound=_MOST_ACTION,
+            init_swing=INIT_SWING_POS,
+            init_extension=INIT_EXTENSION_POS,
+            tells_angles=use_angle_in_observation,
+            urdf_version=urdf_version,
+            energy_weight=energy_weight,
+            control_time_step=control_time_step,
+            action_repeat=action_repeat,
+            control_latency=control_latency,
+            pd_latency=pd_latency,
+            on_rack=on_rack,
+            motor_kp=motor_kp,
+            motor_kd=motor_kd,
+            remove_default_joint_damping=remove_default_joint_damping,
+            render=render,
+            num_steps_to_log=num_steps_to_log,
+            accurate_motor_model_enabled=accurate_motor_model_enabled,
+            hard_reset=hard_reset,
+            env_randomizer=env_randomizer,
+            log_path=log_path,
+            render_mode=render_mode,
+        )

@@ -1,0 +1,92 @@
+"""A Minitaur that trots."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from pybullet_envs.minitaur.envs.leg_pose_env import NUM_LEGS, LegPoseEnv
+from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, Randomizers
+
+_MOST_ACTION = 0.25
+# The legs at opposite corners move together.
+_PHASES = np.array((0.0, pi, pi, 0.0))
+
+
+class MinitaurTrottingEnv(LegPoseEnv):
+    """A Minitaur's feet go round in ellipses; it is to keep its balance and come far along x.
+
+    Observation: roll, pitch [rad] and their rates [rad/s]; angles of the motors, as they are to be by the
+    gait and as they are, if wished. Action: swing of each leg and then its extension, added to those of the
+    gait, up to 0.25 rad. Reward: as `MinitaurGymEnv`. An episode ends when the robot leans by more than 0.3
+    rad.
+    """
+
+    metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 166}  # noqa: RUF012  # as Gymnasium has it
+
+    def __init__(
+        self,
+        urdf_version: str | None = None,
+        control_time_step: float = 0.006,
+        action_repeat: int = 6,
+        control_latency: float = 0.02,
+        pd_latency: float = 0.003,
+        on_rack: bool = False,
+        motor_kp: float = 1.0,
+        motor_kd: float = 0.015,
+        remove_default_joint_damping: bool = True,
+        render: bool = False,
+        num_steps_to_log: int = 1000,
+        accurate_motor_model_enabled: bool = True,
+        use_signal_in_observation: bool = False,
+        use_angle_in_observation: bool = False,
+        hard_reset: bool = False,
+        env_randomizer: Randomizers = None,
+        log_path: str | None = None,
+        init_extension: float = 2.0,
+        init_swing: float = 0.0,
+        step_frequency: float = 2.0,
+        extension_amplitude: float = 0.35,
+        swing_amplitude: float = 0.3,
+        render_mode: str | None = None,
+    ) -> None:
+        """Makes the environment; see `MinitaurGymEnv` for the arguments that have the same names.
+
+        `use_signal_in_observation` says whether the angles of the motors are observed that the gait wants,
+        `use_angle_in_observation` whether those are that they have. In the middle of the gait legs have
+        `init_swing` and `init_extension` [rad]; the gait has the `step_frequency` [1/s] and takes them up to
+        `swing_amplitude` and `extension_amplitude` [rad] from there.
+        """
+        self._step_frequency = step_frequency
+        self._extension_amplitude = extension_amplitude
+        self._swing_amplitude = swing_amplitude
+        super().__init__(
+            actions=NUM_MOTORS,
+            bound=_MOST_ACTION,
+            init_swing=init_swing,
+            init_extension=init_extension,
+            tells_signal=use_signal_in_observation,
+            tells_angles=use_angle_in_observation,
+            urdf_version=urdf_version,
+            control_time_step=control_time_step,
+            action_repeat=action_repeat,
+            control_latency=control_latency,
+            pd_latency=pd_latency,
+            on_rack=on_rack,
+            motor_kp=motor_kp,
+            motor_kd=motor_kd,
+            remove_default_joint_damping=remove_default_joint_damping,
+            render=render,
+            num_steps_to_log=num_steps_to_log,
+            accurate_motor_model_enabled=accurate_motor_model_enabled,
+            hard_reset=hard_reset,
+            env_randomizer=env_randomizer,
+            log_path=log_path,
+            render_mode=render_mode,
+        )
+
+    def _signal(self, t: float) -> np.ndarray:
+        turned = 2 * pi * self._step_frequency * t + _PHASES
+        gait = (self._swing_amplitude * np.sin(turned), self._extension_amplitude * np.cos(turned))
+        return self._init_pose + np.reshape(gait, 2 * NUM_LEGS)

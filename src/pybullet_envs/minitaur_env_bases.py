@@ -1,0 +1,231 @@
+"""What all environments of the Minitaur share: flat ground, commands for legs, falls, and what they tell."""
+
+from __future__ import annotations
+
+import os
+import time
+from abc import abstractmethod
+from math import hypot, inf
+from typing import Any, Generic, TypeVar
+
+import gymnasium
+import numpy as np
+
+import pybullet
+import pybullet_data
+from pybullet_envs.env_bases import BulletEnv, Place
+from pybullet_envs.minitaur_bases import MinitaurBody
+
+ACTION_EPS = 0.01
+OBSERVATION_EPS = 0.01
+_UPRIGHT = 0.85
+_LOWEST = 0.13
+
+RobotT = TypeVar("RobotT", bound=MinitaurBody)
+Step = tuple[np.ndarray, float, bool, bool, dict[str, Any]]
+
+
+class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
+    """A Minitaur on flat ground that is rewarded for its way forward, and charged for what it spends.
+
+    Its first episode begins at the first `reset`, or when something is done that needs one: in PyBullet it
+    has begun when the environment is made, and scripts go on from there.
+    """
+
+    _camera = (1.0, 0.0, -30.0)
+    _action_bound = 1.0
+
+    def __init__(
+        self,
+        urdf_root: str | None,
+        time_step: float,
+        action_repeat: int,
+        solver_iterations: int,
+        distance_limit: float,
+        leg_model_enabled: bool,
+        hard_reset: bool,
+        render: bool,
+        render_mode: str | None,
+    ) -> None:
+        """Notes what the environment is like.
+
+        Args:
+            urdf_root: The folder of the files; that of `pybullet_data` where not given.
+            time_step: Of the simulation [s].
+            action_repeat: Steps of the simulation for each of the environment.
+            solver_iterations: Of the engine, in each step.
+            distance_limit: How far away from its start the robot may walk [m].
+            leg_model_enabled: Whether actions say how legs swing and stretch, or where motors go.
+            hard_reset: Whether each `reset` loads everything anew.
+            render: Whether to open a window.
+            render_mode: `human`, `rgb_array` or none.
+        """
+        super().__init__(render, render_mode)
+        self._urdf_root = pybullet_data.getDataPath() if urdf_root is None else urdf_root
+        self._time_step = time_step
+        self._action_repeat = action_repeat
+        self._solver_iterations = solver_iterations
+        self._distance_limit = distance_limit
+        self._leg_model_enabled = leg_model_enabled
+        self._hard_reset = hard_reset
+        self._minitaur: RobotT | None = None
+        self._ground_id = -1
+        self._loaded_bodies: set[int] = set()
+        self._loaded_state = -1
+        self._env_step_counter = 0
+        self._last_base_position: Place = (0.0, 0.0, 0.0)
+        self._objectives: list[list[float]] = []
+        self._observation = np.zeros(0)
+        self._last_frame_time = 0.0
+
+    def _set_spaces(self, actions: int, bound: float, most: np.ndarray) -> None:
+        """Makes the spaces: of so many numbers up to a bound, and of observations up to `most`."""
+        self.action_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Box(
+            -bound, bound, (actions,), np.float32
+        )
+        high = np.asarray(most + OBSERVATION_EPS, np.float32)
+        self.observation_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Box(
+            -high, high, dtype=np.float32
+        )
+
+    @property
+    def minitaur(self) -> RobotT:
+        """The robot."""
+        self._begin_if_needed()
+        assert self._minitaur is not None
+        return self._minitaur
+
+    def _begin_if_needed(self) -> None:
+        if self._minitaur is None:
+            self.reset()
+
+    def close(self) -> None:
+        """Ends the world; a new one is made when it is needed."""
+        self._minitaur = None
+        super().close()
+
+    def _load_world(self) -> None:
+        """Loads the ground and the robot into an empty world."""
+        bullet = self._p
+        bullet.resetSimulation()
+        bullet.setPhysicsEngineParameter(numSolverIterations=self._solver_iterations)
+        bullet.setTimeStep(self._time_step)
+        self._ground_id = bullet.loadURDF(os.path.join(self._urdf_root, "plane.urdf"))
+        self._load_things()
+        bullet.setGravity(0, 0, -10)
+        self._minitaur = self._load_minitaur()
+        self._loaded_bodies = self._bodies()
+        self._loaded_state = bullet.saveState()
+
+    def _load_things(self) -> None:
+        """Loads what else there is, before the robot."""
+
+    @abstractmethod
+    def _load_minitaur(self) -> RobotT:
+        """Loads the robot."""
+
+    def _renew_world(self) -> None:
+        """Loads everything, or puts it back to where it was loaded, to the last digit.
+
+        What was added to the world since is taken away. Where something is gone, all is loaded.
+        """
+        if self._connect() or self._hard_reset or not self._loaded_bodies <= self._bodies():
+            self._load_world()
+            return
+        for body in self._bodies() - self._loaded_bodies:
+            self._p.removeBody(body)
+        self._p.restoreState(self._loaded_state)
+        self.minitaur.Reset(reload_urdf=False)
+
+    def _bodies(self) -> set[int]:
+        return {self._p.getBodyUniqueId(number) for number in range(self._p.getNumBodies())}
+
+    def _begin_episode(self) -> None:
+        self._env_step_counter = 0
+        self._last_base_position = (0.0, 0.0, 0.0)
+        self._objectives = []
+        if self.render_mode == "human":
+            self._p.resetDebugVisualizerCamera(*self._camera, [0, 0, 0])
+
+    def _pace(self) -> None:
+        """With a window, waits for the real time to come, and lets the camera follow."""
+        if self.render_mode != "human":
+            return
+        since = time.time() - self._last_frame_time
+        time.sleep(max(0.0, self._action_repeat * self._time_step - since))
+        self._last_frame_time = time.time()
+        yaw, pitch, distance = self._p.getDebugVisualizerCamera()[8:11]
+        self._p.resetDebugVisualizerCamera(distance, yaw, pitch, self.minitaur.GetBasePosition())
+
+    def _checked(self, action: Any) -> np.ndarray:
+        """The action as numbers that nobody else changes.
+
+        Raises:
+            ValueError: There are more or fewer than expected, or one is not finite.
+        """
+        values = np.array(action, dtype=float)
+        if values.shape != self.action_space.shape:
+            raise ValueError(f"the action has shape {values.shape}, not {self.action_space.shape}")
+        if not np.isfinite(values).all():
+            raise ValueError(f"the action {action!r} has a number that is not finite")
+        return values
+
+    def _check_bounds(self, action: np.ndarray) -> None:
+        """Refuses actions for legs that are out of bounds.
+
+        Raises:
+            ValueError: One is greater than 1, or less than -1.
+        """
+        for number, value in enumerate(action):
+            if abs(value) > self._action_bound + ACTION_EPS:
+                raise ValueError(f"{number}th action {value} out of bounds.")
+
+    def _transform_action_to_motor_command(self, action: np.ndarray) -> np.ndarray:
+        """Commands for the motors, of an action."""
+        if not self._leg_model_enabled:
+            return action
+        self._check_bounds(action)
+        return self.minitaur.ConvertFromLegModel(action)
+
+    def _looked_at(self) -> Place:
+        return self.minitaur.GetBasePosition()
+
+    def _up(self) -> np.ndarray:
+        """The vertical as the robot sees it, (3,)."""
+        orientation = self.minitaur.GetBaseOrientation()
+        return np.array(pybullet.getMatrixFromQuaternion(orientation)[6:])
+
+    def is_fallen(self) -> bool:
+        """Whether the base leans by more than 32 degrees, or is less than 13 cm high."""
+        return bool(self._up()[2] < _UPRIGHT or self.minitaur.GetBasePosition()[2] < _LOWEST)
+
+    def _termination(self) -> bool:
+        if self._distance_limit < inf:
+            x, y, _ = self.minitaur.GetBasePosition()
+            if hypot(x, y) > self._distance_limit:
+                return True
+        return self.is_fallen()
+
+    def _motor_power(self) -> float:
+        """What all motors together take or give [W]."""
+        return abs(float(np.dot(self.minitaur.GetMotorTorques(), self.minitaur.GetMotorVelocities())))
+
+    def get_objectives(self) -> list[list[float]]:
+        """What was rewarded in each step of the episode: the way forward, energy, drift and shaking."""
+        return self._objectives
+
+    def get_minitaur_motor_angles(self) -> np.ndarray:
+        """Angles of the motors, as last observed [rad], (8,)."""
+        return self._observation[:8]
+
+    def get_minitaur_motor_velocities(self) -> np.ndarray:
+        """Velocities of the motors, as last observed [rad/s], (8,)."""
+        return self._observation[8:16]
+
+    def get_minitaur_motor_torques(self) -> np.ndarray:
+        """Torques of the motors, as last observed [N m], (8,)."""
+        return self._observation[16:24]
+
+    def get_minitaur_base_orientation(self) -> np.ndarray:
+        """Orientation of the base, as last observed (x, y, z, w)."""
+        return self._observation[24:]
