@@ -137,7 +137,7 @@ def _view(options: argparse.Namespace) -> None:
 
 
 def _convert(options: argparse.Namespace) -> None:
-    from carom.formats.convert import convert
+    from carom.convert import convert
 
     convert(options.input, options.output, options.model)
 

@@ -293,3 +293,5 @@ def resetBaseVelocity(
         with client.lock:
             present_linear, present_angular = client.bodies[body.id].base_velocity()
             body.set_base_velocity(linear or present_linear, angular or present_angular)
+            # PyBullet's getLinkState is up to date from here on.
+            body.update_link_poses()

@@ -40,7 +40,7 @@ def performCollisionDetection(physicsClientId: int = 0) -> None:
         True
     """
     client = client_of(physicsClientId)
-    with client.lock:
+    with client.lock, client.world.present_poses():
         client.world.detect_collisions()
 
 

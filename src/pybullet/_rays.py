@@ -20,7 +20,7 @@ from pybullet._errors import fail
 
 if TYPE_CHECKING:
     from carom.ray_cast import RayHit
-    from carom.world import World
+    from pybullet._clients import Client
 
 __all__ = ["rayTest", "rayTestBatch"]
 
@@ -107,7 +107,7 @@ def rayTestBatch(
         >>> [hit[0] for hit in hits]
         [2, -1]
     """
-    world = client_of(physicsClientId).world
+    client = client_of(physicsClientId)
     if rayFromPositions is None or rayToPositions is None:
         fail(_NO_POSITIONS)
     starts = _points(rayFromPositions, "rayFromPositions")
@@ -123,7 +123,7 @@ def rayTestBatch(
     if not len(starts):
         return ()
     frame = _frame_of(
-        world,
+        client,
         integer(parentObjectUniqueId, "parentObjectUniqueId"),
         integer(parentLinkIndex, "parentLinkIndex"),
     )
@@ -131,7 +131,7 @@ def rayTestBatch(
         rotation = np.array(rotation_matrix(frame.orientation))
         starts = starts @ rotation.T + frame.position
         ends = ends @ rotation.T + frame.position
-    return world.queries().cast_rays(
+    return client.world.queries().cast_rays(
         starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
     )
 
@@ -153,11 +153,12 @@ def _points(values: Any, name: str) -> np.ndarray:
     return points
 
 
-def _frame_of(world: World, body_id: int, link: int) -> Pose | None:
-    """The frame rays are given in; None for that of the world, which also stands for unknown bodies."""
-    body = world.bodies.get(body_id)
+def _frame_of(client: Client, body_id: int, link: int) -> Pose | None:
+    """The frame rays are given in; None for that of the world, which also stands for unknown bodies.
+
+    As in PyBullet it is where `getLinkState` says, after a step at the start of its last substep.
+    """
+    body = client.world.bodies.get(body_id)
     if body is None or not _BASE <= link < body.joint_count:
         return None
-    body.update_link_poses()
-    px, py, pz, qx, qy, qz, qw = world.link_pose[body.first_link + 1 + link].tolist()
-    return Pose((px, py, pz), (qx, qy, qz, qw))
+    return Pose(*client.bodies[body_id].inertial_frame(link))

@@ -136,7 +136,7 @@ class UrdfEditor:
         links, joints = set(self.linkNameToIndex), {joint.joint_name for joint in self.urdfJoints}
         names = {link.link_name: _unused(link.link_name, links) for link in childEditor.urdfLinks}
         new = UrdfJoint()
-        new.joint_name = _unused("joint_" + names[base.link_name], joints)
+        new.joint_name = _unused("joint_dummy1", joints)
         new.joint_type = p.JOINT_REVOLUTE
         new.joint_axis_xyz = (0.0, 0.0, 1.0)
         new.joint_origin_xyz = tuple(jointPivotXYZInParent)

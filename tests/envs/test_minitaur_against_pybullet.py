@@ -11,6 +11,9 @@ import pytest
 from tests.envs.record import EvenChance
 from tests.envs.record_minitaur import KINDS, RECORD, STEPS, action, kind_of
 
+from pybullet_envs.bullet import MinitaurBulletEnv
+from pybullet_envs.minitaur.envs import MinitaurTrottingEnv
+
 RECORDED = json.loads(RECORD.read_text())
 MOVING = slice(8, 24)
 
@@ -49,3 +52,27 @@ def test_as_many_steps_are_recorded_as_are_compared() -> None:
     assert all(
         len(episode) == STEPS + 1 for recorded in RECORDED.values() for episode in recorded["episodes"]
     )
+
+
+def gait(step: int) -> np.ndarray:
+    """Legs at opposite corners move together."""
+    wave = np.sin(0.2 * step)
+    return wave * np.array((0.4, -0.4, -0.4, 0.4, 0.5, -0.5, -0.5, 0.5))
+
+
+def test_it_walks_as_far_as_in_pybullet() -> None:
+    env = MinitaurBulletEnv(env_randomizer=None, motor_kp=1.2)
+    env.reset(seed=1)
+    total = sum(env.step(gait(step))[1] for step in range(200))
+    assert env.minitaur.GetBasePosition() == pytest.approx((0.9514, 0.0687, 0.1998), abs=0.02)
+    assert total == pytest.approx(0.8924, abs=0.02)
+    env.close()
+
+
+def test_it_trots_as_far_as_in_pybullet() -> None:
+    env = MinitaurTrottingEnv()
+    env.reset(seed=1)
+    for _ in range(200):
+        assert not env.step(np.zeros(8))[2]
+    assert env.minitaur.GetBasePosition() == pytest.approx((0.3725, -0.0021, 0.2161), abs=0.02)
+    env.close()

@@ -14,13 +14,16 @@ from scene_cases import DATA
 from test_scenes_against_oracle import differences
 
 from carom.cli import main
+from carom.convert import convert
 from carom.description import Link, Pose, Robot, Visual
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
 from carom.formats import read_urdf
 from carom.formats.mjcf import read_mjcf
 from carom.formats.sdf import read_sdf
+from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import roll_pitch_yaw, urdf_text
+from carom.loading import mjcf_bodies, urdf_body
 from carom.model.assemble import assemble
 from carom.model.flags import LoadFlags
 
@@ -126,6 +129,19 @@ def test_the_command_converts(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert main(["convert", "nowhere.sdf", str(target)]) == 1
     assert main(["convert", "robot.step", str(target)]) == 1
     assert "'.step' are not known" in capsys.readouterr().err
+
+
+def test_links_of_mjcf_files_keep_the_moments_of_their_geoms(tmp_path: Path) -> None:
+    source, target = DATA / "mjcf" / "walker.xml", tmp_path / "walker.urdf"
+    convert(source, target, "torso")
+    search = AssetSearch()
+    (walker,) = [body for body, _ in mjcf_bodies(source, search, flags=0) if body.base.name == "torso"]
+    flags = LoadFlags.USE_INERTIA_FROM_FILE
+    written = urdf_body(target, search, scale=1.0, flags=flags, fixed_base=False)
+    expected = {link.name: sorted(link.inertia) for link in (walker.base, *walker.links)}
+    assert any(sum(moments) > 0.0 for moments in expected.values())
+    for link in (written.base, *written.links):
+        assert sorted(link.inertia) == pytest.approx(expected[link.name], rel=1e-6)
 
 
 def test_meshes_are_named_as_seen_from_the_file(tmp_path: Path) -> None:

@@ -258,3 +258,39 @@ def test_a_mask_of_rays_counts_when_it_changes(things):
     p.setCollisionFilterGroupMask(box, -1, 2, 1)
     assert p.rayTest([0, 0, 9], [0, 0, 0.9], collisionFilterMask=1)[0][0] == -1
     assert p.rayTest([0, 0, 9], [0, 0, 0.9], collisionFilterMask=2)[0][0] == box
+
+
+@pytest.mark.parametrize(
+    ("call", "brings_up_to_date"),
+    [
+        (lambda body: p.rayTest([0, 0, 5], [0, 0, 0]), False),
+        (lambda body: p.rayTestBatch([[0, 0, 5]], [[0, 0, 0]], 1, body, 0), False),
+        (lambda body: p.getClosestPoints(body, body, 1), False),
+        (lambda body: p.performCollisionDetection(), False),
+        (lambda body: p.getCameraImage(4, 4), False),
+        (lambda body: p.resetJointState(body, 0, 0), True),
+        (lambda body: p.resetBaseVelocity(body, [0, 0, 0]), True),
+        (lambda body: p.getLinkState(body, 0, computeForwardKinematics=1), True),
+    ],
+)
+def test_which_calls_bring_links_up_to_date_after_a_step(client, tmp_path, call, brings_up_to_date) -> None:
+    (tmp_path / "two.urdf").write_text(TWO_LINKS)
+    body = p.loadURDF(str(tmp_path / "two.urdf"), [0, 0, 9])
+    p.setGravity(0, 0, -10)
+    for _ in range(10):
+        p.stepSimulation()
+    before = p.getLinkState(body, 0)[4][2]
+    call(body)
+    assert (p.getLinkState(body, 0)[4][2] < before - 1e-4) == brings_up_to_date
+
+
+def test_rays_of_a_link_start_where_it_was_at_the_start_of_the_last_substep(client, tmp_path) -> None:
+    (tmp_path / "two.urdf").write_text(TWO_LINKS)
+    body = p.loadURDF(str(tmp_path / "two.urdf"), [0, 0, 9])
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 9, 99]), basePosition=[5, 0, 0])
+    p.resetBaseVelocity(body, [0, 0, -24])
+    p.stepSimulation()
+    (hit,) = p.rayTestBatch([[0, -1, 0]], [[0, -9, 0]], 1, body, 0)
+    assert hit[3][2] == pytest.approx(p.getLinkState(body, 0)[0][2])
+    (hit,) = p.rayTestBatch([[0, -1, 0]], [[0, -9, 0]], 1, body, -1)
+    assert hit[3][2] == pytest.approx(p.getBasePositionAndOrientation(body)[0][2])

@@ -30,7 +30,6 @@ MEANT: dict[tuple[str, str, str], str] = {
     ("getDebugVisualizerCamera", "not connected", "*"): "PyBullet does not look at the arguments",
     ("loadMJCF", "*", "body 6 link 2 shapes"): _GARBAGE,
     ("loadURDF", "flag 256", "later body 6 joint *"): "global velocities lose digits in PyBullet",
-    ("performCollisionDetection", "*", "* bounds"): _BOUNDS,
     ("getLinkState*", "*", "* bounds"): _BOUNDS,
     ("restoreState", "*", "* bounds"): _BOUNDS,
     (

@@ -11,6 +11,8 @@ from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
 
+MJCF_SUFFIXES = (".xml", ".mjcf")
+
 
 def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[PlacedRobot]:
     """All robots of a file, and where it puts them.
@@ -25,7 +27,7 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
     match source.suffix.lower():
         case ".sdf" | ".world":
             return read_sdf(source)
-        case ".xml" | ".mjcf":
+        case suffix if suffix in MJCF_SUFFIXES:
             return read_mjcf(source, colours=True)
         case ".urdf":
             return [PlacedRobot(read_urdf(source, search=search))]

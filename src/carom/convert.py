@@ -6,17 +6,22 @@ from dataclasses import replace
 from pathlib import Path
 
 from carom.description import Robot
+from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.any_file import read_robots
+from carom.formats.any_file import MJCF_SUFFIXES, read_robots
 from carom.formats.placed import PlacedRobot
 from carom.formats.urdf_writer import urdf_text
+from carom.model.assemble import assemble
+from carom.model.flags import LoadFlags
+from carom.model.mjcf_inertia import set_mjcf_inertias
 
 
 def convert(source: Path, target: Path, model: str | None = None) -> None:
     """Writes a robot as URDF. Where the file puts it in the world is lost.
 
     A robot that the file nails to the world gets a base without mass, which PyBullet and Carom do not
-    move. Meshes are not copied.
+    move. Links without moments of inertia, such as those of MJCF files, get those they have here, which are
+    found from their collision shapes. Meshes are not copied.
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
@@ -27,8 +32,33 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
         DescriptionError: The source cannot be used or holds no such robot, or URDF cannot say what is in it.
         OSError: The target cannot be written.
     """
-    text = urdf_text(_chosen(source, read_robots(source), model), target.absolute().parent)
-    target.write_text(text, encoding="utf-8")
+    robot = _with_moments(
+        _chosen(source, read_robots(source), model), is_mjcf=source.suffix.lower() in MJCF_SUFFIXES
+    )
+    target.write_text(urdf_text(robot, target.absolute().parent), encoding="utf-8")
+
+
+def _with_moments(robot: Robot, *, is_mjcf: bool) -> Robot:
+    """The robot with moments of inertia for each link that has mass and none of its own."""
+    without = {link.name for link in robot.links if link.inertial.mass and not any(link.inertial.tensor)}
+    if not without:
+        return robot
+    body = assemble(robot, flags=LoadFlags.USE_IMPLICIT_CYLINDER if is_mjcf else LoadFlags.NONE)
+    if is_mjcf:
+        set_mjcf_inertias(body)
+    found = {link.name: link.inertia for link in (body.base, *body.links) if link.name in without}
+    links = [
+        replace(link, inertial=replace(link.inertial, tensor=_diagonal(found[link.name])))
+        if link.name in found
+        else link
+        for link in robot.links
+    ]
+    return replace(robot, links=tuple(links))
+
+
+def _diagonal(moments: Vector3) -> tuple[float, float, float, float, float, float]:
+    x, y, z = moments
+    return (x, 0.0, 0.0, y, 0.0, z)
 
 
 def _chosen(source: Path, placed: list[PlacedRobot], model: str | None) -> Robot:
