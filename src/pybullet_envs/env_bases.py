@@ -68,6 +68,96 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
             self._p = None
 
 
+class Camera:
+    """What the viewer's camera looks at."""
+
+    def __init__(self, env: MJCFBaseBulletEnv) -> None:
+        self.env = env
+
+    def move_and_look_at(self, i: float, j: float, k: float, x: float, y: float, z: float) -> None:
+        """Looks at (x, y, z) [m] from as far and in the same direction as before."""
+        seen = self.env._p.getDebugVisualizerCamera()
+        self.env._p.resetDebugVisualizerCamera(seen[10], seen[8], seen[9], [x, y, z])
+
+
+class MJCFBaseBulletEnv(BulletEnv):
+    """An environment of a robot in a scene; subclasses have `create_single_player_scene` and `step`.
+
+    Attributes:
+        robot: The robot.
+        scene: Where it is, from the first `reset` on.
+        camera: That of the viewer.
+        potential: What the last step came to, as the robot's `calc_potential` has it.
+        rewards: The parts of the last reward.
+        restores: Whether the world is put back into the state of the first episode before each other one.
+    """
+
+    restores = False
+    rewards: list[float]
+    potential: float
+
+    def __init__(self, robot: Any, render: bool = False, render_mode: str | None = None) -> None:
+        """Makes an environment.
+
+        Args:
+            robot: The robot, a `pybullet_envs.robot_bases.XmlBasedRobot`.
+            render: Whether to open a window, as `render_mode="human"` does.
+            render_mode: `human`, `rgb_array` or none.
+        """
+        super().__init__(render, render_mode)
+        self.robot = robot
+        self.scene: Any = None
+        self.stateId = -1
+        self.camera = Camera(self)
+        self.action_space = robot.action_space
+        self.observation_space = robot.observation_space
+
+    def create_single_player_scene(self, bullet_client: Any) -> Any:
+        """The scene, a `pybullet_envs.scene_abstract.Scene`."""
+        raise NotImplementedError(f"{type(self).__name__} has no create_single_player_scene")
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begins an episode."""
+        super().reset(seed=seed)
+        if self._connect():
+            self._p.setPhysicsEngineParameter(deterministicOverlappingPairs=1)
+        elif self.stateId >= 0:
+            self._p.restoreState(self.stateId)
+        if self.scene is None:
+            self.scene = self.create_single_player_scene(self._p)
+        self.scene.episode_restart(self._p)
+        self.robot.scene = self.scene
+        self.robot.np_random = self.np_random
+        self._scene_is_set()
+        state = self.robot.reset(self._p)
+        self.potential = self.robot.calc_potential()
+        if self.restores and self.stateId < 0:
+            self.stateId = self._p.saveState()
+        return state, {}
+
+    def _scene_is_set(self) -> None:
+        """Comes after the scene's part of `reset` and before the robot's."""
+
+    def HUD(self, state: Any, a: Any, done: bool) -> None:
+        """Is told of every step; shows nothing."""
+
+    def camera_adjust(self) -> None:
+        """Moves the viewer's camera along, for those who want it."""
+
+    def _looked_at(self) -> Place:
+        place = getattr(self.robot, "body_real_xyz", (0.0, 0.0, 0.0))
+        return float(place[0]), float(place[1]), float(place[2])
+
+    def close(self) -> None:
+        """Ends the world; the next `reset` makes a new one."""
+        super().close()
+        self.robot.forget()
+        self.scene = None
+        self.stateId = -1
+
+
 def checked(action: Any) -> np.ndarray:
     """The action, held within -1 and 1.
 

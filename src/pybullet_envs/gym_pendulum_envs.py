@@ -2,86 +2,74 @@
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos
 from typing import Any
 
 import numpy as np
 
-from pybullet_envs.env_bases import checked
-from pybullet_envs.robot_bases import MJCFEnv
-
-_LARGEST_START = 0.1
-"""Poles begin so far from upright at most [rad]."""
+from pybullet_envs.env_bases import MJCFBaseBulletEnv
+from pybullet_envs.robot_pendula import InvertedDoublePendulum, InvertedPendulum, InvertedPendulumSwingup
+from pybullet_envs.scene_abstract import SingleRobotEmptyScene
 
 
-class InvertedPendulumBulletEnv(MJCFEnv):
-    """A pole to keep upright by pushing the cart with up to 100 N; a point for each step that it stands.
+class _CartEnv(MJCFBaseBulletEnv):
+    restores = True
 
-    Observation: position and velocity of the cart, cosine, sine and rate of the pole's angle.
-    """
+    def create_single_player_scene(self, bullet_client: Any) -> SingleRobotEmptyScene:
+        """Nothing but the cart."""
+        return SingleRobotEmptyScene(bullet_client, gravity=9.8, timestep=0.0165, frame_skip=1)
 
-    model, robot_name = "inverted_pendulum.xml", "cart"
-    observation_count, action_count = 5, 1
-    push = 100.0
-    swingup = False
+    def camera_adjust(self) -> None:
+        """Looks at the poles."""
+        self.camera.move_and_look_at(0, 1.2, 1.0, 0, 0, 0.5)
+
+
+class InvertedPendulumBulletEnv(_CartEnv):
+    """A pole to keep upright; a point for each step that it stands. See `InvertedPendulum`."""
+
     _fallen = 0.2
+    _robot = InvertedPendulum
 
-    def _place(self) -> None:
-        offset = self.np_random.uniform(-_LARGEST_START, _LARGEST_START)
-        # As PyBullet has it: half a turn to four digits.
-        self.parts.motors["hinge"].place(offset + (3.1415 if self.swingup else 0.0))
-
-    def _observe(self) -> np.ndarray:
-        position, velocity = self.parts.motors["slider"].state()
-        angle, rate = self.parts.motors["hinge"].state()
-        return np.array([position, velocity, cos(angle), sin(angle), rate], np.float32)
+    def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
+        super().__init__(self._robot(), render, render_mode)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Pushes the cart for a step."""
-        self.parts.motors["slider"].drive(self.push * checked(action)[0])
-        self._p.stepSimulation()
-        angle = self.parts.motors["hinge"].state()[0]
-        if self.swingup:
-            return self._observe(), cos(angle), False, False, {}
-        return self._observe(), 1.0, abs(angle) > self._fallen, False, {}
+        self.robot.apply_action(action)
+        self.scene.global_step()
+        state = self.robot.calc_state()
+        angle = self.robot.theta
+        self.rewards = [cos(angle) if self.robot.swingup else 1.0]
+        done = not self.robot.swingup and abs(angle) > self._fallen
+        self.HUD(state, action, done)
+        return state, sum(self.rewards), done, False, {}
 
 
 class InvertedPendulumSwingupBulletEnv(InvertedPendulumBulletEnv):
     """A pole that hangs at first; each step rewards the cosine of its angle from upright."""
 
-    swingup = True
+    _robot = InvertedPendulumSwingup
 
 
-class InvertedDoublePendulumBulletEnv(MJCFEnv):
-    """Two poles, one on the other, to keep upright by pushing the cart with up to 200 N.
+class InvertedDoublePendulumBulletEnv(_CartEnv):
+    """Two poles to keep upright, one on the other; see `InvertedDoublePendulum`.
 
-    Observation: position and velocity of the cart, where the upper pole is, and cosine, sine and rate of both
-    angles. Reward: 10 less the squared distance of the tip from its highest place.
+    Reward: 10 less the squared distance of the tip from its highest place.
     """
 
-    model, robot_name = "inverted_double_pendulum.xml", "cart"
-    observation_count, action_count = 9, 1
-    push = 200.0
     # From the centre of the upper pole to its tip, and how high the tip is to be [m].
     _to_tip, _aim, _fallen = 0.3, 2.0, 1.0
 
-    def _place(self) -> None:
-        offsets = self.np_random.uniform(-_LARGEST_START, _LARGEST_START, 2)
-        for name, offset in zip(("hinge", "hinge2"), offsets, strict=True):
-            self.parts.motors[name].place(float(offset))
-
-    def _observe(self) -> np.ndarray:
-        position, velocity = self.parts.motors["slider"].state()
-        pole = self.parts.links["pole2"].pose()[0]
-        angles = [self.parts.motors[name].state() for name in ("hinge", "hinge2")]
-        turns = [value for angle, rate in angles for value in (cos(angle), sin(angle), rate)]
-        return np.array([position, velocity, pole[0], *turns], np.float32)
+    def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
+        super().__init__(InvertedDoublePendulum(), render, render_mode)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Pushes the cart for a step."""
-        self.parts.motors["slider"].drive(self.push * checked(action)[0])
-        self._p.stepSimulation()
-        x, _, z = self.parts.links["pole2"].pose()[0]
-        tip = float(z) + self._to_tip
-        reward = 10.0 - 0.01 * float(x) ** 2 - (tip - self._aim) ** 2
-        return self._observe(), reward, tip <= self._fallen, False, {}
+        self.robot.apply_action(action)
+        self.scene.global_step()
+        state = self.robot.calc_state()
+        tip = self.robot.pos_y + self._to_tip
+        self.rewards = [10.0, -0.01 * self.robot.pos_x**2 - (tip - self._aim) ** 2]
+        done = tip <= self._fallen
+        self.HUD(state, action, done)
+        return state, sum(self.rewards), done, False, {}

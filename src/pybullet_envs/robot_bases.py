@@ -1,10 +1,9 @@
-"""Robots of MJCF files, by the names of their links and joints, and the worlds they move in."""
+"""Robots of files, by the names of their links and joints, from which environments are made."""
 
 from __future__ import annotations
 
 import os
-from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -12,190 +11,204 @@ import numpy as np
 
 import pybullet
 import pybullet_data
-from pybullet_envs.env_bases import BulletEnv
+from pybullet_envs.robot_parts import BodyPart, Joint, Pose_Helper
 
-_LOADING = (
-    pybullet.URDF_USE_SELF_COLLISION
-    | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
-    | pybullet.URDF_GOOGLEY_UNDEFINED_COLORS
-)
-_SOLVER_ITERATIONS = 5
-_CONTACT_ERP = 0.9
+__all__ = ["BodyPart", "Joint", "MJCFBasedRobot", "Pose_Helper", "URDFBasedRobot", "XmlBasedRobot"]
+
+_POWER = 100.0
+Found = tuple[dict[str, BodyPart], dict[str, Joint], list[Joint], BodyPart | None]
 
 
-@dataclass(frozen=True)
-class Part:
-    """A link; -1 is the base."""
-
-    bullet: Any
-    body: int
-    link: int
-
-    def pose(self) -> tuple[np.ndarray, np.ndarray]:
-        """Position [m] of the centre of mass, and orientation (x, y, z, w)."""
-        if self.link < 0:
-            position, orientation = self.bullet.getBasePositionAndOrientation(self.body)
-        else:
-            position, orientation = self.bullet.getLinkState(self.body, self.link)[:2]
-        return np.array(position), np.array(orientation)
-
-    def velocity(self) -> np.ndarray:
-        """Velocity [m/s] of the centre of mass."""
-        if self.link < 0:
-            return np.array(self.bullet.getBaseVelocity(self.body)[0])
-        return np.array(self.bullet.getLinkState(self.body, self.link, computeLinkVelocity=1)[6])
-
-    def touches(self, others: set[tuple[int, int]]) -> bool:
-        """Whether it has contact with one of the links, given as (body, link)."""
-        contacts = self.bullet.getContactPoints(self.body, -1, self.link, -1)
-        return any((contact[2], contact[4]) in others for contact in contacts)
-
-
-@dataclass(frozen=True)
-class Motor:
-    """A joint that is driven by a torque."""
-
-    bullet: Any
-    body: int
-    joint: int
-    lower: float
-    upper: float
-
-    def state(self) -> tuple[float, float]:
-        """Position [rad or m] and velocity."""
-        return self.bullet.getJointState(self.body, self.joint)[:2]
-
-    def relative_state(self) -> tuple[float, float]:
-        """Position from -1 at the lower limit to 1 at the upper one, and a tenth of the velocity."""
-        position, velocity = self.state()
-        middle = 0.5 * (self.lower + self.upper)
-        return 2.0 * (position - middle) / (self.upper - self.lower), 0.1 * velocity
-
-    def place(self, position: float) -> None:
-        """Puts the joint somewhere at rest, without a motor."""
-        self.bullet.resetJointState(self.body, self.joint, position, 0.0)
-        self.release()
-
-    def release(self) -> None:
-        """Switches off the motor that joints have when they are loaded."""
-        self.bullet.setJointMotorControl2(
-            self.body, self.joint, pybullet.POSITION_CONTROL, positionGain=0.1, velocityGain=0.1, force=0
-        )
-
-    def drive(self, torque: float) -> None:
-        """Applies a torque [N m] or force [N] in the next step."""
-        self.bullet.setJointMotorControl2(self.body, self.joint, pybullet.TORQUE_CONTROL, force=float(torque))
-
-
-class Parts:
-    """Links and motors of some bodies, by name.
+class XmlBasedRobot:
+    """A robot with names; its own classes have `robot_specific_reset`, `apply_action` and `calc_state`.
 
     Attributes:
-        links: By name, in order.
-        motors: By name, in order. Joints whose names begin with `ignore` are free and not among them.
+        parts: Links by name, in order.
+        jdict: Joints by name, in order, but for those whose names begin with `ignore`, which are free.
+        ordered_joints: The same joints.
+        robot_body: The link that stands for the robot.
+        robot_name: Its name.
+        self_collision: Whether its links touch each other.
+        np_random: Where random numbers come from: the environment.
+        scene: Where it is.
     """
 
-    def __init__(self, bullet: Any, robot_name: str) -> None:
-        self._bullet = bullet
-        self._robot_name = robot_name
-        self.links: dict[str, Part] = {}
-        self.motors: dict[str, Motor] = {}
+    self_collision = True
+    np_random: Any
+    scene: Any
 
-    @property
-    def body(self) -> Part:
-        """The link that stands for the robot."""
-        return self.links[self._robot_name]
+    def __init__(self, robot_name: str, action_dim: int, obs_dim: int, self_collision: bool) -> None:
+        """Says what it observes and how it acts.
 
-    def add(self, bodies: tuple[int, ...]) -> None:
-        """Takes the links and joints of more bodies."""
-        for body in bodies:
-            base_name = self._bullet.getBodyInfo(body)[0].decode()
-            joints = [self._bullet.getJointInfo(body, j) for j in range(self._bullet.getNumJoints(body))]
-            if not joints:
-                self.links[base_name] = Part(self._bullet, body, -1)
-            elif not self.links and joints[0][12].decode() != self._robot_name:
-                self.links[self._robot_name] = Part(self._bullet, body, -1)
-            for info in joints:
-                self._add_joint(body, info)
-
-    def _add_joint(self, body: int, info: Any) -> None:
-        self.links[info[12].decode()] = Part(self._bullet, body, info[0])
-        name = info[1].decode()
-        motor = Motor(self._bullet, body, info[0], info[8], info[9])
-        motor.release()
-        if not name.startswith(("ignore", "jointfix")):
-            self.motors[name] = motor
-
-
-class MJCFEnv(BulletEnv, ABC):
-    """An environment with one robot of an MJCF file.
-
-    Attributes:
-        model: The file.
-        robot_name: The link that stands for the robot.
-        gravity: Downwards [m/s²].
-        time_step: Of the simulation [s].
-        frame_skip: Steps of the simulation in a step of the environment.
-        observation_count: Numbers of an observation.
-        action_count: Numbers of an action, each from -1 to 1.
-    """
-
-    model: str
-    robot_name: str
-    gravity = 9.8
-    time_step = 0.0165
-    frame_skip = 1
-    observation_count: int
-    action_count: int
-
-    def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
-        super().__init__(render, render_mode)
-        endless = np.full(self.observation_count, np.inf, np.float32)
-        ones = np.ones(self.action_count, np.float32)
-        self.observation_space = gymnasium.spaces.Box(-endless, endless, dtype=np.float32)
+        Args:
+            robot_name: The link that stands for it.
+            action_dim: Numbers of an action, each from -1 to 1.
+            obs_dim: Numbers of an observation.
+            self_collision: Whether its links touch each other.
+        """
+        ones, endless = np.ones(action_dim, np.float32), np.full(obs_dim, np.inf, np.float32)
         self.action_space = gymnasium.spaces.Box(-ones, ones, dtype=np.float32)
-        self._start: int | None = None
+        self.observation_space = gymnasium.spaces.Box(-endless, endless, dtype=np.float32)
+        self.robot_name = robot_name
+        self.self_collision = self_collision
+        self.forget()
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode."""
-        super().reset(seed=seed)
-        if self._connect():
-            self._load()
-            self._start = self._p.saveState()
-        else:
-            self._p.restoreState(self._start)
-        self._place()
-        return self._observe(), {}
+    def forget(self) -> None:
+        """Drops links and joints of a world that is no more."""
+        self.objects: Sequence[int] = ()
+        self.parts: dict[str, BodyPart] = {}
+        self.jdict: dict[str, Joint] = {}
+        self.ordered_joints: list[Joint] = []
+        self.robot_body: Any = None
 
-    def close(self) -> None:
-        """Ends the world; the next `reset` makes a new one."""
-        super().close()
-        self._start = None
+    def addToScene(self, bullet_client: Any, bodies: int | Sequence[int]) -> Found:
+        """Takes the links and joints of bodies, and switches their motors off.
 
-    @property
-    def frame_time(self) -> float:
-        """Time that a step of the environment takes [s]."""
-        return self.time_step * self.frame_skip
+        Args:
+            bullet_client: The world.
+            bodies: One or several.
 
-    def _load(self) -> None:
-        """Builds the world."""
-        bullet = self._p
-        bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1)
-        bullet.setGravity(0, 0, -self.gravity)
-        bullet.setDefaultContactERP(_CONTACT_ERP)
-        bullet.setPhysicsEngineParameter(
-            fixedTimeStep=self.frame_time, numSolverIterations=_SOLVER_ITERATIONS, numSubSteps=self.frame_skip
-        )
-        file = os.path.join(pybullet_data.getDataPath(), "mjcf", self.model)
-        self.parts = Parts(bullet, self.robot_name)
-        self.parts.add(bullet.loadMJCF(file, flags=_LOADING))
+        Returns:
+            The links, the joints, the joints in order and the link that stands for the robot, after all
+            that were added.
+        """
+        self._p = bullet_client
+        bodies = [bodies] if isinstance(bodies, int) else list(bodies)
+        for index, body in enumerate(bodies):
+            infos = [bullet_client.getJointInfo(body, j) for j in range(bullet_client.getNumJoints(body))]
+            base_name = bullet_client.getBodyInfo(body)[0].decode()
+            if not infos:
+                self._add_part(base_name, bodies, index, -1)
+            elif index == 0 and self.robot_body is None and infos[0][12].decode() != self.robot_name:
+                self._add_part(self.robot_name, bodies, index, -1)
+            for info in infos:
+                self._add_part(info[12].decode(), bodies, index, info[0])
+                self._add_joint(info[1].decode(), bodies, index, info[0])
+        return self.parts, self.jdict, self.ordered_joints, self.robot_body
 
-    @abstractmethod
-    def _place(self) -> None:
+    def _add_part(self, name: str, bodies: Sequence[int], index: int, link: int) -> None:
+        self.parts[name] = BodyPart(self._p, name, bodies, index, link)
+        if name == self.robot_name:
+            self.robot_body = self.parts[name]
+
+    def _add_joint(self, name: str, bodies: Sequence[int], index: int, number: int) -> None:
+        joint = Joint(self._p, name, bodies, index, number)
+        joint.disable_motor()
+        if not name.startswith(("ignore", "jointfix")):
+            joint.power_coef = _POWER
+            self.jdict[name] = joint
+            self.ordered_joints.append(joint)
+
+    def reset_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
+        """Moves the body of the link that stands for the robot."""
+        self.parts[self.robot_name].reset_pose(position, orientation)
+
+    def robot_specific_reset(self, bullet_client: Any) -> None:
         """Puts the robot where an episode begins."""
+        raise NotImplementedError(f"{type(self).__name__} has no robot_specific_reset")
 
-    @abstractmethod
-    def _observe(self) -> np.ndarray:
-        """What the agent sees."""
+    def apply_action(self, a: np.ndarray) -> None:
+        """Drives the joints in the next step."""
+        raise NotImplementedError(f"{type(self).__name__} has no apply_action")
+
+    def calc_state(self) -> np.ndarray:
+        """What is observed now."""
+        raise NotImplementedError(f"{type(self).__name__} has no calc_state")
+
+    def calc_potential(self) -> float:
+        """What being where it is is worth; rewards may have by how much that grows."""
+        return 0.0
+
+    def _flags(self) -> int:
+        collision = pybullet.URDF_USE_SELF_COLLISION if self.self_collision else 0
+        return collision | pybullet.URDF_GOOGLEY_UNDEFINED_COLORS
+
+
+class MJCFBasedRobot(XmlBasedRobot):
+    """A robot of an MJCF file, which is loaded when its first episode begins.
+
+    Attributes:
+        model_xml: The file, from the folder `mjcf` of `pybullet_data` if it is not absolute.
+        doneLoading: Whether it is loaded.
+        objects: The bodies of the file.
+    """
+
+    def __init__(
+        self, model_xml: str, robot_name: str, action_dim: int, obs_dim: int, self_collision: bool = True
+    ) -> None:
+        """Names the file; see `XmlBasedRobot`."""
+        super().__init__(robot_name, action_dim, obs_dim, self_collision)
+        self.model_xml = model_xml
+
+    def forget(self) -> None:
+        """Drops links and joints, so that they are loaded again."""
+        super().forget()
+        self.doneLoading = 0
+
+    def reset(self, bullet_client: Any) -> np.ndarray:
+        """Begins an episode; returns what is observed."""
+        self._p = bullet_client
+        if not self.doneLoading:
+            self.doneLoading = 1
+            file = os.path.join(pybullet_data.getDataPath(), "mjcf", self.model_xml)
+            flags = self._flags()
+            if self.self_collision:
+                flags |= pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
+            self.objects = bullet_client.loadMJCF(file, flags=flags)
+            self.addToScene(bullet_client, self.objects)
+        self.robot_specific_reset(bullet_client)
+        return self.calc_state()
+
+
+class URDFBasedRobot(XmlBasedRobot):
+    """A robot of a URDF file, which is loaded anew for each episode: its scene is to be empty then.
+
+    Attributes:
+        model_urdf: The file, from the folder of `pybullet_data` if it is not absolute.
+    """
+
+    def __init__(
+        self,
+        model_urdf: str,
+        robot_name: str,
+        action_dim: int,
+        obs_dim: int,
+        basePosition: Sequence[float] = (0, 0, 0),
+        baseOrientation: Sequence[float] = (0, 0, 0, 1),
+        fixed_base: bool = False,
+        self_collision: bool = False,
+    ) -> None:
+        """Names the file; see `XmlBasedRobot`.
+
+        Args:
+            model_urdf: The file.
+            robot_name: The link that stands for the robot.
+            action_dim: Numbers of an action.
+            obs_dim: Numbers of an observation.
+            basePosition: Where it is loaded [m].
+            baseOrientation: How it is turned (x, y, z, w).
+            fixed_base: Whether its base is fixed.
+            self_collision: Whether its links touch each other.
+        """
+        super().__init__(robot_name, action_dim, obs_dim, self_collision)
+        self.model_urdf = model_urdf
+        self.basePosition = basePosition
+        self.baseOrientation = baseOrientation
+        self.fixed_base = fixed_base
+
+    def reset(self, bullet_client: Any) -> np.ndarray:
+        """Begins an episode; returns what is observed."""
+        self.forget()
+        body = bullet_client.loadURDF(
+            os.path.join(pybullet_data.getDataPath(), self.model_urdf),
+            basePosition=self.basePosition,
+            baseOrientation=self.baseOrientation,
+            useFixedBase=self.fixed_base,
+            flags=self._flags(),
+        )
+        self.objects = (body,)
+        self.addToScene(bullet_client, body)
+        self.robot_specific_reset(bullet_client)
+        state = self.calc_state()
+        self.potential = self.calc_potential()
+        return state

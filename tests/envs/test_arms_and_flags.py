@@ -10,12 +10,17 @@ import pytest
 
 from pybullet_envs.gym_locomotion_envs import (
     HalfCheetahBulletEnv,
+    HumanoidBulletEnv,
     HumanoidFlagrunBulletEnv,
     HumanoidFlagrunHarderBulletEnv,
 )
 from pybullet_envs.gym_manipulator_envs import StrikerBulletEnv, ThrowerBulletEnv
 
 STILL = np.zeros(17)
+
+
+def goal(env: Any) -> tuple[float, float]:
+    return env.robot.walk_target_x, env.robot.walk_target_y
 
 
 def test_a_striker_is_there_though_pybullet_does_not_list_it() -> None:
@@ -32,7 +37,8 @@ def test_a_striker_is_there_though_pybullet_does_not_list_it() -> None:
 def test_the_strikers_reward_is_for_coming_near() -> None:
     env: Any = StrikerBulletEnv()
     env.reset(seed=4)
-    ball, goal, paddle = (env._position(name) for name in ("object", "target", "fingertip"))
+    robot = env.robot
+    ball, goal, paddle = (part.pose().xyz() for part in (robot.object, robot.target, robot.fingertip))
     apart = np.linalg.norm(ball - goal)
     assert env._success(2.0) == pytest.approx(-3.0 * apart - 0.2 - 0.5 * np.linalg.norm(ball - paddle))
     env.strike_threshold = 10.0
@@ -44,8 +50,7 @@ def test_the_strikers_reward_is_for_coming_near() -> None:
 def test_where_a_thrown_ball_came_down_counts() -> None:
     env: Any = ThrowerBulletEnv()
     env.reset(seed=4)
-    ball = env.parts.links["object"].body
-    goal = env._position("target")
+    ball, goal = env.robot.object.body, env.robot.target.pose().xyz()
     env._p.resetBasePositionAndOrientation(ball, (*goal[:2], -0.5), (0, 0, 0, 1))
     assert env._success(0.0) == pytest.approx(0.0, abs=1e-6)
     env._p.resetBasePositionAndOrientation(ball, (3.0, 3.0, 1.0), (0, 0, 0, 1))
@@ -56,23 +61,23 @@ def test_where_a_thrown_ball_came_down_counts() -> None:
 def test_a_flag_moves_on_after_150_steps() -> None:
     env: Any = HumanoidFlagrunBulletEnv()
     env.reset(seed=2)
-    first = env.goal
+    first = goal(env)
     for _ in range(148):
         env.step(STILL)
-        assert env.goal == first
+        assert goal(env) == first
     _, reward, *_ = env.step(STILL)
-    assert env.goal != first
+    assert goal(env) != first
     assert abs(reward) > 10.0
-    assert env._p.getBasePositionAndOrientation(env._flag)[0] == (*env.goal, 0.7)
+    assert env.robot.flag.current_position().tolist() == [*goal(env), 0.7]
     env.close()
 
 
 def test_a_flag_that_is_reached_moves_on() -> None:
     env: Any = HumanoidFlagrunBulletEnv()
     env.reset(seed=2)
-    env.goal = env._middle()
+    env.robot.walk_target_x, env.robot.walk_target_y = env.robot.body_xyz[:2]
     env.step(STILL)
-    assert np.hypot(*(a - b for a, b in zip(env.goal, env._middle(), strict=True))) > 1.0
+    assert env.robot.walk_target_dist > 1.0
     env.close()
 
 
@@ -92,10 +97,9 @@ def test_one_who_lies_too_long_is_given_up() -> None:
 def test_a_cube_is_hurled_at_one_who_stands() -> None:
     env: Any = HumanoidFlagrunHarderBulletEnv()
     env.reset(seed=2)
-    env._steps = 120
+    env.robot.frame = 120
     env.step(STILL)
-    place, _ = env._p.getBasePositionAndOrientation(env._cube)
-    velocity, _ = env._p.getBaseVelocity(env._cube)
+    place, velocity = env.robot.aggressive_cube.current_position(), env.robot.aggressive_cube.speed()
     assert np.hypot(place[0], place[1]) == pytest.approx(4.0, abs=1.0)
     assert 18.0 < np.linalg.norm(velocity) < 32.0
     assert np.dot(place[:2], velocity[:2]) < 0.0
@@ -108,4 +112,17 @@ def test_a_cheetah_that_lies_goes_on() -> None:
     for _ in range(60):
         *_, ended, _, _ = env.step(np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0]))
         assert not ended
+    env.close()
+
+
+def test_a_person_may_begin_lying_down_in_any_direction() -> None:
+    env: Any = HumanoidBulletEnv()
+    env.robot.random_yaw = env.robot.random_lean = True
+    heights, turns = set(), []
+    for seed in range(8):
+        env.reset(seed=seed)
+        heights.add(round(float(env.robot.body_real_xyz[2]), 2))
+        turns.append(env.robot.body_rpy[2])
+    assert heights == {1.4, 0.45, 0.25}
+    assert max(turns) - min(turns) > 1.0
     env.close()

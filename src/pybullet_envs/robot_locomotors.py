@@ -1,0 +1,83 @@
+"""Robots that run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from pybullet_envs.robot_people import Humanoid, HumanoidFlagrun, HumanoidFlagrunHarder
+from pybullet_envs.robot_walker import WalkerBase
+
+__all__ = [
+    "Ant",
+    "HalfCheetah",
+    "Hopper",
+    "Humanoid",
+    "HumanoidFlagrun",
+    "HumanoidFlagrunHarder",
+    "Walker2D",
+    "WalkerBase",
+]
+
+
+class Hopper(WalkerBase):
+    """One leg."""
+
+    foot_list: ClassVar[Any] = ("foot",)
+
+    def __init__(self) -> None:
+        super().__init__("hopper.xml", "torso", action_dim=3, obs_dim=15, power=0.75)
+
+    def alive_bonus(self, z: float, pitch: float) -> float:
+        """1 while it stands."""
+        return 1.0 if z > 0.8 and abs(pitch) < 1.0 else -1.0
+
+
+class Walker2D(WalkerBase):
+    """Two legs in a plane."""
+
+    foot_list: ClassVar[Any] = ("foot", "foot_left")
+    joint_power: ClassVar[Mapping[str, float]] = {"foot_joint": 30.0, "foot_left_joint": 30.0}
+
+    def __init__(self) -> None:
+        super().__init__("walker2d.xml", "torso", action_dim=6, obs_dim=22, power=0.40)
+
+    def alive_bonus(self, z: float, pitch: float) -> float:
+        """1 while it stands."""
+        return 1.0 if z > 0.8 and abs(pitch) < 1.0 else -1.0
+
+
+class HalfCheetah(WalkerBase):
+    """A runner in a plane; nothing but its feet is to touch the ground, which costs."""
+
+    foot_list: ClassVar[Any] = ("ffoot", "fshin", "fthigh", "bfoot", "bshin", "bthigh")
+    joint_power: ClassVar[Mapping[str, float]] = {
+        "bthigh": 120.0,
+        "bshin": 90.0,
+        "bfoot": 60.0,
+        "fthigh": 140.0,
+        "fshin": 60.0,
+        "ffoot": 30.0,
+    }
+
+    def __init__(self) -> None:
+        super().__init__("half_cheetah.xml", "torso", action_dim=6, obs_dim=26, power=0.90)
+
+    def alive_bonus(self, z: float, pitch: float) -> float:
+        """1 while it is on its feet."""
+        _, front_shin, front_thigh, _, back_shin, back_thigh = self.feet_contact
+        fallen = front_shin or front_thigh or back_shin or back_thigh
+        return 1.0 if abs(pitch) < 1.0 and not fallen else -1.0
+
+
+class Ant(WalkerBase):
+    """Four legs around a ball."""
+
+    foot_list: ClassVar[Any] = ("front_left_foot", "front_right_foot", "left_back_foot", "right_back_foot")
+
+    def __init__(self) -> None:
+        super().__init__("ant.xml", "torso", action_dim=8, obs_dim=28, power=2.5)
+
+    def alive_bonus(self, z: float, pitch: float) -> float:
+        """1 while the ball is off the ground."""
+        return 1.0 if z > 0.26 else -1.0

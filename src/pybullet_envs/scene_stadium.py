@@ -1,0 +1,38 @@
+"""A stadium to run in."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import pybullet_data
+from pybullet_envs.scene_abstract import Scene
+
+
+class StadiumScene(Scene):
+    """A field of grass.
+
+    Attributes:
+        stadium_halflen: From the middle to the ends [m].
+        stadium_halfwidth: From the middle to the sides [m].
+        ground_plane_mjcf: The bodies of the field, after the first episode has begun.
+    """
+
+    stadium_halflen = 105 * 0.25
+    stadium_halfwidth = 50 * 0.25
+    ground_plane_mjcf: tuple[int, ...] = ()
+
+    def episode_restart(self, bullet_client: Any) -> None:
+        """Begins an episode; lays the field before the first one."""
+        self._p = bullet_client
+        super().episode_restart(bullet_client)
+        if self.ground_plane_mjcf:
+            return
+        file = os.path.join(pybullet_data.getDataPath(), "plane_stadium.sdf")
+        self.ground_plane_mjcf = bullet_client.loadSDF(file)
+        for body in self.ground_plane_mjcf:
+            bullet_client.changeDynamics(body, -1, lateralFriction=0.8, restitution=0.5)
+
+
+class SinglePlayerStadiumScene(StadiumScene):
+    """A stadium for one robot."""
