@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.model.blocks import add_multiple, dot_product
+from carom.model.blocks import add_multiple, dot_product, fill_zero
 from carom.model.codes import (
     ROW_EFFECTIVE_MASS,
     ROW_IMPULSE,
@@ -63,11 +63,8 @@ def write_jacobian(
     velocity = real(0.0)
     blocks = tree_blocks(model, tree)
     if blocks > 0:
-        block = Int32(0)
-        while block < blocks:
-            couplings.jacobian_row[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
-            couplings.jacobian_response[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
-            block += 1
+        fill_zero(couplings.jacobian_row, start, world, blocks)
+        fill_zero(couplings.jacobian_response, start, world, blocks)
         reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         moment = wp.cross(point - reference, linear) + angular
         first = model.tree[tree].first_dof
@@ -79,21 +76,14 @@ def write_jacobian(
             )
             velocity += share * state.dof_velocity[world, dof]
             couplings.entry_row[world, 4 * start + dof - first] = share
-            response = matrix + (dof - first) * blocks
-            block = Int32(0)
-            while block < blocks:
-                couplings.jacobian_response[world, start + block] += (
-                    share * scratch.block_inverse_mass[world, response + block]
-                )
-                block += 1
+            add_multiple(
+                couplings.jacobian_response, start, share, scratch.block_inverse_mass,
+                matrix + (dof - first) * blocks, world, blocks,
+            )  # fmt: skip
             dof = model.dof[dof].parent
-        block = Int32(0)
-        while block < blocks:
-            inverse_mass += wp.dot(
-                couplings.jacobian_row[world, start + block],
-                couplings.jacobian_response[world, start + block],
-            )
-            block += 1
+        inverse_mass = dot_product(
+            couplings.jacobian_row, start, couplings.jacobian_response, start, world, blocks
+        )
     return Vector3(inverse_mass, velocity, 0.0)
 
 

@@ -7,6 +7,7 @@ no row changed its velocity by more than the residual threshold, or after the gi
 import warp as wp
 
 from carom.collision.extremes import greater, within_bounds
+from carom.model.blocks import add_multiple
 from carom.model.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
 from carom.model.real import Int32, Vector4, func, real, shared_func
 from carom.model.structs import Model, Scratch, Settings, State
@@ -89,13 +90,10 @@ def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
         after = before + change * effective_mass
     scratch.row[world, row].impulse = after
 
-    delta = scratch.row[world, row].delta
-    response = scratch.row[world, row].response
-    end = delta + scratch.row[world, row].blocks
-    while delta < end:
-        scratch.delta_velocity[world, delta] += change * scratch.block_response[world, response]
-        delta += 1
-        response += 1
+    add_multiple(
+        scratch.delta_velocity, scratch.row[world, row].delta, change, scratch.block_response,
+        scratch.row[world, row].response, world, scratch.row[world, row].blocks,
+    )  # fmt: skip
     return change
 
 
