@@ -18,6 +18,7 @@ __all__ = [
     "combine8",
     "dot_product",
     "fill_zero",
+    "write_multiple",
 ]
 
 
@@ -48,6 +49,20 @@ def add_multiple(
     b: Vector4Rows, start_b: Int32, factor: real, a: Vector4Rows, start_a: Int32, world: Int32, count: Int32
 ):
     """Add `factor` times `count` blocks of `a` to those of `b`."""
+    ...
+
+
+@wp.func_native("""
+    const auto* x = &wp::index(a, world, start_a);
+    auto* y = &wp::index(b, world, start_b);
+    #pragma clang loop vectorize(disable)
+    for (int i = 0; i < count; ++i)
+        y[i] = wp::mul(factor, x[i]);
+""")
+def write_multiple(
+    b: Vector4Rows, start_b: Int32, factor: real, a: Vector4Rows, start_a: Int32, world: Int32, count: Int32
+):
+    """Set `count` blocks of `b` to `factor` times those of `a`, which may be the same."""
     ...
 
 

@@ -11,7 +11,8 @@ Inner loops are written with `while`: Warp's `range` costs as much as what they 
 
 import warp as wp
 
-from carom.model.real import Int32, Vector4, func, real
+from carom.model.blocks import add_multiple, fill_zero, write_multiple
+from carom.model.real import Int32, func, real
 from carom.model.structs import Model, Scratch
 
 # A dof with less articulated inertia than this cannot be accelerated (double precision epsilon).
@@ -46,10 +47,7 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
             push = mass * linear - wp.cross(moment, angular)
 
             row = matrix + (dof - first) * blocks
-            block = row + 0
-            while block < row + blocks:
-                scratch.block_factor[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
-                block += 1
+            fill_zero(scratch.block_factor, row, world, blocks)
             other = dof + 0
             while other >= 0:
                 scratch.entry_factor[world, 4 * row + other - first] = wp.dot(
@@ -85,25 +83,16 @@ def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
         while i < k:
             entry = scratch.entry_factor[world, 4 * row + i]
             if entry != 0.0:
-                subtract_row(scratch, world, target, row, i // 4, entry * inverse)
+                add_multiple(
+                    scratch.block_factor, target, -entry * inverse, scratch.block_factor, row, world,
+                    i // 4 + 1,
+                )  # fmt: skip
             i += 1
             target += blocks
         # The row of L; done last because every entry above needs the unscaled row.
-        block = row + 0
-        while block <= row + k // 4:
-            scratch.block_factor[world, block] = inverse * scratch.block_factor[world, block]
-            block += 1
+        write_multiple(scratch.block_factor, row, inverse, scratch.block_factor, row, world, k // 4 + 1)
         k -= 1
         row -= blocks
-
-
-@func
-def subtract_row(scratch: Scratch, world: Int32, target: Int32, row: Int32, last: Int32, ratio: real):
-    """Subtract `ratio` times a row of the factor from another, up to the block number `last`."""
-    block = Int32(0)
-    while block <= last:
-        scratch.block_factor[world, target + block] -= ratio * scratch.block_factor[world, row + block]
-        block += 1
 
 
 @func
@@ -148,21 +137,16 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     i = Int32(0)
     row = matrix + 0
     while i < count:
-        block = Int32(0)
-        while block < blocks:
-            scratch.block_inverse_mass[world, row + block] = Vector4(0.0, 0.0, 0.0, 0.0)
-            block += 1
+        fill_zero(scratch.block_inverse_mass, row, world, blocks)
         j = Int32(0)
         source = matrix + 0
         while j < i:
             entry = scratch.entry_factor[world, 4 * row + j]
             if entry != 0.0:
-                block = Int32(0)
-                while block <= i // 4:
-                    scratch.block_inverse_mass[world, row + block] -= (
-                        entry * scratch.block_inverse_mass[world, source + block]
-                    )
-                    block += 1
+                add_multiple(
+                    scratch.block_inverse_mass, row, -entry, scratch.block_inverse_mass, source, world,
+                    i // 4 + 1,
+                )  # fmt: skip
             j += 1
             source += blocks
         # Column i of the rows above is still to come, so the diagonal is summed on its own.

@@ -6,6 +6,7 @@ bounds, that brings it about. Rows of an island are contiguous, in the order in 
 
 import warp as wp
 
+from carom.model.blocks import write_multiple
 from carom.model.real import Int32, Vector3, func, real
 from carom.model.structs import Model, Scratch
 
@@ -44,8 +45,9 @@ def add_row(
     scratch.row[world, row].lower = lower
     scratch.row[world, row].upper = upper
     scratch.row[world, row].impulse = real(0.0)
-    for block in range(response, response + blocks):
-        scratch.block_response[world, block] = effective_mass * scratch.block_inverse_mass[world, block]
+    write_multiple(
+        scratch.block_response, response, effective_mass, scratch.block_inverse_mass, response, world, blocks
+    )
     return row + 1
 
 

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.model.blocks import fill_zero, write_multiple
 from carom.model.codes import (
     ROW_IMPULSE,
     USER_GEAR,
@@ -9,7 +10,7 @@ from carom.model.codes import (
     USER_PRISMATIC,
 )
 from carom.model.contact_structs import Couplings, UserConstraints
-from carom.model.real import Index4, Int32, Matrix3, Quaternion, Vector3, Vector4, func, real
+from carom.model.real import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.couplings import place_row, write_pair_jacobian, write_row
 from carom.physics.motors import euler_xyz
@@ -143,11 +144,10 @@ def write_dof_jacobian(
     blocks = (model.tree[tree].dof_count + 3) // 4
     column_of_dof = dof - model.tree[tree].first_dof
     response = model.tree[tree].first_block + column_of_dof * blocks
-    for block in range(blocks):
-        couplings.jacobian_row[world, start + block] = Vector4(0.0, 0.0, 0.0, 0.0)
-        couplings.jacobian_response[world, start + block] = (
-            share * scratch.block_inverse_mass[world, response + block]
-        )
+    fill_zero(couplings.jacobian_row, start, world, blocks)
+    write_multiple(
+        couplings.jacobian_response, start, share, scratch.block_inverse_mass, response, world, blocks
+    )
     couplings.entry_row[world, 4 * start + column_of_dof] = share
     inverse_mass = share * couplings.entry_response[world, 4 * start + column_of_dof]
     return Vector3(inverse_mass, share * state.dof_velocity[world, dof], 0.0)
