@@ -30,9 +30,15 @@ def jacobian_times(search: Search, blocks: Int32, column: Int32, factor: real):
 @func
 def response(search: Search, blocks: Int32, column: Int32) -> real:
     """One entry of the transposed Jacobian times `block_solution`."""
-    total = real(0.0)
-    for block in range(blocks):
-        total += wp.dot(search.entry_jacobian[column * blocks + block], search.block_solution[block])
+    # Most questions are about one end.
+    if blocks == 1:
+        return wp.dot(search.entry_jacobian[column], search.block_solution[0])
+    entry = column * blocks
+    total = wp.dot(search.entry_jacobian[entry], search.block_solution[0]) + wp.dot(
+        search.entry_jacobian[entry + 1], search.block_solution[1]
+    )
+    for block in range(2, blocks):
+        total += wp.dot(search.entry_jacobian[entry + block], search.block_solution[block])
     return total
 
 
