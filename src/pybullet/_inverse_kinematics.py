@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from math import isnan
+from math import inf, isnan
 from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._algebra import joint_coordinates
@@ -44,8 +44,8 @@ _CURRENT_POSITIONS = (
 )
 _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
-_DEFAULT_ITERATIONS = 20
-_DEFAULT_THRESHOLD = 1e-4
+_UNSTATED = -1
+_SOLVERS = (IK_DLS, IK_SDLS)
 # PyBullet is stuck where its steps leave more than this share of the distance.
 _STUCK = 0.5
 _STEPS_WHERE_STUCK = 200
@@ -152,12 +152,9 @@ def calculateInverseKinematics(
         [0.5, 0.0, 0.5]
     """
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseKinematics")
-    for name, value in (
-        ("endEffectorLinkIndex", endEffectorLinkIndex),
-        ("targetPosition", targetPosition),
-    ):
-        if value is _MISSING:
-            raise TypeError(f"calculateInverseKinematics() missing required argument {name!r}")
+    if endEffectorLinkIndex is _MISSING or targetPosition is _MISSING:
+        name = "endEffectorLinkIndex" if endEffectorLinkIndex is _MISSING else "targetPosition"
+        raise TypeError(f"calculateInverseKinematics() missing required argument {name!r}")
     link = integer(endEffectorLinkIndex, "endEffectorLinkIndex")
     client = client_of(physicsClientId)
     position = vector3(targetPosition, _NO_POSITION, "targetPosition")
@@ -176,7 +173,7 @@ def calculateInverseKinematics(
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
         # Who says nothing of accuracy has learnt to live with PyBullet's, in trained policies for one, and
         # comes nearer with each call; but not where PyBullet is stuck.
-        options |= {"further": _STEPS_WHERE_STUCK, "patience": _STUCK}
+        options["further"], options["patience"] = _STEPS_WHERE_STUCK, _STUCK
 
     with client.lock:
         found = _algorithm()(
@@ -260,22 +257,29 @@ def calculateInverseKinematics2(
 
 
 @cache
-def _algorithm() -> Callable[..., list[float]]:
+def _algorithm() -> Callable[..., tuple[float, ...]]:
     """Imported when it is first needed: it brings Warp along."""
     from carom.algorithms import inverse_kinematics
 
     return inverse_kinematics
 
 
-def _orientation(values: Any) -> tuple[float, float, float, float] | None:
+def _orientation(values: Any) -> tuple[float, ...] | None:
     """The orientation asked for. As in PyBullet, anything that has not four numbers is none."""
     if values is None:
         return None
+    try:
+        x, y, z, w = values
+        if -inf < x + y + z + w < inf and (x or y or z or w):
+            return x, y, z, w
+    except (TypeError, ValueError):
+        pass
     name = "targetOrientation"
-    if len(numbers(values, _PROBLEM, name)) != 4:
+    given = numbers(values, _PROBLEM, name)
+    if len(given) != 4:
         warn_once("calculateInverseKinematics: targetOrientation has not 4 values and is ignored")
         return None
-    return rotation(values, _PROBLEM, name)
+    return rotation(given, _PROBLEM, name)
 
 
 def _options(
@@ -291,19 +295,19 @@ def _options(
     freedoms = sum(body.velocity_count)
     if freedoms == 0:
         fail(_PROBLEM, f"Body {body.id} ({body.name}) has no joint that moves.")
-    if solver not in (IK_DLS, IK_SDLS):
+    if solver not in _SOLVERS:
         fail(_PROBLEM, f"solver is {solver!r}, neither IK_DLS ({IK_DLS}) nor IK_SDLS ({IK_SDLS}).")
-    most = integer(iterations, "maxNumIterations")
-    close = real(threshold, "residualThreshold")
-    options: dict[str, Any] = {
-        "selective": solver == IK_SDLS,
-        "iterations": most if most > 0 else _DEFAULT_ITERATIONS,
-        "threshold": close if close >= 0.0 else _DEFAULT_THRESHOLD,
-    }
-    if any(values is not None for values in limits):
-        lower, upper, ranges, rest = (
+    options: dict[str, Any] = {}
+    if solver == IK_SDLS:
+        options["selective"] = True
+    if iterations != _UNSTATED and integer(iterations, "maxNumIterations") > 0:
+        options["iterations"] = iterations
+    if threshold != _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
+        options["threshold"] = threshold
+    if not limits[0] is limits[1] is limits[2] is limits[3] is None:
+        lower, upper, ranges, rest = [
             _for_each_freedom(values, name, freedoms) for values, name in zip(limits, _LIMITS, strict=True)
-        )
+        ]
         if lower is not None and upper is not None:
             options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
     if damping is not None:
@@ -330,12 +334,12 @@ def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...
     if values is None:
         return None
     try:
-        result = tuple([float(value) for value in values])
+        result = tuple(map(float, values))
     except (TypeError, ValueError):
         fail(_PROBLEM, f"{name} is {values!r}, not a list of numbers.")
     if len(result) != freedoms:
         return None
-    if any(isnan(value) for value in result):
+    if any(map(isnan, result)):
         fail(_PROBLEM, f"{name} is {values!r}, with a value that is not a number.")
     return result
 
@@ -345,10 +349,10 @@ def _check_link(body: Body, link: int) -> None:
         fail(_PROBLEM, f"Body {body.id} ({body.name}) has no link {link}.")
 
 
-def _result(body: Body, coordinates: list[float]) -> tuple[float, ...]:
+def _result(body: Body, coordinates: tuple[float, ...]) -> tuple[float, ...]:
     """Positions as scripts have them: roll, pitch and yaw of spherical joints instead of a quaternion."""
     if JOINT_SPHERICAL not in body.joint_types:
-        return tuple(coordinates)
+        return coordinates
     result: list[float] = []
     first = 0
     for kind, count in zip(body.joint_types, body.position_count, strict=True):

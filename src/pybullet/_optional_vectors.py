@@ -1,4 +1,4 @@
-"""Vectors that a call can do without: one of the wrong length counts as left out.
+"""Vectors that a call can do without: one of the wrong length stands for the default.
 
 PyBullet does so without a word, and scripts have come to live with it: colours without opacity, angles where
 a quaternion belongs, one factor for three.
@@ -46,5 +46,5 @@ def has_length(values: Any, count: int, name: str) -> bool:
             return True
     except TypeError:
         pass
-    warn_once(f"{name} is not a sequence of {count} numbers and is ignored")
+    warn_once(f"{name} is not a sequence of {count} numbers, so its default is used")
     return False

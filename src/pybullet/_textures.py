@@ -116,6 +116,8 @@ def changeVisualShape(
 ) -> None:
     """Changes how a link looks. No such body, link or shape is no error.
 
+    A colour of another length is white, as in PyBullet, with a warning.
+
     Args:
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
@@ -139,8 +141,11 @@ def changeVisualShape(
     client = client_of(physicsClientId)
     shape, texture = integer(shapeIndex, "shapeIndex"), integer(textureUniqueId, "textureUniqueId")
     bits = integer(flags, "flags")
-    colour = optional_vector4(rgbaColor, _CANNOT_CHANGE, "rgbaColor")
-    highlight = optional_vector3(specularColor, _CANNOT_CHANGE, "specularColor")
+    colour = highlight = None
+    if rgbaColor is not None:
+        colour = optional_vector4(rgbaColor, _CANNOT_CHANGE, "rgbaColor") or (1.0, 1.0, 1.0, 1.0)
+    if specularColor is not None:
+        highlight = optional_vector3(specularColor, _CANNOT_CHANGE, "specularColor") or (1.0, 1.0, 1.0)
     found = link_or_warning(client, objectUniqueId, linkIndex, "changeVisualShape")
     if found is None:
         return

@@ -74,15 +74,23 @@ class WalkerBaseBulletEnv(MJCFBaseBulletEnv):
         self._alive = float(robot.alive_bonus(float(state[0]) + robot.initial_z, robot.body_rpy[1]))
         done = self._isDone()
         before, self.potential = self.potential, robot.calc_potential()
-        for number, foot in enumerate(robot.feet):
-            touched = {(contact[2], contact[4]) for contact in foot.contact_list()}
-            robot.feet_contact[number] = not self.ground_ids.isdisjoint(touched)
+        on_ground = self._on_ground({foot.body for foot in robot.feet})
+        robot.feet_contact[:] = [(foot.body, foot.bodyPartIndex) in on_ground for foot in robot.feet]
         work = self.electricity_cost * float(np.abs(given * robot.joint_speeds).mean())
         stall = self.stall_torque_cost * float(np.square(given).mean())
         at_limit = self.joints_at_limit_cost * robot.joints_at_limit
         self.rewards = [self._alive, self.potential - before, work + stall, at_limit]
         self.HUD(state, action, done)
         return state, sum(self.rewards), done, False, {}
+
+    def _on_ground(self, bodies: set[int]) -> set[tuple[int, int]]:
+        """The links, as (body, link), of some bodies that touch the ground."""
+        return {
+            (body, contact[3])
+            for body in bodies
+            for contact in self._p.getContactPoints(body)
+            if (contact[2], contact[4]) in self.ground_ids
+        }
 
     def _isDone(self) -> bool:
         """Whether the episode is over."""

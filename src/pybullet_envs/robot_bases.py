@@ -103,6 +103,46 @@ class XmlBasedRobot:
         """Moves the body of the link that stands for the robot."""
         self.parts[self.robot_name].reset_pose(position, orientation)
 
+    def middle(self) -> np.ndarray:
+        """The mean position of all parts [m]."""
+        links: dict[int, list[int]] = {}
+        for part in self.parts.values():
+            links.setdefault(part.body, []).append(part.bodyPartIndex)
+        places: list[Any] = []
+        for body, numbers in links.items():
+            inner = [number for number in numbers if number >= 0]
+            bases = len(numbers) - len(inner)
+            places += [self._p.getBasePositionAndOrientation(body)[0]] * bases
+            places += [state[0] for state in self._p.getLinkStates(body, inner)] if inner else []
+        return np.array(places).mean(axis=0)
+
+    def relative_joint_states(self) -> np.ndarray:
+        """(joints, 2) what `Joint.current_relative_position` says of each of `ordered_joints`."""
+        states = np.empty((len(self.ordered_joints), 2))
+        for body, places in self._places_by_body(self.ordered_joints).items():
+            joints = [self.ordered_joints[place] for place in places]
+            told = self._p.getJointStates(body, [joint.jointIndex for joint in joints])
+            states[places] = [state[:2] for state in told]
+        lower = np.array([joint.lowerLimit for joint in self.ordered_joints])
+        upper = np.array([joint.upperLimit for joint in self.ordered_joints])
+        relative = (2.0 * states[:, 0] - lower - upper) / (upper - lower)
+        return np.column_stack((relative, 0.1 * states[:, 1]))
+
+    def set_motor_torques(self, joints: Sequence[Joint], torques: np.ndarray) -> None:
+        """Applies torques [N m] or forces [N] to several joints in the next step."""
+        for body, places in self._places_by_body(joints).items():
+            numbers = [joints[place].jointIndex for place in places]
+            forces = [float(torques[place]) for place in places]
+            self._p.setJointMotorControlArray(body, numbers, pybullet.TORQUE_CONTROL, forces=forces)
+
+    @staticmethod
+    def _places_by_body(joints: Sequence[Joint]) -> dict[int, list[int]]:
+        """Where in a list the joints of each body are."""
+        places: dict[int, list[int]] = {}
+        for place, joint in enumerate(joints):
+            places.setdefault(joint.body, []).append(place)
+        return places
+
     def robot_specific_reset(self, bullet_client: Any) -> None:
         """Puts the robot where an episode begins."""
         raise NotImplementedError(f"{type(self).__name__} has no robot_specific_reset")

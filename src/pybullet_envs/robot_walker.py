@@ -67,13 +67,19 @@ class WalkerBase(MJCFBasedRobot):
         self.initial_z: Any = None
 
     def apply_action(self, a: np.ndarray) -> None:
-        """Drives the joints."""
-        for joint, share in zip(self.motors, checked(a), strict=True):
-            joint.set_motor_torque(self.power * joint.power_coef * float(share))
+        """Drives the joints.
+
+        Raises:
+            ValueError: The action has not one number for each motor, or one is not finite.
+        """
+        shares, own = checked(a), np.array([joint.power_coef for joint in self.motors])
+        if shares.shape != own.shape:
+            raise ValueError(f"the action has the shape {shares.shape}, where {own.shape} is asked for")
+        self.set_motor_torques(self.motors, self.power * own * shares)
 
     def calc_state(self) -> np.ndarray:
         """What is observed now."""
-        joints = np.array([joint.current_relative_position() for joint in self.ordered_joints], np.float32)
+        joints = self.relative_joint_states().astype(np.float32)
         self.joint_speeds = joints[:, 1]
         self.joints_at_limit = int(np.count_nonzero(np.abs(joints[:, 0]) > _NEAR_LIMIT))
         self._find_body()
@@ -90,10 +96,10 @@ class WalkerBase(MJCFBasedRobot):
 
     def _find_body(self) -> None:
         """Where the body is, and the goal from there."""
-        pose = self.robot_body.pose()
-        self.body_real_xyz = pose.xyz()
-        self.body_rpy = pose.rpy()
-        x, y, _ = np.mean([part.pose().xyz() for part in self.parts.values()], axis=0).tolist()
+        pose = self.robot_body.get_pose()
+        self.body_real_xyz = pose[:3]
+        self.body_rpy = self._p.getEulerFromQuaternion(pose[3:].tolist())
+        x, y, _ = self.middle().tolist()
         self.body_xyz = (x, y, float(self.body_real_xyz[2]))
         dx, dy = self.walk_target_x - x, self.walk_target_y - y
         self.walk_target_theta = atan2(dy, dx)

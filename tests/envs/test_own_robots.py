@@ -11,7 +11,7 @@ import pytest
 import pybullet_data
 from pybullet_envs.env_bases import MJCFBaseBulletEnv
 from pybullet_envs.gym_locomotion_envs import AntBulletEnv, WalkerBaseBulletEnv
-from pybullet_envs.robot_bases import BodyPart, MJCFBasedRobot, URDFBasedRobot
+from pybullet_envs.robot_bases import BodyPart, Joint, MJCFBasedRobot, URDFBasedRobot
 from pybullet_envs.robot_locomotors import WalkerBase
 from pybullet_envs.scene_abstract import SingleRobotEmptyScene
 
@@ -101,6 +101,33 @@ def test_what_scripts_read_of_a_robot() -> None:
     assert robot.robot_body.get_position() == pytest.approx((1.0, 2.0, 3.0))
     robot.robot_body.reset_velocity(linearVelocity=[0.5, 0.0, 0.0])
     assert robot.robot_body.speed() == pytest.approx((0.5, 0.0, 0.0))
+    env.close()
+
+
+def test_actions_of_the_wrong_length_are_refused() -> None:
+    env = AntBulletEnv()
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=r"the action has the shape \(1,\), where \(8,\) is asked for"):
+        env.step(np.ones(1))
+    env.close()
+
+
+def test_joints_of_several_bodies_are_told_apart() -> None:
+    env = CartEnv()
+    env.reset(seed=1)
+    robot = env.robot
+    second = env._p.loadURDF(
+        os.path.join(pybullet_data.getDataPath(), "cartpole.urdf"), [0, 2, 0], useFixedBase=True
+    )
+    joint = Joint(env._p, "other", [second], 0, 0)
+    joint.reset_position(-1.0, 0.0)
+    robot.ordered_joints.append(joint)
+    relative = robot.relative_joint_states()
+    expected = [each.current_relative_position() for each in robot.ordered_joints]
+    assert relative == pytest.approx(np.array(expected))
+    robot.set_motor_torques(robot.ordered_joints, np.array([0.0, 0.0, 20.0]))
+    env.scene.global_step()
+    assert joint.get_velocity() > 0.0
     env.close()
 
 

@@ -48,11 +48,24 @@ def test_includes_cannot_multiply_without_end(tmp_path: Path) -> None:
         read_sdf(tmp_path / "0.sdf")
 
 
-def test_an_include_that_is_nowhere_is_named(tmp_path: Path) -> None:
-    file = write(tmp_path, "<sdf>\n<include><uri>model://nowhere</uri></include></sdf>")
-    with pytest.raises(DescriptionError, match="'model://nowhere' was found neither") as raised:
-        read_sdf(file)
-    assert raised.value.line == 2
+@pytest.mark.parametrize("uri", ["<uri>model://nowhere</uri>", "<uri/>", ""])
+def test_an_include_that_is_nowhere_is_left_out(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, uri: str
+) -> None:
+    """As worlds for Gazebo have them; PyBullet leaves out all."""
+    file = write(tmp_path, f"<sdf><model name='m'>{A}</model>\n<include>{uri}</include></sdf>")
+    assert [placed.robot.name for placed in read_sdf(file)] == ["m"]
+    assert ":2: <include>: " in caplog.text
+    assert "was not found" in caplog.text
+
+
+def test_models_are_looked_for_where_scripts_have_files_searched(tmp_path: Path) -> None:
+    part = tmp_path / "models" / "part"
+    part.mkdir(parents=True)
+    write(part, sdf(A), "model.sdf")
+    file = write(tmp_path, "<sdf><include><uri>model://part</uri><name>copy</name></include></sdf>")
+    (copy,) = read_sdf(file, search=AssetSearch(tmp_path / "models"))
+    assert copy.robot.name == "copy"
 
 
 def test_links_that_hang_on_nothing_are_bodies_of_their_own(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def test_looks(client: int, wrong: Any) -> None:
     assert [data[7] for data in p.getVisualShapeData(mixed)] == [(1.0, 1.0, 1.0, 1.0), (1.0, 0.0, 0.0, 1.0)]
 
     p.changeVisualShape(mixed, -1, rgbaColor=wrong)
-    assert p.getVisualShapeData(mixed)[1][7] == (1.0, 0.0, 0.0, 1.0)
+    assert p.getVisualShapeData(mixed)[1][7] == (1.0, 1.0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("wrong", [*WRONG, [0.5] * 3])
@@ -94,7 +94,7 @@ def test_the_first_such_call_warns(ball: int, caplog: pytest.LogCaptureFixture) 
     for _ in range(3):
         p.changeVisualShape(ball, -1, rgbaColor=[1, 0, 0])
     assert [record.message for record in caplog.records] == [
-        "rgbaColor is not a sequence of 4 numbers and is ignored"
+        "rgbaColor is not a sequence of 4 numbers, so its default is used"
     ]
 
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from enum import IntEnum
+from collections.abc import Callable, Sequence
+from functools import partial
 from math import inf
+from struct import Struct
+from struct import error as StructError
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from carom.algorithms.chain import BodyChain
-from carom.algorithms.reach.search import inverse_kinematics_kernel
+from carom.algorithms.reach.search import DAMPED, NULL_SPACE, SELECTIVE, inverse_kinematics_kernel
 from carom.algorithms.reach.structs import Search
-from carom.model.arrays import ArrayTable
+from carom.model.arrays import ArrayTable, numbers_of
 from carom.model.codes import BASE_POSITIONS
 from carom.model.launch import Launch
 from carom.model.real import NUMPY_REAL
@@ -26,20 +27,13 @@ DEFAULT_THRESHOLD = 1e-4
 DEFAULT_DAMPING = 0.5
 _LEAST_DAMPING = 1e-9
 _DEVICE = "cpu"
+_NUMBER = np.dtype(NUMPY_REAL)
 _NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
 _FIRST_OPTION = 3
 # More would not help, but take forever.
 _MOST_ITERATIONS = 100_000
 Numbers = Sequence[float] | np.ndarray
-
-
-class Step(IntEnum):
-    """How the joints share the way of the ends."""
-
-    DAMPED = 0
-    NULL_SPACE = 1
-    SELECTIVE = 2
 
 
 def inverse_kinematics(
@@ -60,7 +54,7 @@ def inverse_kinematics(
     further: int | None = None,
     threshold: float = DEFAULT_THRESHOLD,
     patience: float = 0.0,
-) -> list[float]:
+) -> tuple[float, ...]:
     """Joint positions at which links are where they ought to be.
 
     The search starts at the present pose and follows PyBullet's damped least squares, with the same
@@ -98,15 +92,18 @@ def inverse_kinematics(
         ValueError: A sequence has the wrong length.
     """
     solver = _solver(body, tuple(links))
-    solver.set_targets(positions, orientations)
-    solver.set_base(None if in_base_frame else body)
-    solver.set_start(body, start)
+    try:
+        solver.set_targets(positions, orientations)
+        solver.set_base(None if in_base_frame else body)
+        solver.set_start(body, start)
+    except StructError as problem:
+        raise ValueError(f"a sequence does not fit: {problem}") from None
     solver.set_damping(damping)
-    step = Step.SELECTIVE if selective else Step.DAMPED
+    step = SELECTIVE if selective else DAMPED
     bounded = lower is not None and upper is not None
     solver.set_limits(lower, upper)
     if bounded and ranges is not None and rest is not None:
-        step = Step.NULL_SPACE
+        step = NULL_SPACE
         solver.set_rest(ranges, rest)
     further = iterations if further is None else further
     return solver.solve(orientations is not None, step, bounded, iterations, further, threshold, patience)
@@ -137,18 +134,22 @@ class _Solver:
             }
         )
         arrays = search.numpy
-        self._positions = arrays["end_given_position"][: len(links)]
-        self._rotations = arrays["end_given_rotation"][: len(links)]
+        self._write_positions = _writers(arrays["end_given_position"][: len(links)])
+        self._write_rotations = _writers(arrays["end_given_rotation"][: len(links)])
         self._base = arrays["base_pose"].data[:BASE_POSITIONS]
         self._start = arrays["coordinate_start"].data[: self._coordinates]
-        self._best = arrays["coordinate_best"][: self._coordinates]
+        self._write_start = _writers(arrays["coordinate_start"][None, : self._coordinates])[0]
+        self._best = arrays["coordinate_best"].data.cast("B")
+        self._unpack = Struct(f"{self._coordinates}{_NUMBER.char}").unpack_from
         self._damping, self._lower, self._upper, self._ranges, self._rest = (
             arrays[f"dof_{name}"][: self._dofs] for name in ("damping", "lower", "upper", "range", "rest")
         )
         self._damping.fill(DEFAULT_DAMPING)
         self._lower.fill(-inf)
         self._upper.fill(inf)
-        self._has_limits = self._has_damping = False
+        self._has_damping = self._has_limits = False
+        self._given_limits: tuple[Numbers, Numbers] | None = None
+        self._given_rest: tuple[Numbers, Numbers] | None = None
         self._options: tuple[float, ...] = ()
         self._launch = Launch(
             inverse_kinematics_kernel,
@@ -158,9 +159,11 @@ class _Solver:
         )
 
     def set_targets(self, positions: Sequence[Numbers], orientations: Sequence[Numbers] | None) -> None:
-        self._positions[:] = positions
+        for write, position in zip(self._write_positions, positions, strict=True):
+            write(*position)
         if orientations is not None:
-            self._rotations[:] = orientations
+            for write, orientation in zip(self._write_rotations, orientations, strict=True):
+                write(*orientation)
 
     def set_base(self, body: Body | None) -> None:
         """Say where the base is; without a body, that the targets are given in its frame."""
@@ -175,7 +178,7 @@ class _Solver:
             first = body.first_position + BASE_POSITIONS
             self._start[:] = body.world.position_memory[first : first + self._coordinates]
         else:
-            self._start[:] = np.array(start, dtype=NUMPY_REAL).data
+            self._write_start(*start)
 
     def set_damping(self, damping: Numbers | None) -> None:
         if damping is not None:
@@ -185,50 +188,64 @@ class _Solver:
         self._has_damping = damping is not None
 
     def set_limits(self, lower: Numbers | None, upper: Numbers | None) -> None:
-        bounded = lower is not None and upper is not None
-        if bounded:
-            self._lower[:] = lower
-            self._upper[:] = upper
-            unlimited = self._lower > self._upper
-            self._lower[unlimited] = -inf
-            self._upper[unlimited] = inf
+        if lower is not None and upper is not None:
+            given = _unchanging(lower, upper)
+            if given is None or given != self._given_limits:
+                self._lower[:] = lower
+                self._upper[:] = upper
+                unlimited = self._lower > self._upper
+                self._lower[unlimited] = -inf
+                self._upper[unlimited] = inf
+            self._given_limits = given
+            self._has_limits = True
         elif self._has_limits:
             self._lower.fill(-inf)
             self._upper.fill(inf)
-        self._has_limits = bounded
+            self._given_limits = None
+            self._has_limits = False
 
     def set_rest(self, ranges: Numbers, rest: Numbers) -> None:
-        self._ranges[:] = ranges
-        self._rest[:] = rest
+        given = _unchanging(ranges, rest)
+        if given is None or given != self._given_rest:
+            self._ranges[:] = ranges
+            self._rest[:] = rest
+            self._given_rest = given
 
     def solve(
         self,
         oriented: bool,
-        step: Step,
+        step: int,
         bounded: bool,
         iterations: int,
         further: int,
         threshold: float,
         patience: float,
-    ) -> list[float]:
-        most = _MOST_ITERATIONS
-        options = (oriented, step, bounded, min(iterations, most), min(further, most), threshold, patience)
+    ) -> tuple[float, ...]:
+        options = (oriented, step, bounded, iterations, further, threshold, patience)
         if options != self._options:
-            for index, value in enumerate(options, start=_FIRST_OPTION):
+            most = _MOST_ITERATIONS
+            limited = (*options[:3], min(iterations, most), min(further, most), *options[5:])
+            for index, value in enumerate(limited, start=_FIRST_OPTION):
                 self._launch.replace(index, value)
             self._options = options
         self._launch()
-        return self._best.tolist()
+        return self._unpack(self._best)
 
 
-_solvers: WeakKeyDictionary[Body, dict[tuple[int, ...], _Solver]] = WeakKeyDictionary()
+def _writers(rows: np.ndarray) -> list[Callable[..., None]]:
+    """What writes the numbers of each row."""
+    memory = numbers_of(rows).cast("B")
+    row = Struct(f"{rows.shape[1]}{_NUMBER.char}")
+    return [partial(row.pack_into, memory, place * row.size) for place in range(len(rows))]
+
+
+def _unchanging(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers] | None:
+    """Both together if they are tuples, which can be compared with others later."""
+    return (first, second) if type(first) is type(second) is tuple else None
 
 
 def _solver(body: Body, links: tuple[int, ...]) -> _Solver:
-    of_body = _solvers.get(body)
-    if of_body is None:
-        of_body = _solvers[body] = {}
-    solver = of_body.get(links)
+    solver = body.derived.get((_Solver, links))
     if solver is None:
-        solver = of_body[links] = _Solver(body, links)
+        solver = body.derived[_Solver, links] = _Solver(body, links)
     return solver

@@ -57,11 +57,7 @@ class AssetSearch:
         Returns:
             The path of an existing file, or None.
         """
-        name = name.removeprefix("file://")
-        for scheme in _SCHEMES:
-            if name.startswith(scheme):
-                name = name[len(scheme) :]
-                break
+        name = _without_scheme(name)
         if _is_file(name):
             return Path(name)
         # A name with a leading slash, left by `file:///`, still counts as relative to these directories.
@@ -74,6 +70,18 @@ class AssetSearch:
             if _is_file(prefix + relative):
                 return Path(prefix + relative)
         return None
+
+    def find_included(self, name: str, source: Path) -> Path | None:
+        """The file that a robot file includes: as `find_referenced`, and then as `find`."""
+        return self.find_referenced(name, source) or self.find(_without_scheme(name))
+
+
+def _without_scheme(name: str) -> str:
+    name = name.removeprefix("file://")
+    for scheme in _SCHEMES:
+        if name.startswith(scheme):
+            return name[len(scheme) :]
+    return name
 
 
 def _is_file(path: str) -> bool:

@@ -38,14 +38,14 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
     last_position = Vector3(0.0, 0.0, 0.0)
     last_rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
     for joint in range(sizes.joints):
-        origin = chain.joint_origin[joint]
-        rotation = chain.joint_turn[joint]
-        kind = chain.joint_kind[joint]
-        q = chain.joint_first_coordinate[joint]
+        origin = chain.joint[joint].origin
+        rotation = chain.joint[joint].turn
+        kind = chain.joint[joint].kind
+        q = chain.joint[joint].first_coordinate
         if kind == REVOLUTE:
             rotation = turned_about_z(rotation, coordinates[q])
         elif kind == PRISMATIC:
-            origin += z_axis(rotation) * (chain.joint_slide[joint] * coordinates[q])
+            origin += z_axis(rotation) * (chain.joint[joint].slide * coordinates[q])
         elif kind == SPHERICAL:
             rotation = rotation * Quaternion(
                 coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3]
@@ -53,19 +53,19 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
         elif kind == PLANAR:
             origin += wp.quat_rotate(
                 rotation,
-                chain.joint_planar_axis1[joint] * coordinates[q + 1]
-                + chain.joint_planar_axis2[joint] * coordinates[q + 2],
+                chain.joint[joint].planar_axis1 * coordinates[q + 1]
+                + chain.joint[joint].planar_axis2 * coordinates[q + 2],
             )
-            rotation = rotation * axis_rotation(chain.joint_axis[joint], coordinates[q])
-        parent = chain.joint_parent[joint]
+            rotation = rotation * axis_rotation(chain.joint[joint].axis, coordinates[q])
+        parent = chain.joint[joint].parent
         if parent >= 0:
             if parent != joint - 1:
-                last_position = search.joint_position[parent]
-                last_rotation = search.joint_rotation[parent]
+                last_position = search.joint[parent].position
+                last_rotation = search.joint[parent].rotation
             origin = last_position + wp.quat_rotate(last_rotation, origin)
             rotation = last_rotation * rotation
-        search.joint_position[joint] = origin
-        search.joint_rotation[joint] = rotation
+        search.joint[joint].position = origin
+        search.joint[joint].rotation = rotation
         last_position = origin
         last_rotation = rotation
 
@@ -76,7 +76,7 @@ def end_position(chain: Chain, search: Search, end: Int32) -> Vector3:
     joint = chain.end_joint[end]
     position = chain.end_offset[end]
     if joint >= 0:
-        position = search.joint_position[joint] + wp.quat_rotate(search.joint_rotation[joint], position)
+        position = search.joint[joint].position + wp.quat_rotate(search.joint[joint].rotation, position)
     return position
 
 
@@ -115,7 +115,7 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
             rotation = chain.end_turn[end]
             joint = chain.end_joint[end]
             if joint >= 0:
-                rotation = search.joint_rotation[joint] * rotation
+                rotation = search.joint[joint].rotation * rotation
             turn = rotation_vector(rotation, search.end_target_rotation[end])
             search.block_error[end * stride + 1] = turn
             angle = wp.max(angle, wp.length(turn))
@@ -144,15 +144,15 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
         position = end_position(chain, search, end)
         joint = chain.end_joint[end]
         while joint >= 0:
-            kind = chain.joint_kind[joint]
-            entry = chain.joint_first_column[joint] * blocks + end * stride
-            rotation = search.joint_rotation[joint]
+            kind = chain.joint[joint].kind
+            entry = chain.joint[joint].first_column * blocks + end * stride
+            rotation = search.joint[joint].rotation
             axis = z_axis(rotation)
-            arm = position - search.joint_position[joint]
+            arm = position - search.joint[joint].position
             if kind == REVOLUTE:
                 write_column(search, entry, oriented, wp.cross(axis, arm), axis)
             elif kind == PRISMATIC:
-                write_column(search, entry, oriented, axis * chain.joint_slide[joint], zero)
+                write_column(search, entry, oriented, axis * chain.joint[joint].slide, zero)
             elif kind == SPHERICAL:
                 for k in range(3):
                     unit = Vector3(0.0, 0.0, 0.0)
@@ -160,15 +160,15 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
                     axis = wp.quat_rotate(rotation, unit)
                     write_column(search, entry + k * blocks, oriented, wp.cross(axis, arm), axis)
             elif kind == PLANAR:
-                axis = wp.quat_rotate(rotation, chain.joint_axis[joint])
+                axis = wp.quat_rotate(rotation, chain.joint[joint].axis)
                 write_column(search, entry, oriented, wp.cross(axis, arm), axis)
-                angle = coordinates[chain.joint_first_coordinate[joint]]
-                unturned = rotation * axis_rotation(chain.joint_axis[joint], -angle)
-                first = wp.quat_rotate(unturned, chain.joint_planar_axis1[joint])
-                second = wp.quat_rotate(unturned, chain.joint_planar_axis2[joint])
+                angle = coordinates[chain.joint[joint].first_coordinate]
+                unturned = rotation * axis_rotation(chain.joint[joint].axis, -angle)
+                first = wp.quat_rotate(unturned, chain.joint[joint].planar_axis1)
+                second = wp.quat_rotate(unturned, chain.joint[joint].planar_axis2)
                 write_column(search, entry + blocks, oriented, first, zero)
                 write_column(search, entry + 2 * blocks, oriented, second, zero)
-            joint = chain.joint_parent[joint]
+            joint = chain.joint[joint].parent
 
 
 @func
@@ -190,12 +190,12 @@ def advance(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, resul
     for dof in range(sizes.dofs):
         coordinate = chain.dof_coordinate[dof]
         if coordinate >= 0:
-            result[coordinate] = start[coordinate] + search.dof_step[dof]
+            result[coordinate] = start[coordinate] + search.dof[dof].step
     for joint in range(sizes.joints):
-        if chain.joint_kind[joint] == SPHERICAL:
-            dof = chain.joint_first_dof[joint]
-            q = chain.joint_first_coordinate[joint]
-            rate = Vector3(search.dof_step[dof], search.dof_step[dof + 1], search.dof_step[dof + 2])
+        if chain.joint[joint].kind == SPHERICAL:
+            dof = chain.joint[joint].first_dof
+            q = chain.joint[joint].first_coordinate
+            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
             quaternion = turned(start, q, rate)
             for k in range(4):
                 result[q + k] = quaternion[k]

@@ -13,7 +13,19 @@ from carom.algorithms.reach.selective_step import selective_step
 from carom.algorithms.reach.steps import bounded_step, damped_step, null_space_step
 from carom.algorithms.reach.structs import Chain, ChainSizes, Search
 from carom.model.codes import SPHERICAL
-from carom.model.real import Int32, Quaternion, Reals, Vector3, Vector4, func, kernel, real
+from carom.model.real import (
+    Int32,
+    Quaternion,
+    Reals,
+    Vector3,
+    Vector4,
+    func,
+    fuse_multiply_add,
+    kernel,
+    real,
+)
+
+fuse_multiply_add(__name__)
 
 # What follows PyBullet's iteration: `step_kind` of the kernel.
 DAMPED, NULL_SPACE, SELECTIVE = wp.constant(0), wp.constant(1), wp.constant(2)
@@ -72,7 +84,7 @@ def keep_limits(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Re
         coordinate = chain.dof_coordinate[dof]
         if coordinate >= 0:
             position = coordinates[coordinate]
-            within = wp.clamp(position, search.dof_lower[dof], search.dof_upper[dof])
+            within = wp.clamp(position, search.dof[dof].lower, search.dof[dof].upper)
             if within != position:
                 coordinates[coordinate] = within
                 changed = Int32(1)
@@ -143,24 +155,24 @@ def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed:
     copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
     random = wp.rand_init(seed)
     for column in range(sizes.columns):
-        dof = chain.column_dof[column]
-        low = chain.column_low[column]
-        high = chain.column_high[column]
-        if search.dof_lower[dof] > -1.0e6 and search.dof_upper[dof] < 1.0e6:
-            low = search.dof_lower[dof]
-            high = search.dof_upper[dof]
+        dof = chain.column[column].dof
+        low = chain.column[column].low
+        high = chain.column[column].high
+        if search.dof[dof].lower > -1.0e6 and search.dof[dof].upper < 1.0e6:
+            low = search.dof[dof].lower
+            high = search.dof[dof].upper
         offset = spread * (high - low) * (real(wp.randf(random)) - 0.5) * 2.0
         coordinate = chain.dof_coordinate[dof]
-        search.dof_step[dof] = offset
+        search.dof[dof].step = offset
         if coordinate >= 0:
             search.coordinate_now[coordinate] = wp.clamp(
                 search.coordinate_start[coordinate] + offset, low, high
             )
     for joint in range(sizes.joints):
-        if chain.joint_kind[joint] == SPHERICAL:
-            dof = chain.joint_first_dof[joint]
-            q = chain.joint_first_coordinate[joint]
-            rate = Vector3(search.dof_step[dof], search.dof_step[dof + 1], search.dof_step[dof + 2])
+        if chain.joint[joint].kind == SPHERICAL:
+            dof = chain.joint[joint].first_dof
+            q = chain.joint[joint].first_coordinate
+            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
             quaternion = turned(search.coordinate_start, q, rate)
             for k in range(4):
                 search.coordinate_now[q + k] = quaternion[k]
@@ -205,12 +217,12 @@ def inverse_kinematics_kernel(
     """
     take_targets(sizes, search)
     for column in range(sizes.columns):
-        search.column_held[column] = 0
-        search.column_weight[column] = real(1.0)
+        search.column[column].held = 0
+        search.column[column].weight = real(1.0)
         if step_kind == DAMPED:
-            search.column_weight[column] = 1.0 / search.dof_damping[chain.column_dof[column]]
+            search.column[column].weight = 1.0 / search.dof[chain.column[column].dof].damping
     for dof in range(sizes.dofs):
-        search.dof_step[dof] = real(0.0)
+        search.dof[dof].step = real(0.0)
     copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
     bearable = real(0.0)
     if patience > 0.0:
@@ -236,11 +248,11 @@ def inverse_kinematics_kernel(
     if step_kind == DAMPED:
         mean = real(0.0)
         for column in range(sizes.columns):
-            mean += search.column_weight[column] / real(sizes.columns)
+            mean += search.column[column].weight / real(sizes.columns)
         for column in range(sizes.columns):
-            search.column_weight[column] = search.column_weight[column] / mean
+            search.column[column].weight = search.column[column].weight / mean
     for dof in range(sizes.dofs):
-        search.dof_step[dof] = real(0.0)
+        search.dof[dof].step = real(0.0)
     left = further
     if outside == 1:
         left = iterations
@@ -257,7 +269,7 @@ def inverse_kinematics_kernel(
             return
         scatter(sizes, chain, search, spread, seed)
         for dof in range(sizes.dofs):
-            search.dof_step[dof] = real(0.0)
+            search.dof[dof].step = real(0.0)
         if bounded == 1:
             keep_limits(sizes, chain, search, search.coordinate_now)
         place(sizes, chain, search, search.coordinate_now)

@@ -89,7 +89,7 @@ def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int3
     for i in range(rows):
         largest = wp.max(largest, a[i * rows + i])
     for column in range(sizes.columns):
-        search.dof_step[chain.column_dof[column]] = real(0.0)
+        search.dof[chain.column[column].dof].step = real(0.0)
     for i in range(rows):
         if a[i * rows + i] > 1.0e-12 * largest:
             add_direction(sizes, chain, search, blocks, i)
@@ -130,7 +130,7 @@ def add_direction(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32
         factor *= bound / (wp.abs(factor) * greatest)
     for column in range(sizes.columns):
         share = direction_share(search, blocks, column, direction) / singular
-        search.dof_step[chain.column_dof[column]] += factor * share
+        search.dof[chain.column[column].dof].step += factor * share
 
 
 @func

@@ -30,9 +30,15 @@ def jacobian_times(search: Search, blocks: Int32, column: Int32, factor: real):
 @func
 def response(search: Search, blocks: Int32, column: Int32) -> real:
     """One entry of the transposed Jacobian times `block_solution`."""
-    total = real(0.0)
-    for block in range(blocks):
-        total += wp.dot(search.entry_jacobian[column * blocks + block], search.block_solution[block])
+    # Most questions are about one end.
+    if blocks == 1:
+        return wp.dot(search.entry_jacobian[column], search.block_solution[0])
+    entry = column * blocks
+    total = wp.dot(search.entry_jacobian[entry], search.block_solution[0]) + wp.dot(
+        search.entry_jacobian[entry + 1], search.block_solution[1]
+    )
+    for block in range(2, blocks):
+        total += wp.dot(search.entry_jacobian[entry + block], search.block_solution[block])
     return total
 
 
@@ -48,8 +54,8 @@ def weighted_product(sizes: ChainSizes, search: Search, blocks: Int32, i: Int32,
     """The block (i, k) of J W Jᵀ without the columns that are held."""
     total = Matrix3()
     for column in range(sizes.columns):
-        if search.column_held[column] == 0:
-            weighted = search.column_weight[column] * search.entry_jacobian[column * blocks + i]
+        if search.column[column].held == 0:
+            weighted = search.column[column].weight * search.entry_jacobian[column * blocks + i]
             total += wp.outer(weighted, search.entry_jacobian[column * blocks + k])
     return total
 
@@ -59,9 +65,9 @@ def solve_for_points(sizes: ChainSizes, search: Search, damping: real):
     """`solve_blocks` for a single block."""
     a = wp.diag(Vector3(damping, damping, damping))
     for column in range(sizes.columns):
-        if search.column_held[column] == 0:
+        if search.column[column].held == 0:
             first = search.entry_jacobian[column]
-            a += wp.outer(search.column_weight[column] * first, first)
+            a += wp.outer(search.column[column].weight * first, first)
     search.block_solution[0] = wp.inverse(a) * search.block_solution[0]
 
 
@@ -72,8 +78,8 @@ def solve_for_pairs(sizes: ChainSizes, search: Search, damping: real):
     b = Matrix3()
     c = wp.diag(Vector3(damping, damping, damping))
     for column in range(sizes.columns):
-        if search.column_held[column] == 0:
-            weight = search.column_weight[column]
+        if search.column[column].held == 0:
+            weight = search.column[column].weight
             first = search.entry_jacobian[2 * column]
             second = search.entry_jacobian[2 * column + 1]
             weighted = weight * second
@@ -129,10 +135,10 @@ def limit_step(sizes: ChainSizes, search: Search) -> real:
     """Shorten a step in which a joint moves too far; returns how far the farthest wanted to."""
     greatest = real(0.0)
     for dof in range(sizes.dofs):
-        greatest = wp.max(greatest, wp.abs(search.dof_step[dof]))
+        greatest = wp.max(greatest, wp.abs(search.dof[dof].step))
     if greatest > MAX_STEP:
         for dof in range(sizes.dofs):
-            search.dof_step[dof] = search.dof_step[dof] * (MAX_STEP / greatest)
+            search.dof[dof].step = search.dof[dof].step * (MAX_STEP / greatest)
     return greatest
 
 
@@ -142,7 +148,7 @@ def damped_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) 
     start_from_errors(search, blocks)
     solve_blocks(sizes, search, blocks, real(1.0))
     for column in range(sizes.columns):
-        search.dof_step[chain.column_dof[column]] = search.column_weight[column] * response(
+        search.dof[chain.column[column].dof].step = search.column[column].weight * response(
             search, blocks, column
         )
     return limit_step(sizes, search)
@@ -161,21 +167,21 @@ def null_space_step(
         coordinate = chain.dof_coordinate[dof]
         if coordinate >= 0:
             position = coordinates[coordinate]
-            pull = _REST_GAIN * (search.dof_rest[dof] - position)
+            pull = _REST_GAIN * (search.dof[dof].rest - position)
             push = real(0.0)
-            if position > search.dof_upper[dof]:
-                push += search.dof_upper[dof] - position
-            if position < search.dof_lower[dof]:
-                push += search.dof_lower[dof] - position
-            if push != 0.0 and search.dof_range[dof] != 0.0:
-                pull += _LIMIT_GAIN * push / search.dof_range[dof]
-        search.dof_step[dof] = pull
+            if position > search.dof[dof].upper:
+                push += search.dof[dof].upper - position
+            if position < search.dof[dof].lower:
+                push += search.dof[dof].lower - position
+            if push != 0.0 and search.dof[dof].range != 0.0:
+                pull += _LIMIT_GAIN * push / search.dof[dof].range
+        search.dof[dof].step = pull
     start_from_errors(search, blocks)
     for column in range(sizes.columns):
-        jacobian_times(search, blocks, column, search.dof_step[chain.column_dof[column]])
+        jacobian_times(search, blocks, column, search.dof[chain.column[column].dof].step)
     solve_blocks(sizes, search, blocks, _NULL_SPACE_DAMPING)
     for column in range(sizes.columns):
-        search.dof_step[chain.column_dof[column]] += response(search, blocks, column)
+        search.dof[chain.column[column].dof].step += response(search, blocks, column)
     return limit_step(sizes, search)
 
 
@@ -188,31 +194,31 @@ def bounded_step(
     Joints that it would take beyond a limit are held there, and the others do their share.
     """
     for column in range(sizes.columns):
-        search.column_held[column] = 0
+        search.column[column].held = 0
     passes = Int32(0)
     settled = Int32(0)
     while settled == 0:
         start_from_errors(search, blocks)
         for column in range(sizes.columns):
-            if search.column_held[column] == 1:
-                jacobian_times(search, blocks, column, search.dof_step[chain.column_dof[column]])
+            if search.column[column].held == 1:
+                jacobian_times(search, blocks, column, search.dof[chain.column[column].dof].step)
         solve_blocks(sizes, search, blocks, damping)
         settled = Int32(1)
         for column in range(sizes.columns):
-            if search.column_held[column] == 0:
-                dof = chain.column_dof[column]
-                step = search.column_weight[column] * response(search, blocks, column)
+            if search.column[column].held == 0:
+                dof = chain.column[column].dof
+                step = search.column[column].weight * response(search, blocks, column)
                 coordinate = chain.dof_coordinate[dof]
                 if coordinate >= 0:
                     position = coordinates[coordinate]
                     within = wp.clamp(
-                        step, search.dof_lower[dof] - position, search.dof_upper[dof] - position
+                        step, search.dof[dof].lower - position, search.dof[dof].upper - position
                     )
                     if within != step:
                         step = within
-                        search.column_held[column] = 1
+                        search.column[column].held = 1
                         settled = Int32(0)
-                search.dof_step[dof] = step
+                search.dof[dof].step = step
         passes += 1
         if passes > sizes.columns:
             settled = Int32(1)

@@ -11,9 +11,11 @@ the body's joints, a *coordinate* any of their positions; the two differ for sph
 three dofs and a quaternion. A field's axis is the first word of its name.
 """
 
+from typing import TYPE_CHECKING, Any
+
 import warp as wp
 
-from carom.model.real import Int32, Ints, Matrix3, Quaternions, Reals, Vectors3
+from carom.model.real import Int32, Ints, Matrix3, Quaternion, Quaternions, Reals, Vector3, Vectors3, real
 
 Matrices3 = wp.array(dtype=Matrix3)
 
@@ -30,28 +32,82 @@ class ChainSizes:
 
 
 @wp.struct
+class JointModel:
+    """A joint of the chain."""
+
+    kind: Int32
+    parent: Int32  # -1 is the base
+    first_coordinate: Int32
+    first_dof: Int32
+    first_column: Int32
+    origin: Vector3  # of the joint frame in that of the parent, at position 0
+    turn: Quaternion
+    slide: real  # motion of a prismatic joint per unit of its position
+    axis: Vector3  # of a planar joint's turn; those of hinges and sliders are the z axes
+    planar_axis1: Vector3
+    planar_axis2: Vector3
+
+
+@wp.struct
+class ColumnModel:
+    """A freedom of a joint of the chain."""
+
+    dof: Int32
+    low: real  # where new starts are drawn from
+    high: real
+
+
+@wp.struct
+class JointPlace:
+    """Where the frame of a joint is."""
+
+    position: Vector3
+    rotation: Quaternion
+
+
+@wp.struct
+class DofChoice:
+    """What is asked of a dof, and its next step."""
+
+    damping: real
+    lower: real
+    upper: real
+    range: real
+    rest: real
+    step: real
+
+
+@wp.struct
+class ColumnChoice:
+    """How much a column may do."""
+
+    weight: real
+    held: Int32  # 1 at a bound that its step would pass
+
+
+if TYPE_CHECKING:
+    JointModels = Any
+    ColumnModels = Any
+    JointPlaces = Any
+    DofChoices = Any
+    ColumnChoices = Any
+else:
+    JointModels = wp.array(dtype=JointModel)
+    ColumnModels = wp.array(dtype=ColumnModel)
+    JointPlaces = wp.array(dtype=JointPlace)
+    DofChoices = wp.array(dtype=DofChoice)
+    ColumnChoices = wp.array(dtype=ColumnChoice)
+
+
+@wp.struct
 class Chain:
     """The joints that move the ends; parents before children."""
 
-    joint_kind: Ints
-    joint_parent: Ints  # -1 is the base
-    joint_first_coordinate: Ints
-    joint_first_dof: Ints
-    joint_first_column: Ints
-    joint_origin: Vectors3  # of the joint frame in that of the parent, at position 0
-    joint_turn: Quaternions
-    joint_slide: Reals  # motion of a prismatic joint per unit of its position
-    joint_axis: Vectors3  # of a planar joint's turn; those of hinges and sliders are the z axes
-    joint_planar_axis1: Vectors3
-    joint_planar_axis2: Vectors3
-
+    joint: JointModels
     end_joint: Ints  # the joint that carries it, -1 if none does
     end_offset: Vectors3  # in the frame of that joint
     end_turn: Quaternions
-
-    column_dof: Ints
-    column_low: Reals  # where new starts are drawn from
-    column_high: Reals
+    column: ColumnModels
     dof_coordinate: Ints  # -1 for the dofs of spherical joints
 
 
@@ -68,22 +124,15 @@ class Search:
     end_given_rotation: Quaternions
     end_target_position: Vectors3
     end_target_rotation: Quaternions
-    dof_damping: Reals
-    dof_lower: Reals
-    dof_upper: Reals
-    dof_range: Reals
-    dof_rest: Reals
+    dof: DofChoices
 
     coordinate_start: Reals
     coordinate_now: Reals
     coordinate_trial: Reals
     coordinate_best: Reals  # what the answer is in the end
 
-    joint_position: Vectors3
-    joint_rotation: Quaternions
-    dof_step: Reals
-    column_weight: Reals
-    column_held: Ints  # 1 at a bound that its step would pass
+    joint: JointPlaces
+    column: ColumnChoices
     block_error: Vectors3
     block_solution: Vectors3
     entry_jacobian: Vectors3

@@ -165,6 +165,17 @@ def moved_on(
             Vector3(change[0] + angular[1] * spin, change[1] - angular[0] * spin, change[2] + spin_up),
             linear,
         )
+    if tree.node[node].joint_type == PRISMATIC:
+        axis = tree.dof[dof].linear
+        linear += wp.cross(2.0 * angular, axis * joints[rates + dof])
+        if accelerations >= 0:
+            linear += axis * joints[accelerations + dof]
+        return angular, change, linear
+    if tree.node[node].joint_type == SPHERICAL:
+        own = vector_at(joints, rates + dof)
+        if accelerations >= 0:
+            change += vector_at(joints, accelerations + dof)
+        return angular + own, change + wp.cross(angular, own), linear
     joint_omega = Vector3(0.0, 0.0, 0.0)
     joint_velocity = Vector3(0.0, 0.0, 0.0)
     for other in range(dof, dof + tree.node[node].dof_count):
@@ -227,6 +238,11 @@ def gather_forces(sizes: TreeSizes, tree: Tree):
         dof = tree.node[node].first_dof
         if tree.node[node].joint_type == REVOLUTE:
             tree.output[dof] = tree.dof[dof].angular[2] * torque[2]
+        elif tree.node[node].joint_type == PRISMATIC:
+            tree.output[dof] = wp.dot(tree.dof[dof].linear, force)
+        elif tree.node[node].joint_type == SPHERICAL:
+            for k in range(3):
+                tree.output[dof + k] = torque[k]
         else:
             for other in range(dof, dof + tree.node[node].dof_count):
                 tree.output[other] = wp.dot(tree.dof[other].angular, torque) + wp.dot(

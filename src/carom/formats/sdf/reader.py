@@ -8,6 +8,7 @@ from pathlib import Path
 from carom.description.transform import compose
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
+from carom.formats.robot.context import shown
 from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.includes import Includes
 from carom.formats.sdf.context import SdfContext
@@ -72,10 +73,13 @@ class _Reading:
     def _include(
         self, context: SdfContext, element: Element, including: tuple[Path, ...]
     ) -> list[PlacedRobot]:
-        uri = context.text(element, "uri")
-        if not uri:
-            raise context.error(element, "<uri> is missing")
-        file = self.includes.admit(context, element, uri, _included_file(context, uri), including)
+        uri = context.text(element, "uri") or ""
+        found = _included_file(context, uri)
+        if found is None:
+            # Worlds made for Gazebo include models of its own collection. PyBullet leaves all includes out.
+            context.warn(element, f"{shown(uri)} was not found; it is left out, as in PyBullet")
+            return []
+        file = self.includes.admit(context, element, uri, found, including)
         robots = self.read(file, including)
         name = context.text(element, "name")
         if name:
@@ -93,7 +97,7 @@ class _Reading:
 def _included_file(context: SdfContext, uri: str) -> Path | None:
     """A file, or the model in a directory."""
     for name in (uri, f"{uri.rstrip('/')}/{_MODEL_FILE}"):
-        file = context.find_file(name)
+        file = context.search.find_included(name, context.file)
         if file is not None:
             return file
     return None
