@@ -8,7 +8,7 @@ once in about logarithmic time.
 import warp as wp
 
 from carom.collision.bounds import boxes_meet, look_ahead, place_shapes
-from carom.collision.filters import may_touch
+from carom.collision.filters import SELF_COLLISION, may_touch
 from carom.collision.hierarchy import (
     BOUNDED,
     LEAVES,
@@ -65,9 +65,14 @@ def compare_in_leaf(
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
     breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
+    avoided = Int32(-1)
+    if shapes.link_self_collision[shapes.shape_link[a]] & SELF_COLLISION == 0:
+        avoided = shapes.shape_tree[a]
     first = wp.max(start, leaf_start(pairs, world, leaf))
     for place in range(first, leaf_start(pairs, world, leaf + 1)):
         b = pairs.shape_order[world, place]
+        if shapes.shape_tree[b] == avoided:
+            continue
         reach = breaking + pairs.shape_motion[world, b]
         if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], reach):
             if bounds_meet(pairs, world, a, b, bounds_reach(shapes, pairs, world, a, b)):
