@@ -44,8 +44,8 @@ _SLOW_STEPS = wp.constant(3)
 _NEAR = real(0.02)
 # Poses to try at least where limits are to be kept: often only another pose of the arm arrives within them.
 _WITHIN_LIMITS = wp.constant(300)
-# Share of the best squared errors that makes another pose, which does not arrive either, worth going there: who
-# asks in each step does not want the arm to jump for little.
+# Share of the best squared errors that makes another pose, which does not arrive either, worth going there:
+# who asks in each step does not want the arm to jump for little.
 _WORTH_A_JUMP = real(0.8)
 # Share of the joints' ranges within which the first new start is drawn.
 _FIRST_SPREAD = real(0.05)
