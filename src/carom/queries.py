@@ -81,6 +81,14 @@ class Queries:
     def _contacts(self) -> ContactSearch:
         return ContactSearch(self._structs, self._device)
 
+    @cached_property
+    def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Of each shape the lowest and the highest corner, whether it has no bounds, and its link."""
+        rows = slice(self._shape_count)
+        endless = self._shapes["shape_kind"][rows] == PLANE
+        lowest, highest = (self._pairs[name][0, rows] for name in ("shape_lower", "shape_upper"))
+        return lowest, highest, endless, self._shapes["shape_link"][rows]
+
     def cast_rays(
         self,
         starts: Points,
@@ -151,14 +159,12 @@ class Queries:
             lower: Lowest corner of the box in world axes [m].
             upper: Its highest corner.
         """
-        count = self._shape_count
-        if not count:
+        if not self._shape_count:
             return []
         self._prepare(PLACED)
-        endless = self._shapes["shape_kind"][:count] == PLANE
-        meets = (self._pairs["shape_lower"][0, :count] <= np.asarray(upper)).all(axis=1)
-        meets &= (self._pairs["shape_upper"][0, :count] >= np.asarray(lower)).all(axis=1)
-        return np.unique(self._shapes["shape_link"][:count][meets | endless]).tolist()
+        lowest, highest, endless, links = self._extents
+        meets = ((lowest <= upper) & (highest >= lower)).all(axis=1) | endless
+        return sorted(set(links[meets].tolist()))
 
     def _prepare(self, readiness: int) -> None:
         """Place the shapes by the present coordinates, unless they are there already.

@@ -132,7 +132,8 @@ def calculateInverseKinematics(
         solver: `IK_DLS`, damped least squares, or `IK_SDLS`, selectively damped ones. With rest poses
             always the former.
         currentPositions: Joint positions to start from.
-        maxNumIterations: Most steps of PyBullet's iteration, and as many for going on; 20 at first.
+        maxNumIterations: Most steps of PyBullet's iteration; 20 if not given. As many for going on, and with
+            limits at least 300.
         residualThreshold: Distance [m], and angle [rad], that are close enough; 1e-4 at first.
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from math import inf
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
@@ -26,6 +27,8 @@ __all__ = [
 _ILLEGAL_MODE = "Illegal control mode."
 _NO_CLAMP = -1.0
 _NO_DAMPING = 1.0
+_USUAL_LISTS = frozenset((list, tuple))
+_USUAL_NUMBERS = frozenset((float, int))
 
 
 @exported
@@ -152,11 +155,11 @@ def setJointMotorControlMultiDofArray(
             fail(OUT_OF_RANGE, no_joint(access.body, index))
     joints = [access.joints[index] for index in requested]
     positions, velocities, bounds = (
-        [_list(entry, name, most) for entry in lists[name]] or [()] * count
+        _lists(lists[name], name, most) or [()] * count
         for name, most in (("targetPositions", 4), ("targetVelocities", 3), ("forces", 3))
     )
-    kps = [real(kp, "positionGains") for kp in lists["positionGains"] or [DEFAULT_POSITION_GAIN] * count]
-    kds = [real(kd, "velocityGains") for kd in lists["velocityGains"] or [DEFAULT_VELOCITY_GAIN] * count]
+    kps = _gains(lists["positionGains"], "positionGains") or [DEFAULT_POSITION_GAIN] * count
+    kds = _gains(lists["velocityGains"], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
     for position in positions:
         _check_rotation(position)
     if mode == STABLE_PD_CONTROL:
@@ -185,17 +188,33 @@ def _stable_pd(
     """Adds the torques of a stable PD controller to those of the next step."""
     from carom.algorithms.stable_pd import JointTarget, stable_pd_torques
 
+    columns = zip(positions, velocities, forces, kps, kds, strict=True)
+    targets = zip([joint.index for joint in joints], map(JointTarget._make, columns), strict=True)
     body = joints[0].body
-    targets = {}
-    for joint, position, velocity, force, kp, kd in zip(
-        joints, positions, velocities, forces, kps, kds, strict=True
-    ):
-        targets[joint.index] = JointTarget(position, velocity, force, kp, kd)
-    torques = stable_pd_torques(body, targets, time_step)
+    torques = stable_pd_torques(body, dict(targets), time_step)
     first = body.first_velocity
-    memory = joints[0].torques
-    for column, torque in enumerate(torques.tolist()):
-        memory[first + column] += torque
+    body.world.joint_torque[first : first + len(torques)] += torques
+
+
+def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[Sequence[float]]:
+    """The numbers of each joint, all looked at together if they are as usual."""
+    try:
+        if (
+            _USUAL_LISTS.issuperset(map(type, entries))
+            and max(map(len, entries), default=0) <= most  # type: ignore[arg-type]
+            and -inf < sum(chain.from_iterable(entries)) < inf  # type: ignore[arg-type]
+        ):
+            return entries  # type: ignore[return-value]
+    except TypeError:
+        pass
+    return [_list(values, name, most) for values in entries]
+
+
+def _gains(values: Sequence[float], name: str) -> Sequence[float]:
+    """Finite numbers, all looked at together if they are as usual."""
+    if _USUAL_NUMBERS.issuperset(map(type, values)) and -inf < sum(values) < inf:
+        return values
+    return [real(value, name) for value in values]
 
 
 def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:

@@ -87,6 +87,9 @@ class MJCFBaseBulletEnv(BulletEnv):
         robot: The robot.
         scene: Where it is, from the first `reset` on.
         camera: That of the viewer.
+        physicsClientId: The connection, -1 while there is none.
+        isRender: Whether there is a window.
+        stateId: The state of the first episode, -1 before it.
         potential: What the last step came to, as the robot's `calc_potential` has it.
         rewards: The parts of the last reward.
         restores: Whether the world is put back into the state of the first episode before each other one.
@@ -107,7 +110,8 @@ class MJCFBaseBulletEnv(BulletEnv):
         super().__init__(render, render_mode)
         self.robot = robot
         self.scene: Any = None
-        self.stateId = -1
+        self.stateId = self.physicsClientId = -1
+        self.isRender = self.render_mode == "human"
         self.camera = Camera(self)
         self.action_space = robot.action_space
         self.observation_space = robot.observation_space
@@ -122,6 +126,7 @@ class MJCFBaseBulletEnv(BulletEnv):
         """Begins an episode."""
         super().reset(seed=seed)
         if self._connect():
+            self.physicsClientId = self._p._client
             self._p.setPhysicsEngineParameter(deterministicOverlappingPairs=1)
         elif self.stateId >= 0:
             self._p.restoreState(self.stateId)
@@ -155,7 +160,7 @@ class MJCFBaseBulletEnv(BulletEnv):
         super().close()
         self.robot.forget()
         self.scene = None
-        self.stateId = -1
+        self.stateId = self.physicsClientId = -1
 
 
 def checked(action: Any) -> np.ndarray:

@@ -53,6 +53,23 @@ def test_targets_are_reached_as_often_as_by_pybullet_and_nearly_always(reach, na
         assert all(reach.within_limits(answer) for answer in answers)
 
 
+@pytest.mark.parametrize("rested", [False, True])
+def test_targets_are_reached_within_limits_from_anywhere(reach, rested):
+    """In 20 iterations, as nothing is said of them, and often not near the pose at the start."""
+    random, way, reached = np.random.RandomState(11), Way(100), 0
+    options = {"lowerLimits": reach.lower.tolist(), "upperLimits": reach.upper.tolist()}
+    if rested:
+        options |= {"jointRanges": (reach.upper - reach.lower).tolist(), "restPoses": reach.home.tolist()}
+    for target in reach.targets(way.poses):
+        reach.place(random.uniform(reach.lower, reach.upper))
+        answer = p.calculateInverseKinematics(
+            reach.body, reach.arm.link, target[0].tolist(), physicsClientId=reach.client, **options
+        )
+        assert reach.within_limits(answer)
+        reached += reach.reached(way, target, answer)
+    assert reached >= 0.95 * way.poses
+
+
 @pytest.mark.parametrize("title", WAYS)
 def test_where_pybullet_arrives_the_answer_is_the_same(reach, name, title):
     way, compared = WAYS[title], 0

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
+import pybullet
 import pybullet_data
 from pybullet_envs.env_bases import MJCFBaseBulletEnv
 from pybullet_envs.gym_locomotion_envs import AntBulletEnv, WalkerBaseBulletEnv
@@ -91,6 +92,8 @@ def test_what_scripts_read_of_a_robot() -> None:
     assert list(robot.jdict) == [f"{part}_{n}" for n in range(1, 5) for part in ("hip", "ankle")]
     assert [joint.joint_name for joint in robot.ordered_joints] == list(robot.jdict)
     assert {joint.power_coef for joint in robot.ordered_joints} == {100.0}
+    assert pybullet.isConnected(env.physicsClientId)
+    assert not env.isRender
     assert robot.parts["torso"] is robot.robot_body
     assert robot.robot_body.pose().xyz() == pytest.approx(robot.body_real_xyz)
     assert robot.robot_body.pose().rpy() == pytest.approx(robot.body_rpy)
@@ -102,6 +105,7 @@ def test_what_scripts_read_of_a_robot() -> None:
     robot.robot_body.reset_velocity(linearVelocity=[0.5, 0.0, 0.0])
     assert robot.robot_body.speed() == pytest.approx((0.5, 0.0, 0.0))
     env.close()
+    assert env.physicsClientId == -1
 
 
 def test_actions_of_the_wrong_length_are_refused() -> None:

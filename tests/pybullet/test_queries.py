@@ -260,6 +260,13 @@ def test_a_mask_of_rays_counts_when_it_changes(things):
     assert p.rayTest([0, 0, 9], [0, 0, 0.9], collisionFilterMask=2)[0][0] == box
 
 
+def height(body: int) -> float:
+    """Of the centre of mass of the first link, as getLinkState has it."""
+    state = p.getLinkState(body, 0)
+    assert state is not None
+    return state[0][2]
+
+
 @pytest.mark.parametrize(
     ("call", "brings_up_to_date"),
     [
@@ -279,9 +286,9 @@ def test_which_calls_bring_links_up_to_date_after_a_step(client, tmp_path, call,
     p.setGravity(0, 0, -10)
     for _ in range(10):
         p.stepSimulation()
-    before = p.getLinkState(body, 0)[4][2]
+    before = height(body)
     call(body)
-    assert (p.getLinkState(body, 0)[4][2] < before - 1e-4) == brings_up_to_date
+    assert (height(body) < before - 1e-4) == brings_up_to_date
 
 
 def test_rays_of_a_link_start_where_it_was_at_the_start_of_the_last_substep(client, tmp_path) -> None:
@@ -291,6 +298,6 @@ def test_rays_of_a_link_start_where_it_was_at_the_start_of_the_last_substep(clie
     p.resetBaseVelocity(body, [0, 0, -24])
     p.stepSimulation()
     (hit,) = p.rayTestBatch([[0, -1, 0]], [[0, -9, 0]], 1, body, 0)
-    assert hit[3][2] == pytest.approx(p.getLinkState(body, 0)[0][2])
+    assert hit[3][2] == pytest.approx(height(body))
     (hit,) = p.rayTestBatch([[0, -1, 0]], [[0, -9, 0]], 1, body, -1)
     assert hit[3][2] == pytest.approx(p.getBasePositionAndOrientation(body)[0][2])

@@ -79,7 +79,7 @@ def inverse_kinematics(
         start: Joint positions to start from, a quaternion for each spherical joint.
         in_base_frame: Targets are in the inertial frame of the base instead of the world's.
         iterations: Most steps of PyBullet's method.
-        further: Most steps of the other one, unless a limit is violated: then, or where not given, as many.
+        further: Most steps of the other one; where not given as many, and with limits 300 at least.
         threshold: Distance [m] and angle [rad] that are close enough.
         patience: The result of PyBullet's method is taken as it is if it keeps the limits and leaves not more
             than this share of the first distance, or 2 cm; 0 takes it only where it arrives.

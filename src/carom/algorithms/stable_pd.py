@@ -91,6 +91,17 @@ class _Controller:
         self._unaimed = array(_TYPE_CODE)
         for count in body.position_count:
             self._unaimed.extend(_NO_TURN if count == 4 else (0.0,) * count)
+        # The dofs of the tree begin with those of the base, as the body's do.
+        shift_q, shift_u = body.first_position + BASE_POSITIONS, body.first_velocity
+        self._places = [
+            (
+                body.position_index[joint] - shift_q,
+                body.velocity_index[joint] - shift_u,
+                body.position_count[joint],
+                body.velocity_count[joint],
+            )
+            for joint in range(body.joint_count)
+        ]
         rates = int(BASE_MOTION) + tree.coordinates
         given = numbers_of(tree.arrays["input"])
         self._position = given[int(BASE_MOTION) : rates]
@@ -120,19 +131,16 @@ class _Controller:
         for numbers in self._given:
             numbers.fill(0.0)
         self._target[: len(self._unaimed)] = self._unaimed
-        body = self._body
-        shift_q = body.first_position + BASE_POSITIONS
-        # The dofs of the tree begin with those of the base, as the body's do.
-        shift_u = body.first_velocity
         for joint, (position, velocity, force, kp, kd) in targets.items():
-            count, freedoms = body.position_count[joint], body.velocity_count[joint]
-            q, u = body.position_index[joint] - shift_q, body.velocity_index[joint] - shift_u
+            q, u, count, freedoms = self._places[joint]
             if count and len(position) == count:
-                self._target[q : q + count] = array(_TYPE_CODE, position)
+                for k in range(count):
+                    self._target[q + k] = position[k]
+            if len(velocity) == freedoms:
+                for k in range(freedoms):
+                    self._target_rate[u + k] = velocity[k]
             stated = len(force)
             for k in range(freedoms):
                 self._kp[u + k] = kp
                 self._kd[u + k] = kd
                 self._most[u + k] = force[k] if k < stated else _UNSTATED_FORCE
-                if len(velocity) == freedoms:
-                    self._target_rate[u + k] = velocity[k]

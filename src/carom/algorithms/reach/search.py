@@ -42,6 +42,11 @@ _LITTLE_PROGRESS = real(0.999)
 _SLOW_STEPS = wp.constant(3)
 # Distance [m] that the patient do without: who asks again in each step comes nearer each time.
 _NEAR = real(0.02)
+# Poses to try at least where limits are to be kept: often only another pose of the arm arrives within them.
+_WITHIN_LIMITS = wp.constant(300)
+# Share of the best squared errors that makes another pose, which does not arrive either, worth going there:
+# who asks in each step does not want the arm to jump for little.
+_WORTH_A_JUMP = real(0.8)
 # Share of the joints' ranges within which the first new start is drawn.
 _FIRST_SPREAD = real(0.05)
 
@@ -211,7 +216,7 @@ def inverse_kinematics_kernel(
         step_kind: What follows PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
         bounded: 1 if limits are to be kept.
         iterations: Most steps of PyBullet's iteration.
-        further: How many poses may be tried after that.
+        further: How many poses may be tried after that; with limits `_WITHIN_LIMITS` at least.
         threshold: Distance [m] and angle [rad] that are close enough.
         patience: PyBullet's result is taken, arrived or not, if it leaves at most this share of the distance.
     """
@@ -254,15 +259,16 @@ def inverse_kinematics_kernel(
     for dof in range(sizes.dofs):
         search.dof[dof].step = real(0.0)
     left = further
-    if outside == 1:
-        left = iterations
+    if bounded == 1 and not content:
+        left = wp.max(iterations, _WITHIN_LIMITS)
     spread = _FIRST_SPREAD
+    worth = real(1.0)
     seed = Int32(1)
     while left > 0:
         outcome = descend(sizes, chain, search, oriented, left, goal, error)
         left -= Int32(outcome[3]) + 1
         arrived = outcome[0] <= goal and outcome[1] <= goal
-        if arrived or (outcome[2] < best and not content):
+        if arrived or (outcome[2] < worth * best and not content):
             best = outcome[2]
             copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
         if arrived:
@@ -275,4 +281,5 @@ def inverse_kinematics_kernel(
         place(sizes, chain, search, search.coordinate_now)
         error = measure_errors(sizes, chain, search, oriented)
         spread = wp.min(1.6 * spread, real(1.0))
+        worth = _WORTH_A_JUMP
         seed += 1
