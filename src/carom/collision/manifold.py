@@ -47,7 +47,6 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
             pairs.previous_anchor_a[world, row] = contacts.contact_anchor_a[world, row]
             pairs.previous_anchor_b[world, row] = contacts.contact_anchor_b[world, row]
             pairs.previous_impulse[world, row] = contacts.contact_impulse[world, row]
-            pairs.previous_age[world, row] = contacts.contact_age[world, row]
     count = contacts.count_contacts[world, KEPT]
     for row in range(count):
         pairs.previous_taken[world, row] = 0
@@ -109,13 +108,11 @@ def bequeath(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row:
         contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
         contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
         contacts.contact_impulse[world, row] = pairs.previous_impulse[world, before]
-        contacts.contact_age[world, row] = pairs.previous_age[world, before] + 1
         pairs.previous_taken[world, before] = 1
     else:
         contacts.contact_anchor_a[world, row] = contacts.contact_local_a[world, row]
         contacts.contact_anchor_b[world, row] = contacts.contact_local_b[world, row]
         contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
-        contacts.contact_age[world, row] = 0
 
 
 @func

@@ -131,7 +131,6 @@ class Pairs:
     previous_anchor_a: Vector3Rows
     previous_anchor_b: Vector3Rows
     previous_impulse: Vector4Rows
-    previous_age: IntRows
     previous_taken: IntRows  # 1 once a contact has inherited from it
 
     # Its columns are in `collision.hierarchy`.
@@ -155,7 +154,6 @@ class Contacts:
     contact_distance: RealRows  # negative: penetration
     # Of the last substep: normal, along directions 1 and 2; then what `calm.next_trust` says.
     contact_impulse: Vector4Rows
-    contact_age: IntRows  # substeps
     count_contacts: IntRows  # see its columns in `collision.manifold`
 
 
