@@ -105,9 +105,10 @@ def calculateInverseDynamics(
     """
     try:
         client = clients[physicsClientId]
-        forces = client.bodies[bodyUniqueId].forces_of_motion
-        if forces is not None and not flags:
-            return forces(client.world.parameters.gravity, objPositions, objVelocities, objAccelerations)
+        if not flags:
+            return client.bodies.forces_of_motion[bodyUniqueId](
+                client.world.parameters.gravity, objPositions, objVelocities, objAccelerations
+            )
     except (KeyError, TypeError, ValueError, StructError):
         pass
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
@@ -150,8 +151,9 @@ def calculateInverseDynamics(
 
     if floating:
         _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
+    forces = client.bodies.forces_of_motion[body.id] = moving_tree(body).forces_in_pybullet
     try:
-        return moving_tree(body).forces_in_pybullet(client.world.parameters.gravity, q, qd, qdd)
+        return forces(client.world.parameters.gravity, q, qd, qdd)
     except ValueError as problem:
         fail(_INVERSE_DYNAMICS, f"{problem}.")
 

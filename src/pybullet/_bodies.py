@@ -118,7 +118,7 @@ def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
         logger.warning("removeBody: %s", no_body(bodyUniqueId))
         return
     with client.lock:
-        client.bodies.clear()
+        client.bodies.forget_all()
         client.world.remove(body.id)
         client.origins.pop(body.id, None)
 

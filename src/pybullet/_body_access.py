@@ -71,14 +71,6 @@ class BodyAccess:
         return moving_tree(self.body)
 
     @cached_property
-    def forces_of_motion(self) -> Ask | None:
-        """What `calculateInverseDynamics` asks, unless nothing about the body can move."""
-        from carom.algorithms.moving_tree import moving_tree
-
-        tree = moving_tree(self.body)
-        return tree.forces_in_pybullet if tree.dofs else None
-
-    @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:
         """What `getJointInfo` returns, by joint index."""
         return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
@@ -116,9 +108,29 @@ class BodyTable(dict[int, BodyAccess]):
     """Access to the bodies of one client by id; an entry is made when it is first asked for.
 
     Asking for a body that does not exist raises `KeyError`.
+
+    Attributes:
+        client: The client; set once.
+        forces_of_motion: What `calculateInverseDynamics` asks, by the ids of bodies it was called for: a
+            plain dictionary, because Python finds an item of that in no time.
     """
 
-    client: Client
+    __slots__ = ("client", "forces_of_motion")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.client: Client
+        self.forces_of_motion: dict[int, Ask] = {}
+
+    def forget(self, body_id: int) -> None:
+        """Drop the access to a body, which is about to be another one."""
+        self.pop(body_id, None)
+        self.forces_of_motion.pop(body_id, None)
+
+    def forget_all(self) -> None:
+        """Drop the access to all bodies."""
+        self.clear()
+        self.forces_of_motion.clear()
 
     def __missing__(self, body_id: int) -> BodyAccess:
         access = BodyAccess(self.client, self.client.world.bodies[body_id])

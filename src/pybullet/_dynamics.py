@@ -222,7 +222,7 @@ def changeDynamics(
     with client.lock:
         body.change_dynamics(link, **changes.values)
         if not _KEPT_BY_ACCESS.isdisjoint(changes.values):
-            client.bodies.pop(body.id, None)
+            client.bodies.forget(body.id)
 
 
 @exported
@@ -254,7 +254,7 @@ def enableJointForceTorqueSensor(
     client = client_of(physicsClientId)
     with client.lock:
         access.body.set_sensor(index, enabled)
-        client.bodies.pop(access.body.id, None)
+        client.bodies.forget(access.body.id)
 
 
 class _Changes:

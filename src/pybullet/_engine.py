@@ -87,7 +87,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     integer(flags, "flags")
     with client.lock:
-        client.bodies.clear()
+        client.bodies.forget_all()
         client.world.reset()
         client.shapes = ShapeRegistry()
         client.states.clear()

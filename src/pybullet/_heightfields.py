@@ -145,7 +145,7 @@ def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
             client.world.touch.shapes.replace_pieces(
                 body.first_link + 1 + link, spec, implicit_cylinder=implicit
             )
-            client.bodies.pop(body.id, None)
+            client.bodies.forget(body.id)
             for look in appearance.shapes(body, link):
                 if look.geometry is old:
                     look.geometry = new

@@ -10,7 +10,7 @@ from pybullet._builtin import exported
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_SPHERICAL
 from pybullet._errors import fail
-from pybullet._lookup import OUT_OF_RANGE, body_access, joint_access, no_joint, raise_state_error
+from pybullet._lookup import OUT_OF_RANGE, body_access, joint_access, no_joint, state_access
 
 if TYPE_CHECKING:
     from pybullet._joint_access import JointAccess, JointState, MultiDofState
@@ -70,7 +70,10 @@ def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -
     except (KeyError, TypeError):
         problem = "GetJointInfo failed."
         access = body_access(bodyUniqueId, physicsClientId, problem)
-        fail(problem, no_joint(access.body, integer(jointIndex, "jointIndex")))
+        index = integer(jointIndex, "jointIndex")
+        if index not in access.joint_infos:
+            fail(problem, no_joint(access.body, index))
+        return access.joint_infos[index]
 
 
 @exported
@@ -99,7 +102,7 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].state()
     except (KeyError, TypeError):
-        raise_state_error(bodyUniqueId, jointIndex, physicsClientId)
+        return state_access(bodyUniqueId, jointIndex, physicsClientId).state()
 
 
 @exported
@@ -162,7 +165,7 @@ def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: i
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].multi_dof_state()
     except (KeyError, TypeError):
-        raise_state_error(bodyUniqueId, jointIndex, physicsClientId)
+        return state_access(bodyUniqueId, jointIndex, physicsClientId).multi_dof_state()
 
 
 @exported

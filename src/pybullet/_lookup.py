@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from pybullet._arguments import integer
 from pybullet._clients import Client, client_of
@@ -103,11 +103,18 @@ def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> Join
     return access.joints[index]
 
 
-def raise_state_error(body_id: Any, joint_index: Any, physics_client_id: Any) -> NoReturn:
-    """Says why the state of a joint could not be read."""
+def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
+    """Access to a joint whose state is asked for by unusual integers, such as arrays without dimensions.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+        TypeError: An id or index is not an integer.
+    """
     access = body_access(
         body_id, physics_client_id, "getJointState failed.", "getJointState failed; invalid bodyUniqueId"
     )
     index = integer(joint_index, "jointIndex")
-    problem = "getJointState failed; invalid jointIndex" if index < 0 else "getJointState failed (2)."
-    fail(problem, no_joint(access.body, index))
+    if index not in access.joints:
+        problem = "getJointState failed; invalid jointIndex" if index < 0 else "getJointState failed (2)."
+        fail(problem, no_joint(access.body, index))
+    return access.joints[index]

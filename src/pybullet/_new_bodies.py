@@ -46,7 +46,7 @@ def add_bodies(
 
     try:
         with client.lock:
-            client.bodies.clear()
+            client.bodies.forget_all()
             ids = tuple(body.id for body in client.world.load_all(bodies))
             if load is not None:
                 client.origins.update({number: Origin(load, index) for index, number in enumerate(ids)})

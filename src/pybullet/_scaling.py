@@ -68,4 +68,4 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
             fail("unsupportedChangeScaling failed.", f"Body {body.id} ({body.name}): {reason}.")
         body.dynamics(BASE).collision_margin = LinkDynamics.of(spec).collision_margin
         body.derived.clear()
-        client.bodies.pop(body.id, None)
+        client.bodies.forget(body.id)

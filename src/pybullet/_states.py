@@ -164,7 +164,7 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
     from carom.errors import CaromError
 
     with client.lock:
-        client.bodies.clear()
+        client.bodies.forget_all()
         try:
             bodies = client.world.load(path)
         except CaromError as problem:

@@ -167,6 +167,16 @@ def test_a_ball_joint_takes_a_quaternion_and_gains_for_all_axes(zoo: int) -> Non
     assert motor(zoo, 3)[TARGET_W] == target[3]
 
 
+def test_joints_are_named_by_integers_of_any_kind(zoo: int) -> None:
+    unusual: list[Any] = [np.int64(1), np.uint8(1), np.array(1)]
+    for index in unusual:
+        assert p.getJointState(zoo, index) == p.getJointState(zoo, 1)
+        assert p.getJointStateMultiDof(zoo, index) == p.getJointStateMultiDof(zoo, 1)
+        assert p.getJointInfo(zoo, index) == p.getJointInfo(zoo, 1)
+    with pytest.raises(p.error, match="99"):
+        p.getJointState(zoo, unusual[0] * 99)
+
+
 @pytest.mark.parametrize("kind", [np.float32, np.int64, np.array])
 def test_gains_are_numbers_of_any_kind(zoo: int, kind: type[Any]) -> None:
     p.setJointMotorControlMultiDof(

@@ -90,8 +90,8 @@ def place(tree: Tree, node: Int32):
 
 @func
 def place_nodes(tree: Tree, count: Int32):
-    """Find the frames of the first nodes: all in one loop, where processors are at several at a time."""
-    for node in range(count):
+    """Find the frames of the first nodes but the base: in one loop, so that several are under way at once."""
+    for node in range(1, count):
         place(tree, node)
 
 
@@ -119,7 +119,11 @@ def newton_euler(
         accelerations: The same for accelerations; negative where all of them are 0.
     """
     keep_motion(tree, 0, omega, alpha, acceleration)
-    keep_forces(tree, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
+    tree.motion[0].force = Vector3(0.0, 0.0, 0.0)
+    tree.motion[0].torque = Vector3(0.0, 0.0, 0.0)
+    # What holds a fixed base is not asked for.
+    if sizes.base_dofs > 0:
+        keep_forces(tree, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
     place_nodes(tree, sizes.nodes)
     for node in range(1, sizes.nodes):
         parent = tree.node[node].parent

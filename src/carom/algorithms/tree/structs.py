@@ -75,7 +75,6 @@ class NodeMotion:
     omega: Vector3
     alpha: Vector3
     acceleration: Vector3  # of its origin, less gravity
-    swing: Matrix3  # what takes places in it to their acceleration against its origin
     torque: Vector3
     force: Vector3
     mass: real  # of the node and all behind it, in the frame of the base
