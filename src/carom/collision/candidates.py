@@ -7,13 +7,13 @@ good decides, so results do not depend on rounding more than need be.
 
 import warp as wp
 
-from carom.collision.extremes import greater
+from carom.collision.extremes import greater, lesser
 from carom.model.real import Int32, Vector3, Vector8, Vector8Rows, func, real, shared_func
 
 # Points closer together than this count as one [m].
 SAME_POINT = real(1.0e-6)
-# A candidate must be deeper than another by this to count as the deepest [m]: of what lies flat, the same
-# corners should be chosen in every step.
+# Candidates less deep than the deepest by this count as deep as it [m]: of what lies flat, the same corners
+# should be chosen in every step.
 AS_DEEP = real(1.0e-7)
 # Share by which a later candidate must be better to be preferred.
 CLEARLY = real(1.0e-6)
@@ -77,22 +77,34 @@ def flip_candidates(candidates: Vector8Rows, world: Int32, count: Int32):
         add_candidate(candidates, world, row, point, -normal, distance)
 
 
+@func
+def deepest_outermost(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
+    """Of the deepest candidates the one farthest from the middle of all."""
+    deepest = candidate_distance(candidates, world, 0)
+    middle = Vector3(0.0, 0.0, 0.0)
+    for row in range(count):
+        deepest = lesser(deepest, candidate_distance(candidates, world, row))
+        middle += candidate_point(candidates, world, row) / real(count)
+    best = Int32(0)
+    most = real(-1.0)
+    for row in range(count):
+        score = wp.length_sq(candidate_point(candidates, world, row) - middle)
+        if candidate_distance(candidates, world, row) <= deepest + AS_DEEP and score > most * (1.0 + CLEARLY):
+            most = score
+            best = Int32(row)
+    return best
+
+
 @shared_func
 def keep_four(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
     """Choose at most four candidates that span the contact; returns their number.
 
-    The deepest, the one farthest from it, the one farthest from the line through both, and the one
-    farthest outside the triangle of these.
+    The deepest (of several the outermost), the one farthest from it, the one farthest from the line through
+    both, and the one farthest outside the triangle of these.
     """
     if count <= 1:
         return count
-    best = Int32(0)
-    deepest = candidate_distance(candidates, world, 0)
-    for row in range(1, count):
-        distance = candidate_distance(candidates, world, row)
-        if distance < deepest - AS_DEEP:
-            deepest = distance
-            best = row
+    best = deepest_outermost(candidates, world, count)
     exchange(candidates, world, 0, best)
     a = candidate_point(candidates, world, 0)
 
