@@ -108,6 +108,7 @@ class ProfiledStepper(Stepper):
             sleeping=sleeping,
             watched=watched,
         )
+        self._once = None
         self._launch = StagedStep(structs, device, clock)
         self._index = {name: name for name in (SUBSTEPS, BEGINS, ENDS)}
         if touching:

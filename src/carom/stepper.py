@@ -25,8 +25,8 @@ class Detection:
 
     def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str) -> None:
         self._touch = touch
-        self._poses = launch(link_poses_kernel, structs, device)
-        self._collide = launch(collide_kernel, structs, device)
+        self._poses = launch(link_poses_kernel, structs, device).function
+        self._collide = launch(collide_kernel, structs, device).function
         self._pair_room = touch.pairs.capacity["pair"]
         self._contact_room = touch.contacts.capacity["contact"]
         self._pair_counts = memoryview(touch.pairs.numpy["count_pairs"][0])
@@ -100,6 +100,8 @@ class Stepper:
         if not touching:
             touch.forget_contacts()
         self._substeps = substeps
+        # A step of one substep; nothing changes the launch where there are never more.
+        self._once = self._launch.function if substeps <= 1 and not sleeping else None
 
     @property
     def single(self) -> Callable[[], None] | None:
@@ -118,6 +120,8 @@ class Stepper:
             How many have now been performed: all, at least 1, or fewer if rows or contacts did not
             fit. Then the arrays have been replaced by longer ones, and another stepper can go on.
         """
+        if substeps == 1 and done == 0 and between is None and self._once is not None:
+            return int(self._step_once(self._once))
         rounds = max(1, substeps)
         if self.detection is None and self.slumber is None and between is None:
             self._launch.replace(self._index[SUBSTEPS], substeps)
@@ -140,6 +144,13 @@ class Stepper:
             if between is not None and substep < rounds - 1:
                 between()
         return rounds
+
+    def _step_once(self, advance: Callable[[], None]) -> bool:
+        """A step of one substep where bodies touch and none sleeps; returns whether everything did fit."""
+        if self.detection is not None and not self.detection.run():
+            return False
+        advance()
+        return not self._fault[0] or self._fits()
 
     def _fits(self) -> bool:
         if self._fault[0] == OVERFLOW:
