@@ -37,6 +37,15 @@ class TouchArrays:
         """Drop all contacts; the rows of their shapes are about to move."""
         self.contacts.numpy["count_contacts"][:] = 0
 
+    def distrust_contacts(self) -> None:
+        """Let no contact start from its last impulses: somebody has put a body elsewhere.
+
+        So what follows depends on where everything is put, and not on what was there before.
+        """
+        count = int(self.contacts.numpy["count_contacts"][0, THERE])
+        if count > 0:
+            self.contacts.numpy["contact_impulse"][:, :count, 3] = 0.0
+
     def grow_detection(self) -> bool:
         """Make room for pairs and contacts that did not fit; true if there were some."""
         pairs = int(self.pairs.numpy["count_pairs"][0, PAIRS])

@@ -108,3 +108,17 @@ def test_boxes_pressed_together_in_space_drift_on() -> None:
         right.links[BASE].apply_force((-1.0, 0.0, 0.0))
         world.step()
     assert place(left)[1] + place(right)[1] - start == pytest.approx(2.0 * drift * 240 * DEFAULT_TIME_STEP)
+
+
+def test_what_is_put_back_moves_as_it_did_the_first_time() -> None:
+    world = earth()
+    stack = _stack(world, 3)
+    ways = []
+    for _ in range(3):
+        for i, box in enumerate(stack):
+            box.set_base_pose((0.0, 0.0, HALF + 2 * HALF * i), (0.0, 0.0, 0.0, 1.0))
+            box.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        world.step(40)
+        ways.append(np.concatenate([np.append(place(box), motion(box)) for box in stack]))
+    np.testing.assert_array_equal(ways[1], ways[2])
+    np.testing.assert_allclose(ways[0], ways[1], atol=1e-3)
