@@ -1,0 +1,98 @@
+"""Bodies of a world from the files that describe robots: URDF, SDF and MJCF."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from pathlib import Path
+
+from carom.body import Body
+from carom.description.pose import Pose
+from carom.model.body_spec import BodySpec
+
+
+class DescriptionLoading(ABC):
+    """What a world that can add a body can load; readers of files are imported when they are needed."""
+
+    @abstractmethod
+    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
+        """Add a body at rest."""
+
+    def load_urdf(
+        self,
+        path: str | Path,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+        *,
+        fixed_base: bool = False,
+        scale: float = 1.0,
+        flags: int = 0,
+    ) -> Body:
+        """Add the robot a URDF file describes.
+
+        Args:
+            path: The file.
+            position: Of the base's link frame [m].
+            orientation: Of the base's link frame, quaternion (x, y, z, w).
+            fixed_base: Hold the base where it is.
+            scale: Factor on all lengths.
+            flags: Loading flags, see `carom.model.flags.LoadFlags`.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.formats.search import AssetSearch
+        from carom.loading import urdf_body
+
+        spec = urdf_body(Path(path), AssetSearch(), scale=scale, flags=flags, fixed_base=fixed_base)
+        return self._add(spec, position, orientation)
+
+    def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
+        """Add the models an SDF file describes, where it puts them.
+
+        Args:
+            path: The file.
+            scale: Factor on lengths.
+
+        Returns:
+            Their bodies, in the order of the file.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.formats.search import AssetSearch
+        from carom.loading import sdf_bodies
+
+        return self.load_all(sdf_bodies(Path(path), AssetSearch(), scale=scale))
+
+    def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
+        """Add the bodies an MJCF file describes, where it puts them.
+
+        Args:
+            path: The file.
+            flags: Loading flags, see `carom.model.flags.LoadFlags`.
+
+        Returns:
+            The bodies, in the order of the file.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.formats.search import AssetSearch
+        from carom.loading import mjcf_bodies
+
+        return self.load_all(mjcf_bodies(Path(path), AssetSearch(), flags=flags))
+
+    def load_all(self, bodies: Sequence[tuple[BodySpec, Pose]]) -> list[Body]:
+        """Add bodies at rest, all or none.
+
+        Args:
+            bodies: What they are, and the world pose of the link frame of their base.
+
+        Raises:
+            carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
+        """
+        from carom.loading import make_shapes
+
+        make_shapes(bodies)
+        return [self._add(spec, pose.position, pose.orientation) for spec, pose in bodies]
