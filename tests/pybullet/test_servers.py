@@ -65,7 +65,7 @@ def clients_of_server(number: int) -> int:
 
 
 def until(condition: Any) -> bool:
-    deadline = time() + 10.0
+    deadline = time() + 60.0
     while not condition() and time() < deadline:
         sleep(0.01)
     return condition()

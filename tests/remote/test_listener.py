@@ -21,6 +21,8 @@ from carom.remote.listener import Listener
 from carom.remote.values import pack, unpack
 
 KEY = b"a key of enough characters"
+# Long enough for the busiest machine; nothing waits for it when all is well.
+PATIENCE = 60.0
 
 
 class Echo:
@@ -52,7 +54,7 @@ def server(echo: Echo) -> Iterator[Listener]:
     assert running.client_count == 0
 
 
-def join(server: Listener, timeout: float = 10.0, key: bytes = KEY) -> Connection:
+def join(server: Listener, timeout: float = PATIENCE, key: bytes = KEY) -> Connection:
     host, port = server.addresses[0]
     return Connection(host, port, key, timeout)
 
@@ -63,7 +65,7 @@ def call_at(address: tuple[str, int]) -> Connection:
 
 def stranger(server: Listener) -> socket.socket:
     peer = socket.create_connection(server.addresses[0])
-    peer.settimeout(10.0)
+    peer.settimeout(PATIENCE)
     return peer
 
 
@@ -95,7 +97,7 @@ def works(server: Listener) -> bool:
 
 
 def until(condition: Any) -> bool:
-    deadline = monotonic() + 10.0
+    deadline = monotonic() + PATIENCE
     while not condition() and monotonic() < deadline:
         sleep(0.01)
     return condition()
@@ -228,13 +230,13 @@ def test_an_answer_that_fails_costs_one_connection(server: Listener) -> None:
 
 
 def test_strangers_have_little_time(monkeypatch: pytest.MonkeyPatch, server: Listener) -> None:
-    monkeypatch.setattr(handshake, "TIMEOUT", 0.3)
+    monkeypatch.setattr(handshake, "TIMEOUT", 1.0)
     with stranger(server) as silent, stranger(server) as slow:
         assert works(server)
         with suppress(OSError):
-            for _ in range(10):
+            for _ in range(6):
                 slow.sendall(b"c")
-                sleep(0.1)
+                sleep(0.25)
         assert is_closed(silent)
         assert is_closed(slow)
 
@@ -306,7 +308,7 @@ class Waiting:
             self._gone = True
 
     def has_lost_its_server(self) -> bool:
-        self._thread.join(10.0)
+        self._thread.join(PATIENCE)
         return self._gone
 
 
@@ -325,7 +327,7 @@ def test_closing_while_a_call_is_in_progress(server: Listener, echo: Echo) -> No
     closing.start()
     assert waiting.has_lost_its_server()
     echo.go_on.set()
-    closing.join(10.0)
+    closing.join(PATIENCE)
     assert not connection.is_open()
 
 

@@ -50,11 +50,21 @@ class Watcher:
         give_up = time.monotonic() + PATIENCE
         while not (result := condition()):
             message = self._socket.recv(timeout=give_up - time.monotonic())
-            assert isinstance(message, bytes)
-            self._take(*decoded(message))
+            self._take(message)
         return result
 
-    def _take(self, header: dict[str, Any], payload: bytes) -> None:
+    def take_what_came(self) -> None:
+        """Takes the messages that are there; the server stops sending to a page that takes none."""
+        while True:
+            try:
+                message = self._socket.recv(timeout=0)
+            except TimeoutError:
+                return
+            self._take(message)
+
+    def _take(self, message: str | bytes) -> None:
+        assert isinstance(message, bytes)
+        header, payload = decoded(message)
         kind = header["type"]
         if kind == "frame":
             self.frame = header
