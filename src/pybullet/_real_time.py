@@ -58,25 +58,29 @@ class RealTimeClock:
         self._thread.start()
 
     def stop(self) -> None:
-        """Stops and waits for the step in progress."""
+        """Stops and waits for the step in progress: none if the caller holds the client's lock."""
         self._stopping.set()
-        self._thread.join()
         _running.discard(self)
+        # Not for the thread, which may be waiting for the lock that the caller holds.
+        # In a forked process it is gone, and the lock may be held for ever.
+        if self._thread.is_alive():
+            with self._client.lock:
+                return
 
     def _run(self) -> None:
         client, pace = self._client, Pace(monotonic())
         while not self._stopping.wait(max(_PERIOD, client.time_step)):
             for _ in range(pace.steps_due(monotonic(), client.time_step)):
-                if self._stopping.is_set():
-                    return
                 if client.window.held and not client.window.has_turn():
                     break
-                try:
-                    with client.lock:
+                with client.lock:
+                    if self._stopping.is_set():
+                        return
+                    try:
                         client.world.step()
-                except Exception:
-                    logger.exception("Real-time simulation has stopped.")
-                    return
+                    except Exception:
+                        logger.exception("Real-time simulation has stopped.")
+                        return
 
 
 @atexit.register

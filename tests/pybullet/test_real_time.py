@@ -1,7 +1,8 @@
 """Simulation by the wall clock."""
 
 import logging
-from threading import Event
+from threading import Event, Thread
+from time import sleep
 from typing import Any
 
 import pytest
@@ -73,6 +74,27 @@ def test_disconnecting_stops_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     assert stepped.wait(PATIENCE)
     p.disconnect()
     stepped.clear()
+    assert not stepped.wait(0.05)
+
+
+def test_the_clock_stops_while_it_waits_for_its_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a server, which holds the lock during every call."""
+    p.connect(p.GUI)
+    client = clients[0]
+    p.setRealTimeSimulation(1)
+    stepped = _step_event(monkeypatch)
+
+    def stop() -> None:
+        with client.lock:
+            stepped.clear()
+            # Many steps of the clock.
+            sleep(0.1)
+            p.setRealTimeSimulation(0)
+
+    stopping = Thread(target=stop, daemon=True)
+    stopping.start()
+    stopping.join(PATIENCE)
+    assert not stopping.is_alive()
     assert not stepped.wait(0.05)
 
 
