@@ -9,8 +9,11 @@ from tests.viewer.browser import Page, chromium, needs_browser
 from tests.viewer.scripts import ROOT, started
 from tests.viewer.watcher import PATIENCE, Watcher
 
+# Where the tests run in the background of a shell, it has told all that they start to ignore Ctrl-C.
 STEPPING = """
+import signal
 import pybullet as p
+signal.signal(signal.SIGINT, signal.default_int_handler)
 p.connect(p.GUI, options="--port=0")
 while p.isConnected():
     p.stepSimulation()
