@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from threading import Condition
 
+# On Windows a Ctrl-C is noticed only between two waits [s].
+_LOOK = 0.1
+
 
 class Gate:
     """What a step has to pass while a simulation is paused. Safe to use from all threads.
@@ -39,7 +42,7 @@ class Gate:
         """Returns when a step may be made."""
         with self._changed:
             while not self._passes():
-                self._changed.wait()
+                self._changed.wait(_LOOK)
 
     def passes(self) -> bool:
         """Whether a step may be made now; it then counts as made."""
