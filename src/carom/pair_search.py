@@ -85,19 +85,19 @@ class PairSearch:
             self._first[:size], self._second[:size] = pairs.first, pairs.second
             self._asked = pairs
         self._search(count, reach)
+        found = self._count[0]
+        if not found:
+            return []
+        rows = zip(range(found), self._pair, _ROW.iter_unpack(self._found), strict=False)
         return [
             (
-                a,
-                b,
+                *pairs.links[pair],
                 (x + distance * nx, y + distance * ny, z + distance * nz),
                 (x, y, z),
                 (nx, ny, nz),
                 distance,
             )
-            for (a, b), (x, y, z, nx, ny, nz, distance, found) in zip(
-                pairs.links, _ROW.iter_unpack(self._found), strict=False
-            )
-            if found
+            for _, pair, (x, y, z, nx, ny, nz, distance, _) in rows
         ]
 
     def _find_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
@@ -115,6 +115,8 @@ class PairSearch:
 
     def _view(self) -> None:
         """Take the memory of the present arrays."""
-        memory = self._search.arrays.bytes_of
+        arrays, memory = self._search.arrays.numpy, self._search.arrays.bytes_of
         self._first, self._second = memory("search_first"), memory("search_second")
+        self._count: memoryview[int] = arrays["search_count"][0].data
+        self._pair: memoryview[int] = arrays["search_pair"][0].data
         self._found = memory("search_found")

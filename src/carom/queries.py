@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
+from struct import Struct
 from typing import Any
 
 import numpy as np
@@ -16,13 +17,17 @@ from carom.collision.places import Places
 from carom.collision.rays import prepare_rays_kernel
 from carom.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.description.pose import Vector3
+from carom.description.transform import rotation_matrix
 from carom.model.arrays import ArrayTable
+from carom.model.bounds import Bounds, turned_box
 from carom.model.codes import PLANE
 from carom.model.launch import KernelStructs, Launch, launch
+from carom.model.real import NUMPY_REAL
 from carom.pair_search import NearestPoints, PairSearch
 from carom.ray_cast import Points, RayCast, RayHit
 from carom.touch_arrays import TouchArrays
 
+_POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
 # A distance that counts as none.
 _FAR = 1e30
 
@@ -44,12 +49,13 @@ class Queries:
         structs: KernelStructs,
         positions: memoryview[float],
         places: Sequence[tuple[int, int]],
-        present_poses: Callable[[], AbstractContextManager[None]],
+        present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         touch: TouchArrays,
         device: str,
     ) -> None:
         self._structs = structs
         structs["places"] = _struct_of(places, device)
+        self._link_count = len(places)
         self._device = device
         self._touch = touch
         self._positions = positions
@@ -88,6 +94,12 @@ class Queries:
         endless = self._shapes["shape_kind"][rows] == PLANE
         lowest, highest = (self._pairs[name][0, rows] for name in ("shape_lower", "shape_upper"))
         return lowest, highest, endless, self._shapes["shape_link"][rows]
+
+    @cached_property
+    def _without_shapes(self) -> list[tuple[int, Bounds]]:
+        """The links without shapes: their rows, and their bounds about their inertial frames."""
+        counts = self._shapes["link_shape_count"][: self._link_count].tolist()
+        return [(row, self._all_shapes.bounds(row)) for row, count in enumerate(counts) if not count]
 
     def cast_rays(
         self,
@@ -152,19 +164,28 @@ class Queries:
         count = self._contact_counts[THERE]
         return self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
 
-    def overlapping(self, lower: Sequence[float], upper: Sequence[float]) -> list[int]:
-        """Rows of the links whose bounds meet a box.
+    def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
+        """Rows of the links whose bounds meet a box; those of links without shapes are a point, or nearly.
 
         Args:
             lower: Lowest corner of the box in world axes [m].
             upper: Its highest corner.
         """
-        if not self._shape_count:
-            return []
-        self._prepare(PLACED)
-        lowest, highest, endless, links = self._extents
-        meets = ((lowest <= upper) & (highest >= lower)).all(axis=1) | endless
-        return sorted(set(links[meets].tolist()))
+        found: set[int] = set()
+        if self._shape_count:
+            self._prepare(PLACED)
+            lowest, highest, endless, links = self._extents
+            meets = ((lowest <= upper) & (highest >= lower)).all(axis=1) | endless
+            found.update(links[meets].tolist())
+        if self._without_shapes:
+            with self._present_poses() as poses:
+                for row, bounds in self._without_shapes:
+                    x, y, z, qx, qy, qz, qw = _POSE.unpack_from(poses, row * _POSE.size)
+                    turn = rotation_matrix((qx, qy, qz, qw))
+                    center, half = turned_box(bounds.center, bounds.half, turn, (x, y, z))
+                    if all(map(_meet, center, half, lower, upper)):
+                        found.add(row)
+        return sorted(found)
 
     def _prepare(self, readiness: int) -> None:
         """Place the shapes by the present coordinates, unless they are there already.
@@ -177,6 +198,10 @@ class Queries:
             with self._present_poses():
                 self._make_ready[readiness]()
             self._ready_for = wanted
+
+
+def _meet(center: float, half: float, lower: float, upper: float) -> bool:
+    return center - half <= upper and center + half >= lower
 
 
 def _struct_of(places: Sequence[tuple[int, int]], device: str) -> Any:

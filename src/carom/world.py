@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -22,9 +21,10 @@ from carom.log import Log, Observer, SubstepObserver
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
-from carom.model.launch import KernelStructs, Launch, TreeLaunch, launch
-from carom.physics.kinematics import forward_kinematics_kernel, link_poses_kernel, link_twist_kernel
+from carom.model.launch import KernelStructs, TreeLaunch
+from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.present_poses import PresentPoses
 from carom.prospects import can_sleep, can_touch
 from carom.queries import Queries
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
@@ -327,7 +327,7 @@ class World(DescriptionLoading, StateViews):
         self._island_size = None
         self._step = None
         self._queries = None
-        self._all_poses_launch = None
+        self._present_poses = None
 
     # Time
 
@@ -517,26 +517,17 @@ class World(DescriptionLoading, StateViews):
         self._step = None
         self._queries: Queries | None = None
         self._pose_launch: TreeLaunch | None = None
-        self._all_poses_launch: Launch | None = None
+        self._present_poses: PresentPoses | None = None
         self._twist_launch: TreeLaunch | None = None
         self.view(self.arrays.state)
         self._fault = memoryview(self.arrays.state.numpy["fault_tree"][0])
 
-    @contextmanager
-    def present_poses(self) -> Iterator[None]:
-        """Within it, `link_pose` is up to date with the coordinates of all bodies.
-
-        Afterwards it is as it was: after a step its rows are those of the start of the last substep, and
-        getters count on that.
-        """
-        if self._all_poses_launch is None:
-            self._all_poses_launch = launch(link_poses_kernel, self._kernel_structs(), _DEVICE)
-        before = self.link_pose.copy()
-        self._all_poses_launch()
-        try:
-            yield
-        finally:
-            self.link_pose[:] = before
+    def present_poses(self) -> PresentPoses:
+        """A context in which `link_pose` is up to date with the coordinates of all bodies."""
+        if self._present_poses is None:
+            poses = self.arrays.state.bytes_of("link_pose")
+            self._present_poses = PresentPoses(poses, self._kernel_structs(), _DEVICE)
+        return self._present_poses
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""

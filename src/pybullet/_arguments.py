@@ -68,6 +68,8 @@ def bound(value: Any, name: str) -> float:
         TypeError: It is not a number.
         pybullet.error: It is not a number (NaN) or minus infinity.
     """
+    if type(value) is float and value > -inf:
+        return value
     number = _as_float(value, name)
     if number == inf:
         return number

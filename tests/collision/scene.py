@@ -219,7 +219,12 @@ class Scene:
             dim=1,
             inputs=[structs["shapes"], structs["pairs"], table.struct("cpu"), count, NUMPY_REAL(reach)],
         )
-        return table.numpy["search_found"][0, :count]
+        found = table.numpy["search_count"][0, 0]
+        nearest = np.zeros((count, 8))
+        rows = table.numpy["search_pair"][0, :found]
+        nearest[rows] = table.numpy["search_found"][0, :found]
+        nearest[rows, 7] = 1.0
+        return nearest
 
     def rays(self, starts, ends, mask: int = -1, hit_number: int = 0, separation: float = 0.0):
         """Shape (-1 for none), fraction and normal of each ray's hit."""

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
+import pybullet_data
 
 NOTHING: Any = None
 NUMBER: Any = 3
@@ -179,6 +180,33 @@ def test_overlaps_with_a_box(things):
     assert p.getOverlappingObjects([10, 10, 10], [11, 11, 11]) == ((plane, -1),)
     p.removeBody(plane)
     assert p.getOverlappingObjects([10, 10, 10], [11, 11, 11]) is None
+
+
+def test_overlaps_with_what_has_no_shape(client: int) -> None:
+    """Its bounds are a point; in a URDF file those of a link are a cube of two millimetres."""
+    body = p.createMultiBody(
+        1,
+        basePosition=[3, 3, 3],
+        linkMasses=[1],
+        linkCollisionShapeIndices=[-1],
+        linkVisualShapeIndices=[-1],
+        linkPositions=[[0, 0, 1]],
+        linkOrientations=[[0, 0, 0, 1]],
+        linkInertialFramePositions=[[0, 0, 0]],
+        linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        linkParentIndices=[0],
+        linkJointTypes=[p.JOINT_REVOLUTE],
+        linkJointAxis=[[1, 0, 0]],
+    )
+    assert p.getOverlappingObjects([2, 2, 2], [4, 4, 3.5]) == ((body, -1),)
+    assert p.getOverlappingObjects([3, 3, 3.5], [4, 4, 5]) == ((body, 0),)
+    assert p.getOverlappingObjects([3.0001, 2, 2], [4, 4, 5]) is None
+    p.resetBasePositionAndOrientation(body, [5, 5, 5], [0, 0, 0, 1])
+    assert p.getOverlappingObjects([4, 4, 4], [6, 6, 7]) == ((body, -1), (body, 0))
+    panda = p.loadURDF(f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf", useFixedBase=True)
+    (x, y, z), _ = p.getAABB(panda, 7)
+    assert (panda, 7) in (p.getOverlappingObjects([x - 1, y - 1, z - 1], [x, y, z]) or ())
+    assert (panda, 7) not in (p.getOverlappingObjects([x - 1, y - 1, z - 1], [x - 1e-6, y, z]) or ())
 
 
 def test_questions_between_steps_change_nothing(things):

@@ -11,7 +11,7 @@ from carom.collision.narrow_phase import in_order, touch_simple
 from carom.collision.surfaces import nearest_on_surface
 from carom.model.codes import PLANE, TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
-from carom.model.real import Int32, IntRows, Vector8, Vector8Rows, func, kernel, real
+from carom.model.real import Int32, IntRows, Vector8Rows, func, kernel, real
 from carom.model.structs import Settings, State
 
 
@@ -85,12 +85,13 @@ def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reac
 
 @wp.struct
 class Searches:
-    """Pairs of shapes, and their nearest points."""
+    """Pairs of shapes, and the nearest points of those within reach."""
 
     search_first: IntRows
     search_second: IntRows
-    # Rows as in `Pairs.candidate_terms`, the last column 1 for pairs within reach; all 0 for others.
-    search_found: Vector8Rows
+    search_count: IntRows  # the first one: how many were found
+    search_pair: IntRows  # which pair each of them is
+    search_found: Vector8Rows  # as `Pairs.candidate_terms`
 
 
 @kernel
@@ -105,10 +106,10 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
         reach: Largest distance of interest [m].
     """
     world = wp.tid()
+    found = Int32(0)
     for i in range(count):
         a = searches.search_first[world, i]
         b = searches.search_second[world, i]
-        terms = Vector8()
         if boxes_meet(
             pairs.shape_lower[world, a],
             pairs.shape_upper[world, a],
@@ -117,9 +118,10 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
             reach,
         ):
             if nearest(shapes, pairs, world, a, b, reach) == 1:
-                terms = pairs.candidate_terms[world, 0]
-                terms[7] = 1.0
-        searches.search_found[world, i] = terms
+                searches.search_found[world, found] = pairs.candidate_terms[world, 0]
+                searches.search_pair[world, found] = i
+                found += 1
+    searches.search_count[world, 0] = found
 
 
 @kernel

@@ -1,0 +1,34 @@
+"""Link poses as the coordinates are now, for as long as somebody asks about them."""
+
+from __future__ import annotations
+
+from carom.model.launch import KernelStructs, launch
+from carom.physics.kinematics import link_poses_kernel
+
+
+class PresentPoses:
+    """A context in which `link_pose` is up to date with the coordinates of all bodies; it gives its memory.
+
+    Afterwards it is as it was: after a step its rows are those of the start of the last substep, and
+    getters count on that. Contexts may be within each other.
+
+    Args:
+        poses: The memory of `link_pose`.
+        structs: Warp structs by the name kernels give them.
+        device: Warp device name.
+    """
+
+    __slots__ = ("_before", "_find", "_poses")
+
+    def __init__(self, poses: memoryview[int], structs: KernelStructs, device: str) -> None:
+        self._poses = poses
+        self._find = launch(link_poses_kernel, structs, device).function
+        self._before: list[bytes] = []
+
+    def __enter__(self) -> memoryview[int]:
+        self._before.append(self._poses.tobytes())
+        self._find()
+        return self._poses
+
+    def __exit__(self, *_: object) -> None:
+        self._poses[:] = self._before.pop()
