@@ -122,3 +122,20 @@ def test_height_maps_are_grounds_to_roll_on(name: str) -> None:
         assert p.getContactPoints(ball, ground)
     finally:
         p.disconnect(client)
+
+
+def test_the_middle_of_a_cubes_face_has_the_colour_it_is_given() -> None:
+    """Like the original's, whose picture is white there: scripts look for the colours they gave."""
+    client = p.connect(p.DIRECT)
+    try:
+        cube = p.loadURDF(str(DATA / "cube.urdf"))
+        bare = p.createMultiBody(0, -1, p.createVisualShape(p.GEOM_BOX, halfExtents=[0.5] * 3), [4, 0, 0])
+        view = p.computeProjectionMatrixFOV(30, 1, 0.01, 10)
+        images = []
+        for body, x in ((cube, 0), (bare, 4)):
+            p.changeVisualShape(body, -1, rgbaColor=[1, 0.5, 0, 1])
+            eye = p.computeViewMatrix([x, -0.7, 0], [x, 0, 0], [0, 0, 1])
+            images.append(p.getCameraImage(16, 16, eye, view)[2])
+        assert (images[0] == images[1]).all()
+    finally:
+        p.disconnect(client)
