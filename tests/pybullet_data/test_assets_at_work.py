@@ -122,3 +122,45 @@ def test_height_maps_are_grounds_to_roll_on(name: str) -> None:
         assert p.getContactPoints(ball, ground)
     finally:
         p.disconnect(client)
+
+
+@pytest.mark.parametrize(
+    ("name", "height", "half"),
+    [
+        ("wm_height_out.png", 0.4392, 0.992 / 2),
+        ("Maze.png", 0.0, 0.5),
+        ("ground0.txt", 4.504, 5.008),
+        ("ground1.txt", 6.008, 4.63),
+        ("ground2.txt", 3.003, 4.771),
+    ],
+)
+def test_robots_can_be_put_in_the_middle_of_a_height_map(name: str, height: float, half: float) -> None:
+    """Reach and height in the middle are the originals'; scripts know from which height to start."""
+    client = p.connect(p.DIRECT)
+    try:
+        field = p.createCollisionShape(p.GEOM_HEIGHTFIELD, fileName=str(DATA / "heightmaps" / name))
+        ground = p.createMultiBody(0.0, field)
+        assert p.getAABB(ground)[1][2] == pytest.approx(half, abs=0.01)
+        for x, y in ((0.0, 0.0), (0.3, 0.2), (-0.4, 0.3)):
+            hit = p.rayTest((x, y, 10), (x, y, -10))[0]
+            assert hit[0] == ground
+            assert hit[3][2] + half == pytest.approx(height, abs=0.02)
+    finally:
+        p.disconnect(client)
+
+
+def test_the_middle_of_a_cubes_face_has_the_colour_it_is_given() -> None:
+    """Like the original's, whose picture is white there: scripts look for the colours they gave."""
+    client = p.connect(p.DIRECT)
+    try:
+        cube = p.loadURDF(str(DATA / "cube.urdf"))
+        bare = p.createMultiBody(0, -1, p.createVisualShape(p.GEOM_BOX, halfExtents=[0.5] * 3), [4, 0, 0])
+        view = p.computeProjectionMatrixFOV(30, 1, 0.01, 10)
+        images = []
+        for body, x in ((cube, 0), (bare, 4)):
+            p.changeVisualShape(body, -1, rgbaColor=[1, 0.5, 0, 1])
+            eye = p.computeViewMatrix([x, -0.7, 0], [x, 0, 0], [0, 0, 1])
+            images.append(p.getCameraImage(16, 16, eye, view)[2])
+        assert (images[0] == images[1]).all()
+    finally:
+        p.disconnect(client)

@@ -321,5 +321,6 @@ COLLADA_MESHES: Mapping[str, tuple[str, Callable[[], ObjMesh]]] = {"duck.dae": (
 """The name within the file, and the mesh."""
 
 HEIGHT_TABLES: Mapping[str, Callable[[], str]] = {
-    f"heightmaps/ground{number}.txt": partial(grounds.heights_text, 0.31 * number) for number in range(3)
+    f"heightmaps/ground{number}.txt": partial(grounds.heights_text, number)
+    for number in range(len(grounds.TABLES))
 }

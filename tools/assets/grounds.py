@@ -11,8 +11,14 @@ STONE_BOUNDS = ((-0.24635, -0.24648, -0.00062), (0.24934, 0.2492, 0.17287))
 LAND_CORNER, LAND_POINTS, LAND_HEIGHT = -15.0, 30, 0.1
 """The lowest x and y of the land, a corner at every metre, and how far it rises and falls [m]."""
 
-TABLE_POINTS, TABLE_HEIGHT = 96, 4.0
-"""Points along each side of a table of heights, and how far those rise and fall [m]."""
+TABLE_POINTS = 97
+"""Points along each side of a table of heights."""
+
+TABLES = ((5.01, -0.5), (4.63, 1.38), (4.77, -1.77))
+"""How far the heights of each table rise and fall, and the height in the middle, from halfway up [m]."""
+
+HILLS_TOP, HILLS_MIDDLE = 253 / 255, 112 / 255
+"""Greys of the highest point and of the middle; the lowest is black."""
 
 
 def _waves(u: Colours, v: Colours) -> Colours:
@@ -22,6 +28,14 @@ def _waves(u: Colours, v: Colours) -> Colours:
         for a, b in ((1, 2), (2, 1), (3, 2), (2, 5))
     )
     return heights / np.abs(heights).max()
+
+
+def _around_a_place_to_start(u: Colours, v: Colours, middle: float) -> Colours:
+    """Heights from -1 to 1; around the middle, where robots are put, nearly level and as high as is said."""
+    level = np.exp(-(((u - 0.5) ** 2 + (v - 0.5) ** 2) / 0.13**2))
+    rise = (1.0 - level) * (_waves(0.5 * u, 0.5 * v) - middle)
+    up, down = (1.0 - middle) / rise.max(), (1.0 + middle) / -rise.min()
+    return middle + np.where(rise > 0.0, up, down) * rise
 
 
 def land() -> ObjMesh:
@@ -65,12 +79,9 @@ def courtyard() -> ObjMesh:
 
 
 def hills() -> Colours:
-    """Heights as greys: hills, in the middle a basin."""
-    u, v = _square(512)
-    around = np.hypot(u - 0.5, v - 0.5)
-    height = 0.5 + 0.35 * _waves(u, v)
-    height *= 1.0 - 0.7 * np.exp(-((around / 0.15) ** 2))
-    return np.repeat(np.clip(height, 0.0, 1.0)[..., None], 3, axis=2)
+    """Heights as greys: hills, in the middle a place to start from."""
+    heights = _around_a_place_to_start(*_square(512), 2.0 * HILLS_MIDDLE / HILLS_TOP - 1.0)
+    return np.repeat((0.5 * HILLS_TOP * (1.0 + heights))[..., None], 3, axis=2)
 
 
 def hills_painted() -> Colours:
@@ -89,21 +100,26 @@ def _square(size: int) -> tuple[Colours, Colours]:
     return (u + 0.5) / size, 1.0 - (v + 0.5) / size
 
 
-def heights_text(phase: float) -> str:
-    """A table of heights [m] of rolling land, for a height field; the phase tells one from another."""
-    u, v = _square(TABLE_POINTS)
-    rows = TABLE_HEIGHT * _waves(u + phase, v)
-    return "\n".join(",".join(f"{height:.2f}" for height in row) for row in rows) + "\n"
+def heights_text(number: int) -> str:
+    """A table of heights [m] of rolling land, for a height field."""
+    reach, middle = TABLES[number]
+    v, u = np.mgrid[0:TABLE_POINTS, 0:TABLE_POINTS] / (TABLE_POINTS - 1)
+    turns = np.rot90(_around_a_place_to_start(u, v, middle / reach), number)
+    return "\n".join(",".join(f"{height:.2f}" for height in row) for row in reach * turns) + "\n"
 
 
 def maze() -> Colours:
-    """Walls of a maze, white on black: rows of walls with one gap each, now left, now right."""
-    cells = np.zeros((16, 16))
+    """Walls of a maze, white on black: rows of walls with one gap each, now left, now right.
+
+    The middle is in a passage, since robots are put there.
+    """
+    cells = np.zeros((15, 15))
     cells[[0, -1], :] = cells[:, [0, -1]] = 1.0
-    for number, row in enumerate(range(2, 15, 2)):
+    for number, row in enumerate(range(2, 13, 2)):
         cells[row, 1:-1] = 1.0
         cells[row, 1 if number % 2 else -2] = 0.0
-    return np.repeat(np.kron(cells, np.ones((16, 16)))[..., None], 3, axis=2).astype(np.float64)
+    walls = np.pad(np.kron(cells, np.ones((17, 17))), ((0, 1), (0, 1)), constant_values=1.0)
+    return np.repeat(walls[..., None], 3, axis=2).astype(np.float64)
 
 
 def steps_of_grey() -> Colours:

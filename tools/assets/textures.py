@@ -41,7 +41,7 @@ def framed() -> Colours:
     """A white face that darkens softly towards its edges, so that boxes show their outline."""
     u, v = _unit_square(64, 64)
     to_edge = np.minimum(np.minimum(u, 1.0 - u), np.minimum(v, 1.0 - v))
-    shade = np.where(to_edge < 0.02, 0.72, 0.97 - 0.1 * np.exp(-to_edge / 0.05))
+    shade = np.where(to_edge < 0.02, 0.72, 1.0 - 0.1 * np.exp(-to_edge / 0.05))
     return np.repeat(shade[..., None], 3, axis=2)
 
 
