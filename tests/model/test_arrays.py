@@ -77,15 +77,19 @@ def test_adding_rows_one_by_one_replaces_arrays_seldom():
     assert sum(table.reserve({"link": count}) for count in range(1, 2000)) == 7
 
 
-@pytest.mark.parametrize(("start", "count"), [(0, 4), (5, 3), (13, 3), (15, 1), (0, 16)])
-def test_deleted_rows_close_up_and_leave_zeros(table, start, count):
+@pytest.mark.parametrize(
+    ("start", "count", "used"),
+    [(0, 4, 16), (5, 3, 16), (13, 3, 16), (15, 1, 16), (0, 16, 16), (5, 3, 12), (9, 3, 12)],
+)
+def test_deleted_rows_close_up_and_leave_zeros(table, start, count, used):
     name = "link_mass" if "link_mass" in table.numpy else "link_twist"
     view = rows(table, name)
     view[:] = np.arange(1.0, 17.0).reshape(16, *[1] * (view.ndim - 1))
     other = rows(table, "dof_parent" if "dof_parent" in table.numpy else "dof_velocity")
     other[:] = 5
-    expected = np.concatenate([np.delete(view, np.s_[start : start + count], axis=0), 0 * view[:count]])
-    table.delete("link", start, count)
+    kept = np.delete(view[:used], np.s_[start : start + count], axis=0)
+    expected = np.concatenate([kept, 0 * view[:count], view[used:]])
+    table.delete("link", start, count, used)
     np.testing.assert_array_equal(view, expected)
     assert (other == 5).all()
 

@@ -131,14 +131,16 @@ class ArrayTable:
                 self._replace(name, new)
         return bool(grown)
 
-    def delete(self, axis: str, start: int, count: int) -> None:
-        """Remove `count` rows of an axis; later rows move up and the freed ones are zero."""
+    def delete(self, axis: str, start: int, count: int, used: int) -> None:
+        """Remove `count` of the `used` rows of an axis; later ones move up and the freed ones are zero."""
+        after = start + count
         for name, field in self._fields.items():
             if field.axis == axis:
                 array = self._memory[name]
                 rows = array if self._world_count is None else array.swapaxes(0, 1)
-                rows[start:-count] = rows[start + count :].copy()
-                rows[-count:] = np.zeros((), dtype=array.dtype)
+                if after < used:
+                    rows[start : used - count] = rows[after:used]
+                rows[used - count : used].fill(0)
 
     def struct(self, device: str) -> Any:
         """A Warp struct whose fields are views of these arrays: the same one until some are replaced."""

@@ -264,7 +264,7 @@ class WorldArrays:
                 continue
             for table in self.tables:
                 if axis in table.capacity:
-                    table.delete(axis, start, count)
+                    table.delete(axis, start, count, self.used[axis])
             for name, target in _INDEX_FIELDS.items():
                 if target == axis:
                     indices = model[name]

@@ -245,7 +245,7 @@ class ShapeArrays:
         ):
             if count == 0:
                 continue
-            self.table.delete(axis, start, count)
+            self.table.delete(axis, start, count, self.used[axis])
             self.used[axis] -= count
             for name, target in _INDEX_FIELDS.items():
                 if target == axis:
