@@ -68,6 +68,11 @@ def test_sloppy_documents_are_read(text: str, name: str) -> None:
     assert parse(text)[0].attributes["name"] == name
 
 
+@pytest.mark.parametrize("rest", ["</a>", "</b>", '</a x="1">', "</a><c/>", "</a> words < &", "</a><c x=1><d></e>"])
+def test_an_end_tag_too_many_ends_the_document(rest: str) -> None:
+    assert [plain(root) for root in parse(f"<a><b/></a>\n{rest}")] == [plain(parse("<a><b/></a>")[0])]
+
+
 def test_what_is_not_utf8_is_latin_1() -> None:
     (root,) = parse_xml(b'<a name="caf\xe9"/>', FILE)
     assert root.attributes["name"] == "café"
@@ -93,7 +98,8 @@ def test_a_nul_character_is_white_space() -> None:
     [
         ("<a>\n<b>\n</a>", 3, "</a> where </b> of line 2"),
         ("<a>\n<b>\n</b>", 1, "<a> is never closed"),
-        ("<a/>\n</b>", 2, "closes nothing"),
+        ("<!-- c -->\n</b><a/>", 2, "closes nothing"),
+        ("<a/>\n</b", 2, "without a closing"),
         ("<a\n x=1/>", 2, 'name="value"'),
         ("<a\n x='1' x='2'/>", 2, "twice"),
         ("<a/>\nrest", 2, "after the last element"),

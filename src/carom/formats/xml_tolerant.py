@@ -2,7 +2,7 @@
 
 It forgives what TinyXML forgives: text and further elements outside the root, white space before the
 declaration, bare ampersands and `<` in attribute values, missing blanks between attributes, double hyphens
-in comments. What TinyXML refuses is an error here too: mismatched or missing end tags, attributes without
+in comments, an end tag too many (the document ends there, whatever follows). What TinyXML refuses is an error here too: mismatched or missing end tags, attributes without
 quotes or given twice, a declaration after other content.
 """
 
@@ -89,7 +89,10 @@ class _TolerantReader:
         name = self._name(at + 2)
         self.at = self._after(">", at)
         if not self.builder.open:
-            raise self._error(f"</{name}> closes nothing", at)
+            if not self.builder.roots:
+                raise self._error(f"</{name}> closes nothing", at)
+            self.at = len(self.text)
+            return
         element = self.builder.open[-1]
         if element.tag != name:
             raise self._error(f"</{name}> where </{element.tag}> of line {element.line} is due", at)
