@@ -75,6 +75,10 @@ class BodyAccess:
         """What `getJointInfo` returns, by joint index."""
         return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
 
+    def forget_inertia(self) -> None:
+        """Drop what depends on masses and inertias: some scripts burn fuel, and change masses at every step."""
+        self.__dict__.pop("tree", None)
+
     def base_pose(self) -> tuple[Vector3, Quaternion]:
         """World pose of the base's inertial frame."""
         x, y, z, qx, qy, qz, qw = _read_pose(self._positions, self._position_at)
@@ -125,6 +129,13 @@ class BodyTable(dict[int, BodyAccess]):
     def forget(self, body_id: int) -> None:
         """Drop the access to a body, which is about to be another one."""
         self.pop(body_id, None)
+        self.forces_of_motion.pop(body_id, None)
+
+    def forget_inertia(self, body_id: int) -> None:
+        """Drop what depends on the masses and inertias of a body."""
+        access = self.get(body_id)
+        if access is not None:
+            access.forget_inertia()
         self.forces_of_motion.pop(body_id, None)
 
     def forget_all(self) -> None:

@@ -25,7 +25,8 @@ _MULTI_BODY = 2
 
 _UNCHANGED = -1
 # What `BodyAccess` was made with.
-_KEPT_BY_ACCESS = {"mass", "inertia", "joint_lower_limit", "joint_upper_limit"}
+_LIMITS = {"joint_lower_limit", "joint_upper_limit"}
+_INERTIA = {"mass", "inertia"}
 
 
 @exported
@@ -221,8 +222,10 @@ def changeDynamics(
         )
     with client.lock:
         body.change_dynamics(link, **changes.values)
-        if not _KEPT_BY_ACCESS.isdisjoint(changes.values):
+        if not _LIMITS.isdisjoint(changes.values):
             client.bodies.forget(body.id)
+        elif not _INERTIA.isdisjoint(changes.values):
+            client.bodies.forget_inertia(body.id)
 
 
 @exported

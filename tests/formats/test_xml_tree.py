@@ -68,7 +68,9 @@ def test_sloppy_documents_are_read(text: str, name: str) -> None:
     assert parse(text)[0].attributes["name"] == name
 
 
-@pytest.mark.parametrize("rest", ["</a>", "</b>", '</a x="1">', "</a><c/>", "</a> words < &", "</a><c x=1><d></e>"])
+@pytest.mark.parametrize(
+    "rest", ["</a>", "</b>", '</a x="1">', "</a><c/>", "</a> words < &", "</a><c x=1><d></e>"]
+)
 def test_an_end_tag_too_many_ends_the_document(rest: str) -> None:
     assert [plain(root) for root in parse(f"<a><b/></a>\n{rest}")] == [plain(parse("<a><b/></a>")[0])]
 

@@ -223,6 +223,23 @@ def test_mass_matrix_and_inverse_dynamics_belong_together(arm: int) -> None:
     assert np.array(p.calculateMassMatrix(arm, np.array([*q, 9, 9]))) == pytest.approx(matrix)
 
 
+def test_masses_changed_while_running_count_at_once(arm: int) -> None:
+    q, still = [0.3, -0.4, 0.05], [0.0] * 3
+    p.setGravity(0, 0, -9.81)
+
+    def answers() -> list[np.ndarray]:
+        forces = p.calculateInverseDynamics(arm, q, still, still)
+        return [np.array(p.calculateMassMatrix(arm, q)), np.array(forces)]
+
+    before, links = answers(), p.getLinkStates(arm, [0, 1, 2])
+    for link in range(-1, p.getNumJoints(arm)):
+        info = p.getDynamicsInfo(arm, link)
+        p.changeDynamics(arm, link, mass=2 * info[0], localInertiaDiagonal=[2 * moment for moment in info[2]])
+    for new, old in zip(answers(), before, strict=True):
+        assert new == pytest.approx(2 * old)
+    assert p.getLinkStates(arm, [0, 1, 2]) == links
+
+
 def test_jacobians_are_derivatives(arm: int) -> None:
     point, q = [0.1, 0.0, 0.2], np.array([0.3, -0.4, 0.05])
     linear, _ = p.calculateJacobian(arm, 1, point, q, np.zeros(3), np.zeros(3))

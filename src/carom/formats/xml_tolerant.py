@@ -2,8 +2,9 @@
 
 It forgives what TinyXML forgives: text and further elements outside the root, white space before the
 declaration, bare ampersands and `<` in attribute values, missing blanks between attributes, double hyphens
-in comments, an end tag too many (the document ends there, whatever follows). What TinyXML refuses is an error here too: mismatched or missing end tags, attributes without
-quotes or given twice, a declaration after other content.
+in comments, an end tag too many (the document ends there, whatever follows). What TinyXML refuses is an
+error here too: mismatched or missing end tags, attributes without quotes or given twice, a declaration
+after other content.
 """
 
 from __future__ import annotations
