@@ -76,7 +76,7 @@ class BodyAccess:
         return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
 
     def forget_inertia(self) -> None:
-        """Drop what depends on masses and inertias: some scripts burn fuel, and change masses at every step."""
+        """Drop what depends on masses and inertias. Some scripts burn fuel, changing a mass at every step."""
         self.__dict__.pop("tree", None)
 
     def base_pose(self) -> tuple[Vector3, Quaternion]:
