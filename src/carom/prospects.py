@@ -4,26 +4,32 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from carom.model.flags import LoadFlags
+import numpy as np
+
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 if TYPE_CHECKING:
-    from carom.body import Body
     from carom.world import World
 
 
 def can_touch(world: World) -> bool:
-    """Whether two shapes could ever touch: of two bodies that are not both scenery, or of one body."""
-    solid = scenery = 0
-    for body in world.bodies.values():
-        links = [body.spec.base, *body.spec.links]
-        if not any(link.collisions for link in links):
-            continue
-        if body.spec.flags & LoadFlags.ANY_SELF_COLLISION:
-            return True
-        solid += 1
-        scenery += _is_scenery(world, body)
-    return solid > 1 and (solid > scenery or bool(world.touch.shapes.filters.all))
+    """Whether two shapes could ever touch: of two bodies that are not both scenery, or of one body.
+
+    Scenery are bodies with shapes on their fixed base alone, in the group of fixed bases.
+    """
+    shapes, model = world.touch.shapes.table.numpy, world.arrays.model.numpy
+    solid = np.flatnonzero(shapes["link_shape_count"][: world.arrays.used["link"]])
+    if shapes["link_self_collision"][solid].any():
+        return True
+    first_links = model["tree_first_link"][: world.arrays.used["tree"]]
+    trees = np.searchsorted(first_links, solid, side="right") - 1
+    if (trees[1:] == trees[:-1]).all():
+        return False
+    if world.touch.shapes.filters.all:
+        return True
+    is_fixed_base = (model["tree_fixed"][trees] != 0) & (first_links[trees] == solid)
+    groups, masks = shapes["link_group"][solid], shapes["link_mask"][solid]
+    return not (is_fixed_base & (groups == FIXED_GROUP) & (masks == FIXED_MASK)).all()
 
 
 def can_sleep(world: World) -> bool:
@@ -31,13 +37,3 @@ def can_sleep(world: World) -> bool:
     arrays = world.arrays
     model, state, count = arrays.model.numpy, arrays.state.numpy, arrays.used["tree"]
     return bool(model["tree_can_sleep"][:count].any() or state["tree_activity"][0, :count].any())
-
-
-def _is_scenery(world: World, body: Body) -> bool:
-    """Whether a body has shapes on its fixed base alone, in the group of fixed bases."""
-    shapes, base = world.touch.shapes.table.numpy, body.first_link
-    return (
-        body.fixed_base
-        and not any(link.collisions for link in body.spec.links)
-        and (shapes["link_group"][base], shapes["link_mask"][base]) == (FIXED_GROUP, FIXED_MASK)
-    )
