@@ -239,7 +239,7 @@ class _Quickhull:
         """New faces; the candidates above them become their outside points."""
         corners = self.points[np.array(triangles)]
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-        normals = np.cross(b - a, c - a)
+        normals = _crossed(b - a, c - a)
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
         offsets = np.einsum("ij,ij->i", normals, corners.mean(axis=1))
@@ -267,6 +267,14 @@ class _Quickhull:
         best = int(heights.argmax())
         face.farthest, face.height = int(face.outside[best]), float(heights[best])
         heapq.heappush(self._pending, (-face.height, number))
+
+
+def _crossed(a: Points, b: Points) -> Points:
+    """Cross products row by row; NumPy's takes three times as long for a few."""
+    result = np.empty_like(a)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        result[:, i] = a[:, j] * b[:, k] - a[:, k] * b[:, j]
+    return result
 
 
 def _edges(corners: Triangle) -> list[tuple[int, int]]:
