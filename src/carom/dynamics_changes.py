@@ -11,6 +11,7 @@ from carom.model.inertia import inertia_from_shapes
 
 if TYPE_CHECKING:
     from carom.body import Body
+    from carom.description.pose import Vector3
 
 
 _OF_BODY = {
@@ -40,8 +41,8 @@ def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     if _ACTIVATION in changes:
         _change_activation(body, ActivationChange(changes[_ACTIVATION]))
     if "mass" in changes:
-        _set_mass(body, link, changes["mass"])
-    if "inertia" in changes:
+        _set_mass(body, link, changes["mass"], changes.get("inertia"))
+    elif "inertia" in changes:
         _set_inertia(body, link, changes["inertia"])
     if link != BASE:
         _change_joint(body, link, changes)
@@ -94,26 +95,29 @@ def write_link(body: Body, link: int) -> None:
     body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
-def _set_mass(body: Body, link: int, mass: float) -> None:
-    """Set the mass and the inertia the collision shapes have with it; a massless base is fixed."""
+def _set_mass(body: Body, link: int, mass: float, inertia: Vector3 | None) -> None:
+    """Set the mass and the inertia, by default that of the collision shapes; a massless base is fixed."""
     dynamics = body.dynamics(link)
     dynamics.mass = mass
-    spec = body.link_spec(link)
-    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-    dynamics.inertia = inertia_from_shapes(
-        mass,
-        spec.collisions,
-        spec.inertial_frame,
-        implicit_cylinder=implicit,
-        compound_margin=spec.compound_margin,
-    )
+    dynamics.inertia = _inertia_from_shapes(body, link, mass) if inertia is None else inertia
     _write(body, link)
     if link == BASE and (mass > 0.0) == body.fixed_base:
         body.world.set_base_freedom(body, free=mass > 0.0)
         body.world.touch.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
 
 
-def _set_inertia(body: Body, link: int, inertia: tuple[float, float, float]) -> None:
+def _inertia_from_shapes(body: Body, link: int, mass: float) -> Vector3:
+    spec = body.link_spec(link)
+    return inertia_from_shapes(
+        mass,
+        spec.collisions,
+        spec.inertial_frame,
+        implicit_cylinder=bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER),
+        compound_margin=spec.compound_margin,
+    )
+
+
+def _set_inertia(body: Body, link: int, inertia: Vector3) -> None:
     body.dynamics(link).inertia = inertia
     _write(body, link)
 
