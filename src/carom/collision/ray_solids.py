@@ -1,7 +1,9 @@
 """Where a ray enters a convex shape, in the frame of the shape.
 
 Rays go from `start` to `start + way`; places on them are fractions of `way`. A ray that starts inside
-does not enter, and one without length hits nothing. Each function returns the fraction, which is
+does not enter, unless it starts in the margin around the core of a shape, towards the core: then it hits at
+once, as in PyBullet. The core of a ball is its middle, that of a capsule its axis; boxes, cylinders and
+hulls have thin margins. A ray without length hits nothing. Each function returns the fraction, which is
 `MISS` where there is no hit, and the outward normal.
 """
 
@@ -11,6 +13,19 @@ from carom.model.real import Int32, Vector3, Vectors4, func, real, shared_func
 
 MISS = real(2.0)
 TINY = real(1.0e-30)
+MARGIN = real(1.0e-3)
+"""Thickness of what surrounds the core of boxes and cylinders [m]."""
+
+
+@func
+def ray_from_margin(from_core: Vector3, way: Vector3):
+    """From a place in the margin, given relative to the nearest place of the core."""
+    fraction = real(MISS)
+    normal = Vector3(0.0, 0.0, 0.0)
+    if wp.dot(from_core, way) < 0.0:
+        fraction = real(0.0)
+        normal = wp.normalize(from_core)
+    return fraction, normal
 
 
 @func
@@ -28,6 +43,8 @@ def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
         if at <= 1.0:
             fraction = at
             normal = wp.normalize(offset + way * at)
+    elif c <= 0.0:
+        fraction, normal = ray_from_margin(offset, way)
     return fraction, normal
 
 
@@ -37,7 +54,12 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
     enter = real(-1.0)
     leave = real(1.0)
     normal = Vector3(0.0, 0.0, 0.0)
+    from_core = Vector3(0.0, 0.0, 0.0)
+    is_inside = True
     for axis in range(3):
+        core = wp.max(size[axis] - MARGIN, real(0.0))
+        from_core[axis] = start[axis] - wp.clamp(start[axis], -core, core)
+        is_inside = is_inside and wp.abs(start[axis]) <= size[axis]
         if way[axis] == 0.0:
             if wp.abs(start[axis]) > size[axis]:
                 leave = real(-2.0)
@@ -54,7 +76,9 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
                 normal[axis] = -wp.sign(way[axis])
             leave = wp.min(leave, far)
     fraction = real(MISS)
-    if enter >= 0.0 and enter <= leave:
+    if is_inside:
+        fraction, normal = ray_from_margin(from_core, way)
+    elif enter >= 0.0 and enter <= leave:
         fraction = enter
     return fraction, normal
 
@@ -81,7 +105,13 @@ def ray_tube(start: Vector3, way: Vector3, radius: real, half_length: real):
 def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
     """A cylinder along z; the side first, then the caps."""
     fraction, normal = ray_tube(start, way, radius, half_length)
-    if wp.abs(start[2]) > half_length and start[2] * way[2] < 0.0:
+    aside = wp.sqrt(start[0] * start[0] + start[1] * start[1])
+    if aside <= radius and wp.abs(start[2]) <= half_length:
+        core = wp.max(half_length - MARGIN, real(0.0))
+        outside = wp.max(aside - wp.max(radius - MARGIN, real(0.0)), real(0.0)) / wp.max(aside, TINY)
+        above = start[2] - wp.clamp(start[2], -core, core)
+        fraction, normal = ray_from_margin(Vector3(start[0] * outside, start[1] * outside, above), way)
+    elif wp.abs(start[2]) > half_length and start[2] * way[2] < 0.0:
         at = (half_length - wp.abs(start[2])) / (wp.sign(start[2]) * way[2])
         point = start + way * at
         if at <= 1.0 and point[0] * point[0] + point[1] * point[1] <= radius * radius:
@@ -92,11 +122,11 @@ def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
 
 @func
 def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
-    """A capsule along z: the first of its side and its two balls, unless it starts inside."""
+    """A capsule along z: the first of its side and its two balls."""
     nearest = start - Vector3(0.0, 0.0, wp.clamp(start[2], -half_length, half_length))
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
-    if wp.length_sq(nearest) > radius * radius:
+    if wp.length(nearest) > radius:
         fraction, normal = ray_tube(start, way, radius, half_length)
         for end in range(2):
             z = half_length * (2.0 * real(end) - 1.0)
@@ -104,6 +134,8 @@ def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
             if at < fraction:
                 fraction = at
                 normal = outward
+    else:
+        fraction, normal = ray_from_margin(nearest, way)
     return fraction, normal
 
 
@@ -115,11 +147,16 @@ def ray_hull(
     enter = real(-1.0)
     leave = real(1.0)
     normal = Vector3(0.0, 0.0, 0.0)
+    highest = real(-1.0e30)
+    nearest = Vector3(0.0, 0.0, 0.0)
     for face in range(first_face, first_face + face_count):
         plane = face_plane[face]
         outward = Vector3(plane[0], plane[1], plane[2])
         height = wp.dot(outward, start) - plane[3] - margin
         slope = wp.dot(outward, way)
+        if height > highest:
+            highest = height
+            nearest = outward
         if slope < 0.0:
             at = -height / slope
             if at > enter:
@@ -130,7 +167,10 @@ def ray_hull(
         elif height > 0.0:
             leave = real(-2.0)
     fraction = real(MISS)
-    if enter >= 0.0 and enter <= leave:
+    if highest <= 0.0:
+        if highest >= -margin:
+            fraction, normal = ray_from_margin(nearest, way)
+    elif enter >= 0.0 and enter <= leave:
         fraction = enter
     return fraction, normal
 
