@@ -29,6 +29,13 @@ def ray_from_margin(from_core: Vector3, way: Vector3):
 
 
 @func
+def beyond(x: real, core: real) -> real:
+    """How far a coordinate is beyond a core that reaches as far on both sides, if it reaches anywhere."""
+    reach = wp.max(core, real(0.0))
+    return x - wp.clamp(x, -reach, reach)
+
+
+@func
 def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
     """A ball."""
     offset = start - center
@@ -54,12 +61,16 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
     enter = real(-1.0)
     leave = real(1.0)
     normal = Vector3(0.0, 0.0, 0.0)
-    from_core = Vector3(0.0, 0.0, 0.0)
-    is_inside = True
+    fraction = real(MISS)
+    if wp.abs(start[0]) <= size[0] and wp.abs(start[1]) <= size[1] and wp.abs(start[2]) <= size[2]:
+        from_core = Vector3(
+            beyond(start[0], size[0] - MARGIN),
+            beyond(start[1], size[1] - MARGIN),
+            beyond(start[2], size[2] - MARGIN),
+        )
+        fraction, normal = ray_from_margin(from_core, way)
+        return fraction, normal
     for axis in range(3):
-        core = wp.max(size[axis] - MARGIN, real(0.0))
-        from_core[axis] = start[axis] - wp.clamp(start[axis], -core, core)
-        is_inside = is_inside and wp.abs(start[axis]) <= size[axis]
         if way[axis] == 0.0:
             if wp.abs(start[axis]) > size[axis]:
                 leave = real(-2.0)
@@ -75,10 +86,7 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
                 normal = Vector3(0.0, 0.0, 0.0)
                 normal[axis] = -wp.sign(way[axis])
             leave = wp.min(leave, far)
-    fraction = real(MISS)
-    if is_inside:
-        fraction, normal = ray_from_margin(from_core, way)
-    elif enter >= 0.0 and enter <= leave:
+    if enter >= 0.0 and enter <= leave:
         fraction = enter
     return fraction, normal
 
@@ -107,9 +115,8 @@ def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
     fraction, normal = ray_tube(start, way, radius, half_length)
     aside = wp.sqrt(start[0] * start[0] + start[1] * start[1])
     if aside <= radius and wp.abs(start[2]) <= half_length:
-        core = wp.max(half_length - MARGIN, real(0.0))
-        outside = wp.max(aside - wp.max(radius - MARGIN, real(0.0)), real(0.0)) / wp.max(aside, TINY)
-        above = start[2] - wp.clamp(start[2], -core, core)
+        outside = beyond(aside, radius - MARGIN) / wp.max(aside, TINY)
+        above = beyond(start[2], half_length - MARGIN)
         fraction, normal = ray_from_margin(Vector3(start[0] * outside, start[1] * outside, above), way)
     elif wp.abs(start[2]) > half_length and start[2] * way[2] < 0.0:
         at = (half_length - wp.abs(start[2])) / (wp.sign(start[2]) * way[2])
@@ -139,6 +146,21 @@ def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
     return fraction, normal
 
 
+@func
+def nearest_face(face_plane: Vectors4, first_face: Int32, face_count: Int32, place: Vector3) -> Vector3:
+    """The outward normal of the face of a hull that a place within is nearest to."""
+    highest = real(-1.0e30)
+    nearest = Vector3(0.0, 0.0, 0.0)
+    for face in range(first_face, first_face + face_count):
+        plane = face_plane[face]
+        outward = Vector3(plane[0], plane[1], plane[2])
+        height = wp.dot(outward, place) - plane[3]
+        if height > highest:
+            highest = height
+            nearest = outward
+    return nearest
+
+
 @shared_func
 def ray_hull(
     start: Vector3, way: Vector3, face_plane: Vectors4, first_face: Int32, face_count: Int32, margin: real
@@ -148,15 +170,12 @@ def ray_hull(
     leave = real(1.0)
     normal = Vector3(0.0, 0.0, 0.0)
     highest = real(-1.0e30)
-    nearest = Vector3(0.0, 0.0, 0.0)
     for face in range(first_face, first_face + face_count):
         plane = face_plane[face]
         outward = Vector3(plane[0], plane[1], plane[2])
         height = wp.dot(outward, start) - plane[3] - margin
         slope = wp.dot(outward, way)
-        if height > highest:
-            highest = height
-            nearest = outward
+        highest = wp.max(highest, height)
         if slope < 0.0:
             at = -height / slope
             if at > enter:
@@ -169,7 +188,7 @@ def ray_hull(
     fraction = real(MISS)
     if highest <= 0.0:
         if highest >= -margin:
-            fraction, normal = ray_from_margin(nearest, way)
+            fraction, normal = ray_from_margin(nearest_face(face_plane, first_face, face_count, start), way)
     elif enter >= 0.0 and enter <= leave:
         fraction = enter
     return fraction, normal
