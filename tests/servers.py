@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
+from tests.patience import PATIENCE
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
@@ -75,7 +77,7 @@ class Process:
     def end(self) -> int:
         """Waits until it has ended by itself; returns its exit status."""
         _pipe(self.process.stdin).close()
-        return self.process.wait(timeout=60)
+        return self.process.wait(timeout=PATIENCE)
 
 
 class Servers(Process):

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from tests.patience import PATIENCE
 from tests.servers import environment
 
 import pybullet as p
@@ -69,7 +70,7 @@ def test_a_world_to_join_until_ctrl_c() -> None:
         assert p.connect(p.SHARED_MEMORY) == 1
         assert p.getNumBodies(1) == 1
         interrupt(process)
-        assert process.wait(timeout=60) == 0
+        assert process.wait(timeout=PATIENCE) == 0
         assert process.stdout is not None
         assert process.stdout.read() == "The physics server has ended.\n"
     assert [p.isConnected(client) for client in (0, 1)] == [0, 0]
@@ -81,7 +82,7 @@ def test_a_world_to_join_until_it_is_terminated() -> None:
     with serving("--key", "7") as process:
         assert p.connect(p.SHARED_MEMORY, 7) == 0
         process.terminate()
-        assert process.wait(timeout=60) == 0
+        assert process.wait(timeout=PATIENCE) == 0
 
 
 def test_ports_of_this_machine_need_no_key() -> None:

@@ -24,7 +24,7 @@ DynamicsInfo = tuple[
 _MULTI_BODY = 2
 
 _UNCHANGED = -1
-# What `BodyAccess` was made with.
+# What a `BodyAccess` is made with, and what only its equations of motion are.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.pybullet.touching import add_pair
 
 import pybullet as p
 import pybullet_data
@@ -184,23 +185,10 @@ def test_overlaps_with_a_box(things):
 
 def test_overlaps_with_what_has_no_shape(client: int) -> None:
     """Its bounds are a point; in a URDF file those of a link are a cube of two millimetres."""
-    body = p.createMultiBody(
-        1,
-        basePosition=[3, 3, 3],
-        linkMasses=[1],
-        linkCollisionShapeIndices=[-1],
-        linkVisualShapeIndices=[-1],
-        linkPositions=[[0, 0, 1]],
-        linkOrientations=[[0, 0, 0, 1]],
-        linkInertialFramePositions=[[0, 0, 0]],
-        linkInertialFrameOrientations=[[0, 0, 0, 1]],
-        linkParentIndices=[0],
-        linkJointTypes=[p.JOINT_REVOLUTE],
-        linkJointAxis=[[1, 0, 0]],
-    )
-    assert p.getOverlappingObjects([2, 2, 2], [4, 4, 3.5]) == ((body, -1),)
-    assert p.getOverlappingObjects([3, 3, 3.5], [4, 4, 5]) == ((body, 0),)
-    assert p.getOverlappingObjects([3.0001, 2, 2], [4, 4, 5]) is None
+    body = add_pair(1.0, -1)
+    assert p.getOverlappingObjects([0, -1, 0], [1.4, 1, 1]) == ((body, -1),)
+    assert p.getOverlappingObjects([1.5, 0, 0], [2, 1, 1]) == ((body, 0),)
+    assert p.getOverlappingObjects([0, 0.0001, 0], [2, 1, 1]) is None
     p.resetBasePositionAndOrientation(body, [5, 5, 5], [0, 0, 0, 1])
     assert p.getOverlappingObjects([4, 4, 4], [6, 6, 7]) == ((body, -1), (body, 0))
     panda = p.loadURDF(f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf", useFixedBase=True)

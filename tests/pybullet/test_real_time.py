@@ -8,13 +8,11 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.patience import PATIENCE
 
 import pybullet as p
 from pybullet._clients import clients
 from pybullet._real_time import Pace
-
-# Long enough for the busiest machine; nothing waits for it when all is well.
-PATIENCE = 60.0
 
 
 @given(st.lists(st.floats(0.0, 0.05), max_size=200), st.floats(0.001, 0.05))

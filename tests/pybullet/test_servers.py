@@ -6,12 +6,12 @@ import signal
 import sys
 from pathlib import Path
 from threading import Thread
-from time import sleep, time
 from typing import Any
 
 import numpy as np
 import pytest
 from tests.conformance.catalogue import select
+from tests.patience import until
 from tests.pybullet.conftest import keys
 from tests.servers import Process, Servers
 
@@ -62,13 +62,6 @@ def clients_of_server(number: int) -> int:
     served = clients[number].server
     assert served is not None
     return served.client_count
-
-
-def until(condition: Any) -> bool:
-    deadline = time() + 60.0
-    while not condition() and time() < deadline:
-        sleep(0.01)
-    return condition()
 
 
 def test_no_server_is_minus_one(key: int, caplog: pytest.LogCaptureFixture) -> None:

@@ -5,12 +5,12 @@ import struct
 from collections.abc import Iterator
 from contextlib import suppress
 from threading import Event, Thread
-from time import monotonic, sleep
-from typing import Any
+from time import sleep
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.patience import PATIENCE, until
 
 from carom.remote import handshake, listener
 from carom.remote.connection import Connection
@@ -21,8 +21,6 @@ from carom.remote.listener import Listener
 from carom.remote.values import pack, unpack
 
 KEY = b"a key of enough characters"
-# Long enough for the busiest machine; nothing waits for it when all is well.
-PATIENCE = 60.0
 
 
 class Echo:
@@ -94,13 +92,6 @@ def works(server: Listener) -> bool:
         return connection.call(["how", "are", "you"]) == ("how", "are", "you")
     finally:
         connection.close()
-
-
-def until(condition: Any) -> bool:
-    deadline = monotonic() + PATIENCE
-    while not condition() and monotonic() < deadline:
-        sleep(0.01)
-    return condition()
 
 
 def test_calls_are_answered(server: Listener) -> None:

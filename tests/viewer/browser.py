@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from PIL import Image
-from tests.viewer.watcher import PATIENCE
+from tests.patience import PATIENCE
 
 BROWSER = next(
     filter(

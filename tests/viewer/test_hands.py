@@ -5,7 +5,8 @@ import time
 
 import numpy as np
 import pytest
-from tests.viewer.watcher import PATIENCE, Watcher
+from tests.patience import PATIENCE
+from tests.viewer.watcher import Watcher
 
 import pybullet as p
 from carom.viewer.viewer import Viewer

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
+from tests.patience import PATIENCE
 from tests.viewer.browser import HEIGHT, WIDTH, Page, chromium, needs_browser, wait_for
-from tests.viewer.watcher import PATIENCE
 
 import pybullet as p
 import pybullet_data

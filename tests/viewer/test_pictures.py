@@ -2,7 +2,8 @@
 
 import threading
 
-from tests.viewer.watcher import PATIENCE, Watcher
+from tests.patience import PATIENCE
+from tests.viewer.watcher import Watcher
 
 import pybullet as p
 from carom.viewer.pictures import Pictures

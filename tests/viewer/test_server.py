@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.viewer.watcher import PATIENCE, Watcher
+from tests.patience import PATIENCE
+from tests.viewer.watcher import Watcher
 from websockets.exceptions import InvalidStatus
 
 import pybullet as p

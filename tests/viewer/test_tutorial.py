@@ -5,9 +5,10 @@ import signal
 import sys
 
 import pytest
+from tests.patience import PATIENCE
 from tests.viewer.browser import Page, chromium, needs_browser
 from tests.viewer.scripts import ROOT, started
-from tests.viewer.watcher import PATIENCE, Watcher
+from tests.viewer.watcher import Watcher
 
 # Where the tests run in the background of a shell, it has told all that they start to ignore Ctrl-C.
 STEPPING = """

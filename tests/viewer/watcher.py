@@ -8,12 +8,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from tests.patience import PATIENCE
 from websockets.sync.client import connect
 
 from carom.viewer.messages import decoded
-
-# Long enough for the busiest machine; nothing waits for it when all is well.
-PATIENCE = 60.0
 
 
 class Watcher:

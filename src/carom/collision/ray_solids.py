@@ -9,12 +9,13 @@ hulls have thin margins. A ray without length hits nothing. Each function return
 
 import warp as wp
 
+from carom.model.bounds import MARGIN
 from carom.model.real import Int32, Vector3, Vectors4, func, real, shared_func
 
 MISS = real(2.0)
 TINY = real(1.0e-30)
-MARGIN = real(1.0e-3)
-"""Thickness of what surrounds the core of boxes and cylinders [m]."""
+THICKNESS = real(MARGIN)
+"""Of what surrounds the core of boxes and cylinders [m]."""
 
 
 @func
@@ -64,9 +65,9 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
     fraction = real(MISS)
     if wp.abs(start[0]) <= size[0] and wp.abs(start[1]) <= size[1] and wp.abs(start[2]) <= size[2]:
         from_core = Vector3(
-            beyond(start[0], size[0] - MARGIN),
-            beyond(start[1], size[1] - MARGIN),
-            beyond(start[2], size[2] - MARGIN),
+            beyond(start[0], size[0] - THICKNESS),
+            beyond(start[1], size[1] - THICKNESS),
+            beyond(start[2], size[2] - THICKNESS),
         )
         fraction, normal = ray_from_margin(from_core, way)
         return fraction, normal
@@ -115,8 +116,8 @@ def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
     fraction, normal = ray_tube(start, way, radius, half_length)
     aside = wp.sqrt(start[0] * start[0] + start[1] * start[1])
     if aside <= radius and wp.abs(start[2]) <= half_length:
-        outside = beyond(aside, radius - MARGIN) / wp.max(aside, TINY)
-        above = beyond(start[2], half_length - MARGIN)
+        outside = beyond(aside, radius - THICKNESS) / wp.max(aside, TINY)
+        above = beyond(start[2], half_length - THICKNESS)
         fraction, normal = ray_from_margin(Vector3(start[0] * outside, start[1] * outside, above), way)
     elif wp.abs(start[2]) > half_length and start[2] * way[2] < 0.0:
         at = (half_length - wp.abs(start[2])) / (wp.sign(start[2]) * way[2])
