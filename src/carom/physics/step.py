@@ -31,8 +31,14 @@ def begin_step(settings: Settings, model: Model, state: State, scratch: Scratch,
     """Keep the start of the step, and let joint friction act for all of it."""
     state.fault_tree[world, 0] = 0
     for tree in range(settings.tree_count):
-        keep_start(model, state, scratch, world, tree)
-        joint_damping(model, state, world, tree)
+        begin_tree(model, state, scratch, world, tree)
+
+
+@func
+def begin_tree(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `begin_step`, for one tree."""
+    keep_start(model, state, scratch, world, tree)
+    joint_damping(model, state, world, tree)
 
 
 @func
@@ -87,10 +93,16 @@ def constrained_motion(settings: Settings, model: Model, state: State, scratch: 
         if is_asleep(state, world, tree):
             stop(model, state, world, tree)
             continue
-        if model.tree[tree].sensor_count > 0:
-            constraint_feedback(model, settings, state, scratch, world, tree)
-        apply_delta_velocities(model, state, scratch, world, tree)
-        integrate_positions(model, state, world, tree, settings.time_step)
+        move_on(settings, model, state, scratch, world, tree)
+
+
+@func
+def move_on(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `constrained_motion`, for one tree that is awake."""
+    if model.tree[tree].sensor_count > 0:
+        constraint_feedback(model, settings, state, scratch, world, tree)
+    apply_delta_velocities(model, state, scratch, world, tree)
+    integrate_positions(model, state, world, tree, settings.time_step)
 
 
 @func
@@ -98,10 +110,18 @@ def end_step(settings: Settings, model: Model, state: State, scratch: Scratch, w
     """Go back to the start if something went wrong; forces last until a step is complete."""
     fault = state.fault_tree[world, 0]
     for tree in range(settings.tree_count):
-        if fault != 0:
-            return_to_start(model, state, scratch, world, tree)
-        if fault > 0 or (fault == 0 and complete != 0):
-            clear_forces(model, state, world, tree)
+        end_tree(model, state, scratch, world, tree, fault, complete)
+
+
+@func
+def end_tree(
+    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, fault: Int32, complete: Int32
+):
+    """As `end_step`, for one tree, given what `State.fault_tree` says of its world."""
+    if fault != 0:
+        return_to_start(model, state, scratch, world, tree)
+    if fault > 0 or (fault == 0 and complete != 0):
+        clear_forces(model, state, world, tree)
 
 
 @func
