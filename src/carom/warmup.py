@@ -26,6 +26,8 @@ KERNEL_MODULES = (
     "carom.collision.closest",
     "carom.physics.kinematics",
     "carom.physics.slumber",
+    "carom.physics.step_ends",
+    "carom.engine.interpreter",
     "carom.physics.motor_commands",
     "carom.collision.rays",
     "carom.collision.contact_report",
@@ -34,7 +36,7 @@ KERNEL_MODULES = (
     "carom.algorithms.tree.motion",
     "carom.render.kernels.draw",
 )
-# Steps on CUDA devices are made of these in place of the first three; `carom.parallel_step` launches them.
+# Steps on CUDA devices are made of these; `carom.engine.parallel` launches them.
 PARALLEL_MODULES = (
     "carom.collision.parallel",
     "carom.physics.parallel.contact_rows",
@@ -44,7 +46,15 @@ PARALLEL_MODULES = (
     "carom.physics.parallel.trees",
     "carom.physics.parallel.joint_rows",
 )
-CUDA_MODULES = (*PARALLEL_MODULES, *KERNEL_MODULES[3:])
+# What takes a world through a whole step, which is for CPUs.
+_CPU_MODULES = {
+    "carom.physics.coupled_step",
+    "carom.collision.collide",
+    "carom.physics.step",
+    "carom.physics.step_ends",
+    "carom.engine.interpreter",
+}
+CUDA_MODULES = (*PARALLEL_MODULES, *(name for name in KERNEL_MODULES if name not in _CPU_MODULES))
 # The stages of `World.profile` are compiled again, each on its own, when someone asks for a profile.
 ON_DEMAND = ("carom.collision.stages", "carom.physics.stages")
 

@@ -16,21 +16,14 @@ from pybullet._clients import clients
 
 
 @contextmanager
-def scene(build: str, seed: int, *, roomy: bool = True) -> Iterator[World]:
-    """A world with the scene of a function below, its bodies a little in motion.
-
-    There is room for all contacts, and if it is `roomy` for all rows.
-    """
+def scene(build: str, seed: int) -> Iterator[World]:
+    """A world with the scene of a function below, its bodies a little in motion."""
     client = p.connect(p.DIRECT)
     try:
         p.setAdditionalSearchPath(pybullet_data.getDataPath(), physicsClientId=client)
         p.setGravity(0, 0, -9.81, physicsClientId=client)
         globals()[build](client)
         world = clients[client].world
-        world.touch.pairs.reserve({"pair": 256})
-        world.touch.contacts.reserve({"contact": 256})
-        if roomy:
-            world.touch.couplings.reserve({"coupling": 512, "jacobian": 4096, "run": 4096})
         rng = np.random.default_rng(seed)
         model = world.arrays.model.numpy
         for tree in range(world.arrays.used["tree"]):

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from carom import World
+from carom.engine.parallel import Extent, ParallelStep
+from carom.engine.program import Plan
+from carom.engine.prospects import can_sleep
+from carom.engine.workspace import Workspace
 from carom.model.arrays import ArrayTable
-from carom.model.contact_structs import COUPLING_ENTRY_VIEWS, Contacts, Couplings, Pairs
-from carom.model.structs import ENTRY_VIEWS, Scratch, State
-from carom.parallel_step import Extent, ParallelStep
-from carom.prospects import can_sleep, can_touch
 
 DEVICE = "cpu"
 
@@ -20,64 +19,67 @@ DEVICE = "cpu"
 class SideBySide:
     """Worlds of the same bodies, as they are now; they themselves stay as they are.
 
+    There is room for all pairs and contacts, and if it is `roomy` for all rows.
+
     Attributes:
-        tables: Their arrays with a leading world axis, by the names that kernels give them.
+        tables: Their arrays, by the names that kernels give them.
         coupled: Whether their bodies can touch, are tied together or can fall asleep.
     """
 
-    def __init__(self, worlds: Sequence[World]) -> None:
+    def __init__(self, worlds: Sequence[World], *, roomy: bool = True) -> None:
         for world in worlds:
-            world.step(0)
-            world._make_stepper()
+            world.prepare()
         first = worlds[0]
-        self.tables: Mapping[str, ArrayTable] = {
-            "state": _stack(State, [world.arrays.state for world in worlds]),
-            "scratch": _stack(Scratch, [world.arrays.scratch for world in worlds], ENTRY_VIEWS),
-            "pairs": _stack(Pairs, [world.touch.pairs for world in worlds]),
-            "contacts": _stack(Contacts, [world.touch.contacts for world in worlds]),
-            "couplings": _stack(Couplings, [world.touch.couplings for world in worlds], COUPLING_ENTRY_VIEWS),
+        arrays = first.arrays.repeated(len(worlds))
+        touch = first.touch.repeated(arrays)
+        touch.contacts.reserve({"contact": 256})
+        touch.reserve()
+        self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": touch.contacts}
+        for number, world in enumerate(worlds):
+            for ours, theirs in self._beside(world):
+                ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
+        workspace = Workspace(len(worlds))
+        workspace.fit(arrays, touch)
+        workspace.pairs.reserve({"pair": 256})
+        if roomy:
+            workspace.couplings.reserve({"coupling": 512, "jacobian": 4096, "run": 4096})
+        shared = {
+            "settings": first.engine.structs()["settings"],
+            **arrays.structs(DEVICE),
+            **touch.structs(DEVICE),
         }
-        structs: dict[str, Any] = dict(first._kernel_structs())
-        structs |= {name: table.struct(DEVICE) for name, table in self.tables.items()}
-        extent = Extent(
-            len(worlds),
-            first.arrays.used["tree"],
-            first.touch.shapes.shape_count,
-            self.tables["contacts"].capacity["contact"],
-        )
-        touching, sleeping = can_touch(first), can_sleep(first)
-        self.coupled = touching or sleeping or first.touch.user_count > 0
+        touching, sleeping = first.engine.can_touch, can_sleep(first.arrays)
+        self.coupled = touching or sleeping or touch.user_count > 0
         self.step = ParallelStep(
-            structs,
-            extent,
+            workspace.bind(shared, DEVICE),
+            Extent(
+                len(worlds), arrays.used["tree"], touch.shapes.shape_count, touch.contacts.capacity["contact"]
+            ),
             max(1, first.parameters.substeps),
             DEVICE,
-            coupled=self.coupled,
-            touching=touching,
-            sleeping=sleeping,
+            Plan(touching, sleeping, self.coupled),
         )
 
     def differences(self, number: int, world: World) -> list[str]:
         """Names of the arrays of which a bit differs between one of these worlds and a lone one."""
-        lone = {"state": world.arrays.state, "contacts": world.touch.contacts}
+        contacts = world.touch.contact_count
         found = []
-        for name, table in lone.items():
-            for field, values in table.numpy.items():
-                ours = self.tables[name].numpy[field][number, : values.shape[1]]
-                if not np.array_equal(ours, values[0], equal_nan=True):
-                    found.append(field)
-        impulses = world.touch.couplings.numpy["user_impulse"]
-        if not np.array_equal(
-            self.tables["couplings"].numpy["user_impulse"][number, : impulses.shape[1]], impulses[0]
-        ):
-            found.append("user_impulse")
+        for name, (ours, theirs) in zip(self._names, self._beside(world), strict=True):
+            if name == "status_entry":
+                continue
+            count = contacts if name.startswith("contact_") else min(ours.shape[1], theirs.shape[1])
+            if not np.array_equal(ours[number, :count], theirs[0, :count], equal_nan=True):
+                found.append(name)
         return found
 
+    @property
+    def _names(self) -> list[str]:
+        return [name for table in self.tables.values() for name in table.numpy]
 
-def _stack(struct: Any, tables: Sequence[ArrayTable], views: Mapping[str, str] | None = None) -> ArrayTable:
-    stacked = ArrayTable(struct, len(tables), views)
-    stacked.reserve({axis: max(table.capacity[axis] for table in tables) for axis in stacked.capacity})
-    for number, table in enumerate(tables):
-        for name, values in table.numpy.items():
-            stacked.numpy[name][number, : values.shape[1]] = values[0]
-    return stacked
+    def _beside(self, world: World) -> list[tuple[np.ndarray, np.ndarray]]:
+        lone = {"state": world.arrays.state, "contacts": world.touch.contacts}
+        return [
+            (values, lone[name].numpy[field])
+            for name, table in self.tables.items()
+            for field, values in table.numpy.items()
+        ]

@@ -8,7 +8,7 @@ from tests.gpu.scenes import scene
 from tests.gpu.side_by_side import SideBySide
 
 from carom.errors import SimulationError
-from carom.physics.quarantine import OVERFLOW
+from carom.model.status import OVERFLOW, STATUS
 
 COUNT = 3
 
@@ -42,7 +42,7 @@ def test_a_velocity_that_is_not_finite_takes_its_own_world_back_and_no_other() -
         worlds = SideBySide(alone)
         start = worlds.tables["state"].numpy["position"][1].copy()
         worlds.step()
-        np.testing.assert_array_equal(worlds.tables["state"].numpy["fault_tree"][:, 0], [0, 4 + 1, 0])
+        np.testing.assert_array_equal(worlds.tables["state"].numpy["status_entry"][:, STATUS], [0, 4 + 1, 0])
         np.testing.assert_array_equal(worlds.tables["state"].numpy["position"][1], start)
         with pytest.raises(SimulationError, match="body 4 "):
             alone[1].step()
@@ -54,11 +54,11 @@ def test_a_velocity_that_is_not_finite_takes_its_own_world_back_and_no_other() -
 @pytest.mark.parametrize("build", ["robots", "heap"])
 def test_a_world_whose_rows_do_not_fit_goes_back_to_where_the_step_began(build: str) -> None:
     with ExitStack() as stack:
-        alone = [stack.enter_context(scene(build, seed, roomy=False)) for seed in range(COUNT)]
-        worlds = SideBySide(alone)
+        alone = [stack.enter_context(scene(build, seed)) for seed in range(COUNT)]
+        worlds = SideBySide(alone, roomy=False)
         state = worlds.tables["state"].numpy
         start, velocity = state["position"].copy(), state["dof_velocity"].copy()
         worlds.step()
-        assert (state["fault_tree"][:, 0] == OVERFLOW).all()
+        assert (state["status_entry"][:, STATUS] == OVERFLOW).all()
         np.testing.assert_array_equal(state["position"], start)
         np.testing.assert_array_equal(state["dof_velocity"], velocity)

@@ -3,12 +3,13 @@
 import warp as wp
 
 from carom.model.codes import MAX_ROWS_PER_CONSTRAINT
+from carom.model.contact_structs import Pairs
 from carom.model.real import Int32, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.joint_solver import is_constrained, solve_joints
-from carom.physics.parallel.trees import move_or_stop
+from carom.physics.parallel.trees import begin_tree, move_or_stop
 from carom.physics.parallel.workspace import IslandWork, state_of_tree
-from carom.physics.step import begin_tree, free_motion
+from carom.physics.step import free_motion
 
 
 @func
@@ -24,12 +25,16 @@ def scratch_of_batch(model: Model, scratch: Scratch, root: Int32) -> Scratch:
 
 @kernel
 def batch_step_kernel(
-    settings: Settings, model: Model, state: State, scratch: Scratch, work: IslandWork, substeps: Int32
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    work: IslandWork,
+    substeps: Int32,
 ):
-    """Advance each batch of trees by the `substeps` substeps of a step; see `step.step_kernel`."""
+    """Begin a step of each batch of trees, and perform its substeps; see `step.step_kernel`."""
     root, world = wp.tid()
-    if root == 0:
-        state.fault_tree[world, 0] = 0
     work.tree_free_fault[world, root] = 0
     work.tree_motion_fault[world, root] = 0
     if model.tree[root].batch != root:
@@ -38,7 +43,7 @@ def batch_step_kernel(
     own_scratch = scratch_of_batch(model, scratch, root)
     for tree in range(root, settings.tree_count):
         if model.tree[tree].batch == root:
-            begin_tree(model, own_state, scratch, world, tree)
+            begin_tree(model, state, scratch, pairs, world, tree)
     for _substep in range(substeps):
         for tree in range(root, settings.tree_count):
             if model.tree[tree].batch == root:

@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.model.contact_structs import Contacts, Couplings, Shapes
 from carom.model.real import Index4, Int32, kernel, real
+from carom.model.status import OVERFLOW, STATUS
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.parallel.workspace import (
     GIVEN_UP,
@@ -11,8 +12,8 @@ from carom.physics.parallel.workspace import (
     WRITTEN,
     IslandWork,
     couplings_of_island,
+    is_called_off,
 )
-from carom.physics.quarantine import OVERFLOW
 from carom.physics.units import write_units
 
 
@@ -32,6 +33,8 @@ def island_contacts_kernel(
     One whose rows do not fit is given up, as is the step of its world.
     """
     root, world = wp.tid()
+    if is_called_off(state, world):
+        return
     if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != UNWRITTEN:
         return
     made = work.tree_progress[world, root].made
@@ -47,5 +50,5 @@ def island_contacts_kernel(
     work.tree_progress[world, root].units = units
     work.tree_progress[world, root].stage = Int32(WRITTEN)
     if made[3] < 0 or units[0] < 0:
-        state.fault_tree[world, 0] = OVERFLOW
+        state.status_entry[world, STATUS] = OVERFLOW
         work.tree_progress[world, root].stage = Int32(GIVEN_UP)

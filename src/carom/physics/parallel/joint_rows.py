@@ -12,6 +12,7 @@ from carom.physics.parallel.workspace import (
     WRITTEN,
     IslandWork,
     couplings_of_island,
+    is_called_off,
     scratch_of_island,
 )
 from carom.physics.solver import island_rows, keep_constraint_impulses
@@ -30,7 +31,7 @@ def island_rows_kernel(
 ):
     """Begin the search for the impulses of each island."""
     root, world = wp.tid()
-    if state.tree_island[world, root] != root:
+    if is_called_off(state, world) or state.tree_island[world, root] != root:
         return
     own_scratch = scratch_of_island(scratch, work, world, root)
     own_couplings = couplings_of_island(couplings, work, world, root)
@@ -56,6 +57,8 @@ def island_impulses_kernel(
 ):
     """Report how the search went in each island, and the impulses found."""
     root, world = wp.tid()
+    if is_called_off(state, world):
+        return
     if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != WRITTEN:
         return
     own_scratch = scratch_of_island(scratch, work, world, root)
@@ -78,4 +81,4 @@ def island_impulses_kernel(
         work.tree_progress[world, root].units[0],
         work.tree_progress[world, root].outcome,
     )
-    keep_constraint_impulses(model, users, own_couplings, world, root)
+    keep_constraint_impulses(model, state, users, own_couplings, world, root)

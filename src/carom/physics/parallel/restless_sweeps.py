@@ -6,7 +6,7 @@ from carom.model.contact_structs import Couplings
 from carom.model.real import kernel
 from carom.model.structs import Scratch, Settings, State
 from carom.physics.parallel.sweeps import sweep
-from carom.physics.parallel.workspace import WRITTEN, IslandWork
+from carom.physics.parallel.workspace import WRITTEN, IslandWork, is_called_off
 
 
 @kernel
@@ -15,6 +15,8 @@ def restless_sweeps_kernel(
 ):
     """Solve each island that is not calm, or could not be solved as if it were."""
     root, world = wp.tid()
+    if is_called_off(state, world):
+        return
     if (
         state.tree_island[world, root] == root
         and work.tree_progress[world, root].stage == WRITTEN

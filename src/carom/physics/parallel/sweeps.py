@@ -11,6 +11,7 @@ from carom.physics.parallel.workspace import (
     WRITTEN,
     IslandWork,
     couplings_of_island,
+    is_called_off,
     scratch_of_island,
 )
 from carom.physics.solver import forget_changes, sweep_island
@@ -48,6 +49,8 @@ def calm_sweeps_kernel(
 ):
     """Solve each calm island; one that cannot be solved so has its contacts written again, from nothing."""
     root, world = wp.tid()
+    if is_called_off(state, world):
+        return
     if (
         state.tree_island[world, root] != root
         or work.tree_progress[world, root].stage != WRITTEN

@@ -10,6 +10,7 @@ import warp as wp
 
 from carom.model.contact_structs import ContactTerms, Couplings
 from carom.model.real import Index4, Int32, IntRows, func, real
+from carom.model.status import STATUS, WELL
 from carom.model.structs import Scratch, State
 
 # What a window has parts of: rows over one tree, rows to visit, units, patches, rows over two trees, their
@@ -56,6 +57,12 @@ class IslandWork:
     tree_free_fault: IntRows
     tree_motion_fault: IntRows
     terms: TermsRows
+
+
+@func
+def is_called_off(state: State, world: Int32) -> bool:
+    """Whether a world is only waiting for the end of the step, to go back to where that began."""
+    return state.status_entry[world, STATUS] != WELL
 
 
 @func
@@ -120,5 +127,5 @@ def state_of_tree(state: State, faults: IntRows, tree: Int32) -> State:
     """The state with a place of the tree's own for faults; later the first tree that has one can be told."""
     own = State()
     own = state
-    own.fault_tree = faults[:, tree : tree + 1]
+    own.status_entry = faults[:, tree : tree + 1]
     return own

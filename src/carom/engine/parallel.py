@@ -12,6 +12,7 @@ from typing import Any
 import warp as wp
 
 from carom.collision.parallel import place_shapes_kernel, world_contacts_kernel, world_pairs_kernel
+from carom.engine.program import Plan
 from carom.model.contact_structs import ContactTerms
 from carom.model.launch import argument_indices
 from carom.physics.parallel import BLOCK_SIZE
@@ -24,6 +25,7 @@ from carom.physics.parallel.trees import (
     begin_kernel,
     end_kernel,
     faults_kernel,
+    restore_kernel,
     tree_free_motion_kernel,
     tree_motion_kernel,
     tree_poses_kernel,
@@ -72,14 +74,12 @@ class ParallelStep:
 
     Args:
         structs: Warp structs over arrays on the device, by the names kernels give them: `settings`, `model`,
-            `state` and `scratch`, and where bodies are coupled `shapes`, `pairs`, `contacts`, `users` and
+            `state`, `shapes`, `contacts`, `users`, and the workspace of every world: `scratch`, `pairs`,
             `couplings`.
         extent: How many of everything there are.
         substeps: Substeps of a step, at least 1.
         device: Warp device name.
-        coupled: Bodies can touch, are tied together or can fall asleep.
-        touching: Some shapes could touch.
-        sleeping: Some body could fall asleep, or is asleep.
+        plan: What steps have to look for.
     """
 
     def __init__(
@@ -88,17 +88,14 @@ class ParallelStep:
         extent: Extent,
         substeps: int,
         device: str,
-        *,
-        coupled: bool,
-        touching: bool,
-        sleeping: bool,
+        plan: Plan,
     ) -> None:
         self._structs = {**structs, "work": island_work(extent, device)}
         self._device = device
         self._worlds = extent.worlds
         self._trees = (extent.trees, extent.worlds)
         self._shapes = (extent.shapes, extent.worlds)
-        stages = self._coupled(substeps, touching, sleeping) if coupled else self._uncoupled(substeps)
+        stages = self._coupled(substeps, plan) if plan.coupled else self._uncoupled(substeps)
         self._launches = list(stages)
         self._graph: Any = None
 
@@ -118,6 +115,7 @@ class ParallelStep:
 
     def _launch(self, kernel: Any, dim: int | tuple[int, int], **scalars: int) -> Any:
         names = argument_indices(kernel)
+        scalars = {"first_world": 0, **scalars}
         arguments = [scalars[name] if name in scalars else self._structs[name] for name in names]
         return wp.launch(
             kernel,
@@ -130,28 +128,27 @@ class ParallelStep:
 
     def _uncoupled(self, substeps: int) -> Iterator[Any]:
         yield self._launch(batch_step_kernel, self._trees, substeps=substeps)
-        yield from self._end(1)
-
-    def _end(self, ends: int) -> Iterator[Any]:
         yield self._launch(faults_kernel, self._worlds)
-        yield self._launch(end_kernel, self._trees, ends=ends)
+        yield self._launch(end_kernel, self._trees)
 
-    def _coupled(self, substeps: int, touching: bool, sleeping: bool) -> Iterator[Any]:
+    def _coupled(self, substeps: int, plan: Plan) -> Iterator[Any]:
         yield self._launch(begin_kernel, self._trees)
-        for substep in range(substeps):
-            yield from self._detection(touching)
-            if sleeping:
-                yield self._launch(settle_kernel, self._worlds, touching=int(touching))
+        for _substep in range(substeps):
+            yield from self._detection(plan)
+            if plan.sleeping:
+                yield self._launch(settle_kernel, self._worlds, touching=int(plan.touching))
             yield self._launch(world_islands_kernel, self._worlds)
             yield self._launch(tree_free_motion_kernel, self._trees)
             yield from self._solver()
             yield self._launch(tree_motion_kernel, self._trees)
-            yield from self._end(int(substep == substeps - 1))
-            if sleeping:
+            yield self._launch(faults_kernel, self._worlds)
+            if plan.sleeping:
                 yield self._launch(watch_kernel, self._worlds)
+        yield self._launch(end_kernel, self._trees)
+        yield self._launch(restore_kernel, self._worlds)
 
-    def _detection(self, touching: bool) -> Iterator[Any]:
-        if touching:
+    def _detection(self, plan: Plan) -> Iterator[Any]:
+        if plan.touching:
             yield self._launch(tree_poses_kernel, self._trees)
             yield self._launch(place_shapes_kernel, self._shapes)
             yield self._launch(world_pairs_kernel, self._worlds)
