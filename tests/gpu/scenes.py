@@ -11,20 +11,25 @@ from tests.physics.robots import random_tree
 import pybullet as p
 import pybullet_data
 from carom import World
+from carom.model.body_spec import BASE
 from carom.model.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
 from pybullet._clients import clients
 
 
 @contextmanager
 def scene(build: str, seed: int) -> Iterator[World]:
-    """A world with the scene of a function below, its bodies a little in motion."""
+    """A world with the scene of a function below; parameters and motion depend on the seed."""
     client = p.connect(p.DIRECT)
     try:
         p.setAdditionalSearchPath(pybullet_data.getDataPath(), physicsClientId=client)
-        p.setGravity(0, 0, -9.81, physicsClientId=client)
+        p.setGravity(0.01 * seed, 0, -9.81 - 0.1 * seed, physicsClientId=client)
         globals()[build](client)
         world = clients[client].world
         rng = np.random.default_rng(seed)
+        for body in world.bodies.values():
+            body.change_dynamics(BASE, lateral_friction=0.5 + 0.1 * seed)
+            if not body.fixed_base:
+                body.change_dynamics(BASE, mass=1.0 + 0.1 * seed)
         model = world.arrays.model.numpy
         for tree in range(world.arrays.used["tree"]):
             first, count = model["tree_first_dof"][tree], model["tree_dof_count"][tree]
@@ -63,6 +68,7 @@ def heap(client: int) -> None:
             basePosition=[0.13 * (i % 3), 0.11 * (i // 3 % 2), 0.1 + 0.16 * (i // 6)],
             physicsClientId=client,
         )
+        p.changeDynamics(body, -1, ccdSweptSphereRadius=0.01 * (i % 2), physicsClientId=client)
         if i % 5 == 1:
             p.changeDynamics(
                 body, -1, rollingFriction=0.01, spinningFriction=0.01, restitution=0.3, physicsClientId=client

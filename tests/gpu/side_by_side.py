@@ -17,7 +17,7 @@ DEVICE = "cpu"
 
 
 class SideBySide:
-    """Worlds of the same bodies, as they are now; they themselves stay as they are.
+    """Worlds of the same bodies, as they are now, each with its parameters; they themselves stay as they are.
 
     There is room for all pairs and contacts, and if it is `roomy` for all rows.
 
@@ -35,8 +35,16 @@ class SideBySide:
         touch.contacts.reserve({"contact": 256})
         touch.reserve()
         self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": touch.contacts}
+        self._parameters: dict[str, ArrayTable] = {
+            "model": arrays.model,
+            "shapes": touch.shapes.table,
+            "users": touch.users,
+        }
+        for table in self._parameters.values():
+            for name in [name for name in table.numpy if table.is_per_world(name)]:
+                table.spread(name, len(worlds))
         for number, world in enumerate(worlds):
-            for ours, theirs in self._beside(world):
+            for ours, theirs in (*self._beside(world), *self._parameters_beside(world)):
                 ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
         workspace = Workspace(len(worlds))
         workspace.fit(arrays, touch)
@@ -71,6 +79,19 @@ class SideBySide:
             if not np.array_equal(ours[number, :count], theirs[0, :count], equal_nan=True):
                 found.append(name)
         return found
+
+    def _parameters_beside(self, world: World) -> list[tuple[np.ndarray, np.ndarray]]:
+        lone = {
+            "model": world.arrays.model,
+            "shapes": world.touch.shapes.table,
+            "users": world.touch.users,
+        }
+        return [
+            (values, lone[name].numpy[field])
+            for name, table in self._parameters.items()
+            for field, values in table.numpy.items()
+            if table.is_per_world(field)
+        ]
 
     @property
     def _names(self) -> list[str]:
