@@ -61,7 +61,11 @@ class SideBySide:
         self.step = ParallelStep(
             workspace.bind(shared, DEVICE),
             Extent(
-                len(worlds), arrays.used["tree"], touch.shapes.shape_count, touch.contacts.capacity["contact"]
+                len(worlds),
+                arrays.used["tree"],
+                touch.shapes.shape_count,
+                touch.contacts.capacity["contact"],
+                workspace.pairs.capacity["pair"],
             ),
             max(1, first.parameters.substeps),
             DEVICE,

@@ -11,10 +11,18 @@ from typing import Any
 
 import warp as wp
 
-from carom.collision.parallel import place_shapes_kernel, world_contacts_kernel, world_pairs_kernel
+from carom.collision.capacity import scratch_capacity
+from carom.collision.pair_work import MOST_CANDIDATES, PairWork
+from carom.collision.parallel import (
+    pair_candidates_kernel,
+    place_shapes_kernel,
+    world_contacts_kernel,
+    world_pairs_kernel,
+)
 from carom.engine.program import Plan
 from carom.model.contact_structs import ContactTerms
 from carom.model.launch import argument_indices
+from carom.model.real import Index4, Vector3, Vector4, Vector8
 from carom.physics.parallel import BLOCK_SIZE
 from carom.physics.parallel.batches import batch_step_kernel
 from carom.physics.parallel.contact_rows import island_contacts_kernel
@@ -34,6 +42,9 @@ from carom.physics.parallel.trees import (
 from carom.physics.parallel.workspace import IslandProgress, IslandWork, Window
 from carom.physics.slumber import settle_kernel, watch_kernel
 
+# Threads that look for contacts: more than a GPU runs at a time. Each needs 23 kB.
+MOST_WORKERS = 32768
+
 
 @dataclass(frozen=True)
 class Extent:
@@ -44,12 +55,14 @@ class Extent:
         trees: Bodies of each.
         shapes: Collision shapes of each.
         contacts: Contacts of each that there is room for.
+        pairs: Pairs of shapes of each that there is room for.
     """
 
     worlds: int
     trees: int
     shapes: int
     contacts: int
+    pairs: int
 
 
 def island_work(extent: Extent, device: str) -> Any:
@@ -66,6 +79,32 @@ def island_work(extent: Extent, device: str) -> Any:
     work.tree_motion_fault = rows(extent.trees, wp.int32)
     # An island writes those of at most four contacts at a time.
     work.terms = rows(min(4 * extent.trees, extent.contacts), ContactTerms)
+    return work
+
+
+def pair_work(extent: Extent, device: str) -> Any:
+    """Room for looking for contacts in pairs side by side."""
+    workers = max(1, min(extent.worlds * extent.pairs, MOST_WORKERS))
+    room = scratch_capacity(extent.shapes, extent.contacts)
+
+    def rows(count: int, length: int, dtype: Any) -> Any:
+        return wp.zeros((count, length), dtype=dtype, device=device)
+
+    work = PairWork()
+    work.world_kept = wp.zeros(extent.worlds, dtype=wp.int32, device=device)
+    work.pair_found = rows(extent.worlds, extent.pairs, Index4)
+    work.candidate_terms = rows(extent.worlds, MOST_CANDIDATES * extent.pairs, Vector8)
+    work.worker_candidates = rows(workers, room["candidate"], Vector8)
+    for name in ("polygon_a", "polygon_b", "polygon_clipped"):
+        setattr(work, f"worker_{name}", rows(workers, room["polygon"], Vector3))
+    for name, dtype in (
+        ("point", Vector3),
+        ("point_a", Vector3),
+        ("plane", Vector4),
+        ("face", Index4),
+        ("edge", Index4),
+    ):
+        setattr(work, f"worker_polytope_{name}", rows(workers, room["polytope"], dtype))
     return work
 
 
@@ -91,6 +130,9 @@ class ParallelStep:
         plan: Plan,
     ) -> None:
         self._structs = {**structs, "work": island_work(extent, device)}
+        if plan.touching:
+            self._structs["pair_work"] = pair_work(extent, device)
+        self._workers = max(1, min(extent.worlds * extent.pairs, MOST_WORKERS))
         self._device = device
         self._worlds = extent.worlds
         self._trees = (extent.trees, extent.worlds)
@@ -152,6 +194,7 @@ class ParallelStep:
             yield self._launch(tree_poses_kernel, self._trees)
             yield self._launch(place_shapes_kernel, self._shapes)
             yield self._launch(world_pairs_kernel, self._worlds)
+            yield self._launch(pair_candidates_kernel, self._workers)
             yield self._launch(world_contacts_kernel, self._worlds)
 
     def _solver(self) -> Iterator[Any]:
