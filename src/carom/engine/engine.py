@@ -27,6 +27,8 @@ MOST_STEPS = 64
 """Steps that can be asked for at once."""
 # Chunks of worlds for each thread: enough for uneven ones to even out.
 _CHUNKS_PER_THREAD = 16
+# Contacts of many worlds take memory in each: their arrays become longer by so much at a time.
+_GROWTH_OF_MANY = 1.25
 
 
 class Engine:
@@ -194,7 +196,8 @@ class Engine:
     def _grow(self, short: np.ndarray) -> None:
         """Make room for what did not fit in some worlds."""
         pairs, contacts = self.status[short, PAIRS_WANTED], self.status[short, CONTACTS_WANTED]
-        self.touch.contacts.reserve({"contact": int(contacts.max())})
+        growth = 2.0 if self.arrays.world_count == 1 else _GROWTH_OF_MANY
+        self.touch.contacts.reserve({"contact": int(contacts.max())}, growth)
         for workspace in self._workspaces:
             workspace.grow(int(pairs.max()), rows=bool(((pairs == 0) & (contacts == 0)).any()))
         self.growths += 1
