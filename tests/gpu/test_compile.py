@@ -13,7 +13,7 @@ SECONDS = 360.0
 """Time of cores that compiling may take: three minutes of two."""
 
 SPILLS = {
-    "world_contacts_kernel": 12_000,
+    "pair_candidates_kernel": 12_000,
     "island_contacts_kernel": 11_000,
     "restless_sweeps_kernel": 1_500,
     "calm_sweeps_kernel": 200,
