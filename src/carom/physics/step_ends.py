@@ -23,21 +23,11 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
         state.dof_torque[world, dof] = 0.0
 
 
-@kernel
-def begin_step_kernel(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    pairs: Pairs,
-    moves: Int32,
-    first_world: Int32,
+@func
+def begin_step(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, moves: Int32
 ):
-    """Keep the start of a step, and let joint friction act for all of it.
-
-    `moves` is 0 where nothing but contacts are to be found.
-    """
-    world = first_world + wp.tid()
+    """Keep the start of a step, and let joint friction act for all of it, if anything `moves`."""
     state.status_entry[world, STATUS] = WELL
     state.status_entry[world, PAIRS_WANTED] = 0
     state.status_entry[world, CONTACTS_WANTED] = 0
@@ -48,12 +38,31 @@ def begin_step_kernel(
             joint_damping(model, state, world, tree)
 
 
-@kernel
-def end_step_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
+@func
+def end_step(settings: Settings, model: Model, state: State, world: Int32):
     """Forces last until a step is complete."""
-    world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         clear_forces(model, state, world, tree)
+
+
+@kernel
+def begin_step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    moves: Int32,
+    first_world: Int32,
+):
+    """Begin a step; `moves` is 0 where nothing but contacts are to be found."""
+    begin_step(settings, model, state, scratch, pairs, first_world + wp.tid(), moves)
+
+
+@kernel
+def end_step_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
+    """End a step."""
+    end_step(settings, model, state, first_world + wp.tid())
 
 
 @kernel
