@@ -114,6 +114,7 @@ class SavedTie:
     gear_auxiliary_link: int
     relative_position_target: float
     erp: float
+    enabled: bool = True
 
 
 @dataclass(slots=True)
