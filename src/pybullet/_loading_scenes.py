@@ -79,7 +79,8 @@ def loadMJCF(
     What PyBullet reads of such files is read its way: every joint has a link without mass of its own,
     geoms weigh 1000 kg/m³, joints have neither damping nor armature, a body without joints floats, and
     every geom of the world is a body, `axisangle` turns geoms but not bodies, and named classes of defaults
-    limit no joint. What PyBullet cannot read is read as MuJoCo means it: what else such classes say, ball joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
+    limit no joint. What PyBullet cannot read is read as MuJoCo means it: what else such classes say, ball
+    joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
 
     Args:
         mjcfFileName: The file: as given, in `data` folders near the working directory, or in the

@@ -95,8 +95,8 @@ class FileContext:
     def parse_bits(self, element: Element, attribute: str, text: str) -> int:
         """32 bits, as a signed number.
 
-        As in PyBullet no bit is set by what is no number, such as the name of a group, and the highest alone by
-        what is too large.
+        As in PyBullet no bit is set by what is no number, such as the name of a group, and the highest alone
+        by what is too large.
         """
         match = _LEADING_BITS.match(text.strip())
         if match is None:
@@ -106,7 +106,7 @@ class FileContext:
         value = int(digits, 16) if "x" in digits.lower() else _whole(float(digits))
         if not _LEAST_BITS <= value < 1 << 32:
             self.warn(
-                element, f"{attribute}={shown(text)} does not fit into 32 bits: only the highest is set"
+                element, f"{attribute}={shown(text)} does not fit into 32 bits; the highest is set"
             )
             return _LEAST_BITS
         return value if value < 1 << 31 else value - (1 << 32)
