@@ -105,9 +105,7 @@ class FileContext:
         digits = match.group()
         value = int(digits, 16) if "x" in digits.lower() else _whole(float(digits))
         if not _LEAST_BITS <= value < 1 << 32:
-            self.warn(
-                element, f"{attribute}={shown(text)} does not fit into 32 bits; the highest is set"
-            )
+            self.warn(element, f"{attribute}={shown(text)} does not fit into 32 bits; the highest is set")
             return _LEAST_BITS
         return value if value < 1 << 31 else value - (1 << 32)
 
