@@ -17,6 +17,7 @@ from carom.description.transform import compose
 from carom.description_loading import DescriptionLoading
 from carom.engine_settings import EngineSettings
 from carom.errors import SimulationError
+from carom.faults import cause_in
 from carom.log import Log, Observer, SubstepObserver
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
@@ -394,6 +395,7 @@ class World(DescriptionLoading, StateViews):
         """Throw away what the failed step left besides the coordinates, and say which body it was."""
         tree = self._fault[0] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        cause = cause_in(body)
         self.joint_reaction[:] = 0.0
         self.motor_impulse[:] = 0.0
         self.touch.forget_contacts()
@@ -401,7 +403,7 @@ class World(DescriptionLoading, StateViews):
             other.update_link_poses()
         raise SimulationError(
             f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
-            "the world is as it was before the step"
+            f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
     def _prepare_step(self) -> Callable[[], None]:

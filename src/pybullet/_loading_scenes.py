@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pybullet._arguments import integer, real, text
+from pybullet._arguments import integer, moderate, real, text
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._errors import fail, logger
@@ -58,6 +58,8 @@ def loadSDF(
     name = text(sdfFileName, "sdfFileName")
     maximal = integer(useMaximalCoordinates, "useMaximalCoordinates")
     scaling = real(globalScaling, "globalScaling")
+    if scaling > 0.0:
+        moderate(scaling, _CANNOT_LOAD_SDF, "globalScaling")
     client = client_of(physicsClientId)
     warn_of_coordinates("loadSDF", maximal)
 

@@ -265,4 +265,8 @@ def _c_string(value: Any, name: str) -> str:
     words = text(value, name)
     if "\0" in words:
         fail(f"{name} must not contain a null character: {words!r}.")
+    try:
+        words.encode()
+    except UnicodeEncodeError as problem:
+        fail(f"{name} cannot be encoded: {problem}.")
     return words

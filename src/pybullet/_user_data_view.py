@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pybullet._detours import Function
 
 _CHANGING = frozenset({"addUserData", "removeUserData", "syncUserData", "removeBody", "resetSimulation"})
+_LOADING = frozenset({"loadURDF", "loadSDF", "loadMJCF", "loadBullet"})
 _ALL = -1
 
 Ask = Callable[..., Any]
@@ -33,7 +34,7 @@ class UserDataView:
     def __init__(self, ask: Ask) -> None:
         self._ask = ask
         self._known = UserData()
-        self._read_anew(())
+        self._read_all()
 
     def call(
         self, function: Function, arguments: Any, keywords: dict[str, Any], go_on: Callable[[], Any]
@@ -47,6 +48,8 @@ class UserDataView:
             go_on: Calls it where the world is.
         """
         reader = READERS.get(function.name)
+        if function.name in _LOADING:
+            return self._loaded(go_on())
         if reader is None and function.name not in _CHANGING:
             return go_on()
         bound = signature(function.plain).bind(*arguments, **keywords)
@@ -76,18 +79,28 @@ class UserDataView:
             case _:
                 self._synchronise(given["bodyUniqueId"], given["bodyUniqueIds"])
 
+    def _loaded(self, result: Any) -> Any:
+        """Copies what the file of new bodies states, which PyBullet does only when it is asked to."""
+        self._read_anew(result if isinstance(result, tuple) else (result,))
+        return result
+
     def _synchronise(self, one: Any, several: Any) -> None:
         asked = several if several is not None else one
         if isinstance(asked, Iterable):
             self._read_anew(tuple(asked))
+        elif asked == _ALL:
+            self._read_all()
         else:
-            self._read_anew(() if asked == _ALL else (asked,))
+            self._read_anew((asked,))
+
+    def _read_all(self) -> None:
+        """Copies all texts there are."""
+        self._known = UserData()
+        count = self._ask("getNumBodies")
+        self._read_anew(tuple(self._ask("getBodyUniqueId", place) for place in range(count)))
 
     def _read_anew(self, bodies: tuple[int, ...]) -> None:
-        """Copies the texts of some bodies, or of all if none is named."""
-        if not bodies:
-            self._known = UserData()
-            bodies = tuple(self._ask("getBodyUniqueId", place) for place in range(self._ask("getNumBodies")))
+        """Copies the texts of some bodies."""
         for body in bodies:
             self._known.remove_body(body)
             for place in range(self._ask("getNumUserData", body)):
