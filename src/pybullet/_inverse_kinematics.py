@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from math import inf, isnan
+from math import isnan
 from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._algebra import joint_coordinates
@@ -271,7 +271,7 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
         return None
     try:
         x, y, z, w = values
-        if -inf < x + y + z + w < inf and (x or y or z or w):
+        if 0.5 < x * x + y * y + z * z + w * w < 2.0:
             return x, y, z, w
     except (TypeError, ValueError):
         pass

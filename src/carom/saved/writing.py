@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
 from contextlib import suppress
@@ -24,6 +25,8 @@ def write_whole(path: Path, data: bytes) -> None:
             _write_into(target, data)
             return
         mode = target.stat().st_mode & 0o777
+    if not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(target.parent))
     draft = target.parent / f".carom-{secrets.token_hex(8)}"
     # Not by `tempfile`, whose files are for their owner alone.
     descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
