@@ -73,7 +73,7 @@ def test_bodies_added_one_by_one_while_the_world_runs():
     """Growing in use is the same as having had the room from the start."""
     grown, roomy = heavy_world(), heavy_world()
     roomy.arrays.reserve(**dict.fromkeys(roomy.arrays.used, 5000))
-    roomy._take_arrays()
+    roomy.scene_changed()
     for n in range(12):
         for world in (grown, roomy):
             add(world, SPECS[n % 4], n)

@@ -25,6 +25,8 @@ KERNEL_MODULES = (
     "carom.collision.closest",
     "carom.physics.kinematics",
     "carom.physics.slumber",
+    "carom.physics.step_ends",
+    "carom.engine.interpreter",
     "carom.physics.motor_commands",
     "carom.collision.rays",
     "carom.collision.contact_report",

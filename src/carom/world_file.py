@@ -250,9 +250,9 @@ def _saved_body(body: Body, spec: int) -> SavedBody:
         body.id,
         spec,
         body.fixed_base,
-        float(model["tree_linear_damping"][tree]),
-        float(model["tree_angular_damping"][tree]),
-        float(model["tree_max_velocity"][tree]),
+        float(model["tree_linear_damping"][0, tree]),
+        float(model["tree_angular_damping"][0, tree]),
+        float(model["tree_max_velocity"][0, tree]),
         bool(model["tree_can_sleep"][tree]),
         bool(model["tree_can_wake"][tree]),
         float(model["tree_sleep_threshold"][tree]),
@@ -311,7 +311,7 @@ def _load(world: World, path: Path) -> list[Body]:
         world.user_constraints.next_id = saved.next_tie
         world.parameters = saved.parameters
         world.apply_parameters()
-    world.constraints_changed()
+    world.scene_changed()
     return list(bodies.values())
 
 

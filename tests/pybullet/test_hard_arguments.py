@@ -143,6 +143,7 @@ def test_a_step_comes_to_an_end(parameters: dict[str, int]) -> None:
 
 
 def test_rays_end_behind_their_last_hit() -> None:
+    p.rayTest([0, 0, 1], [0, 0, -1])
     start = perf_counter()
     hits = p.rayTestBatch([[9, 9, 1], [9, 9, 1]], [[9, 9, -1], [9, 9, 5]], reportHitNumber=2**31 - 1)
     assert [hit[0] for hit in hits] == [-1, -1]

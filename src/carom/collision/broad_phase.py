@@ -7,7 +7,7 @@ once in about logarithmic time.
 
 import warp as wp
 
-from carom.collision.bounds import boxes_meet, place_shapes
+from carom.collision.bounds import boxes_meet, look_ahead, place_shapes
 from carom.collision.filters import SELF_COLLISION, may_touch
 from carom.collision.hierarchy import (
     BOUNDED,
@@ -20,11 +20,10 @@ from carom.collision.hierarchy import (
     leaf_start,
     next_node,
 )
-from carom.collision.motion import look_ahead
 from carom.collision.reach import bounds_reach
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Index4, Int32, func, real
-from carom.model.structs import Model, Settings, State
+from carom.model.structs import Model, Scratch, Settings, State
 
 
 @func
@@ -156,10 +155,18 @@ def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
 
 
 @func
-def find_pairs(shapes: Shapes, model: Model, state: State, settings: Settings, pairs: Pairs, world: Int32):
+def find_pairs(
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+):
     """Sorted pairs of shapes whose bounds meet and that may touch, from the link poses."""
     for shape in range(settings.shape_count):
-        pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, world, shape)
+        pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, READINESS] = STALE

@@ -32,8 +32,8 @@ def is_constrained(model: Model, state: State, world: Int32, root: Int32) -> boo
         elif kind == LIMIT:
             position = state.position[world, model.link[link].first_position]
             if (
-                position <= model.constraint[constraint].lower
-                or position >= model.constraint[constraint].upper
+                position <= model.constraint_lower[world, constraint]
+                or position >= model.constraint_upper[world, constraint]
             ):
                 return True
         else:
@@ -182,7 +182,7 @@ def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: I
 @func
 def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Add what the solver found to the velocities of a tree."""
-    bound = model.tree[tree].max_velocity
+    bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     delta = model.tree[tree].first_delta
     total = real(0.0)

@@ -40,7 +40,7 @@ def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
     """Viscous joint friction as an explicit torque at the rates before the step."""
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
-        state.dof_torque[world, dof] -= model.dof[dof].damping * state.dof_velocity[world, dof]
+        state.dof_torque[world, dof] -= model.dof_damping[world, dof] * state.dof_velocity[world, dof]
 
 
 @func
