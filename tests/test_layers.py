@@ -78,8 +78,10 @@ MAY_IMPORT = {
     "pybullet_data": set(),
     "eglRenderer": set(),
     # The URDF editor writes files of its own.
-    "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
-    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_utils": {"pybullet", "pybullet_data", *DESCRIPTION, "carom.formats"},
+    "pybullet_robots": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils", "pybullet_robots"},
+    "pybullet_examples": {"pybullet_utils"},
 }
 
 

@@ -18,6 +18,7 @@ from carom.description_loading import DescriptionLoading
 from carom.engine.engine import DEVICE, Engine
 from carom.engine.touch_arrays import TouchArrays
 from carom.errors import SimulationError
+from carom.faults import cause_in
 from carom.log import Log, Observer, SubstepObserver
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
@@ -430,6 +431,7 @@ class World(DescriptionLoading, StateViews):
         """Throw away what the failed step left besides the coordinates, and say which body it was."""
         tree = self._status[STATUS] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        cause = cause_in(body)
         self.joint_reaction[:] = 0.0
         self.motor_impulse[:] = 0.0
         self.touch.forget_contacts()
@@ -437,7 +439,7 @@ class World(DescriptionLoading, StateViews):
             other.update_link_poses()
         raise SimulationError(
             f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
-            "the world is as it was before the step"
+            f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
     def prepare(self) -> None:

@@ -7,7 +7,7 @@ from carom.collision.gathering import AT_ONCE, find_new_point, gather
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import THERE, keep_previous, skip_contacts, write_new_contact
 from carom.collision.narrow_phase import touch
-from carom.collision.reach import breaking_distance, contact_reach
+from carom.collision.reach import breaking_distance, contact_reach, region_reach
 from carom.collision.sides import in_order_of_sides
 from carom.model.codes import ASLEEP
 from carom.model.contact_structs import Contacts, Pairs, Shapes
@@ -102,7 +102,8 @@ def make_contacts(
         if found != AT_ONCE:
             wanted = gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
         else:
-            for candidate in range(touch(shapes, pairs, world, sides[0], sides[1], reach)):
+            around = region_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+            for candidate in range(touch(shapes, pairs, world, sides[0], sides[1], reach, around)):
                 if wanted < room:
                     write_new_contact(
                         shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far

@@ -189,12 +189,13 @@ class PageServer:
             await asyncio.sleep(due - loop.time())
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
-        host = request.headers.get("Host")
-        if not host_allowed(self.host, host):
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        host = hosts[0] if len(hosts) == 1 else None
+        if len(origins) > 1 or not host_allowed(self.host, host):
             return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
-            if not origin_allowed(host, request.headers.get("Origin")):
+            if not origin_allowed(host, origins[0] if origins else None):
                 return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
             return None
         file = _files().get(path)
