@@ -124,6 +124,9 @@ class Client:
         self.window.close()
 
 
+closed_by_users: set[int] = set()
+"""The clients whose window a user has closed, until the script disconnects or connects anew."""
+
 clients: dict[int, Client] = {}
 """Every client with a world in this process, by its id."""
 
@@ -141,6 +144,7 @@ def living_client(physics_client_id: Any) -> Client | None:
     client = clients.get(number)
     if client is not None and not client.window.is_open():
         forget(number)
+        closed_by_users.add(number)
         return None
     return client
 

@@ -68,11 +68,11 @@ class Page:
     def picture(self) -> NDArray[np.int16]:
         """What the page shows of the scene alone: (height, width, 3) red, green and blue."""
         self.page.evaluate(
-            "for (const id of ['panel', 'labels']) document.getElementById(id).style.opacity = 0"
+            "for (const id of ['panel', 'labels', 'timeline']) document.getElementById(id).style.opacity = 0"
         )
         image = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
         self.page.evaluate(
-            "for (const id of ['panel', 'labels']) document.getElementById(id).style.opacity = 1"
+            "for (const id of ['panel', 'labels', 'timeline']) document.getElementById(id).style.opacity = 1"
         )
         return np.array(image).astype(np.int16)
 

@@ -2,13 +2,13 @@
 
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
+import { LINE_FLOATS } from "./lines.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, SURFACE, WIRE } from "./shaders.js";
 
 const GRID_EXTENT = 60;
 /** Far things fade from about this distance on, or this many times the camera's distance [m]. */
 const HAZE = 90;
 const HAZE_BY_DISTANCE = 16;
-const LINE_FLOATS = 10;
 /** Pictures that take longer than this make the next ones coarser, if so many in a row do [ms]. */
 const SLOW_MS = 70;
 const SLOW_PICTURES = 6;
@@ -80,13 +80,13 @@ export class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Float32Array, clouds: object[], signs: Sign[]}} drawings
+   * @param {{lines: Lines, clouds: object[], signs: Sign[]}} drawings
    */
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
-    scene.regroup();
+    scene.regroup(options);
     scene.fill(options, camera.eye, this.canvas.height / 2);
-    const shown = scene.groups.filter((group) => group.instances > 0 && group.collision === options.collisions);
+    const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
     const light = this.light(camera, options);
     const shadows = options.shadows && !options.wireframe;
     if (shadows) this.drawShadows(shown, light, options);
@@ -275,7 +275,7 @@ export class Renderer {
     return array;
   }
 
-  drawLines(lines, camera) {
+  drawLines({ used: lines }, camera) {
     if (lines.length === 0) return;
     const gl = this.gl;
     this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height] });
