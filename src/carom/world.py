@@ -27,6 +27,7 @@ from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.present_poses import PresentPoses
 from carom.prospects import can_sleep, can_touch
 from carom.queries import Queries
+from carom.recordable import Recordable
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
 from carom.solver_report import solver_report
 from carom.state_views import VIEWS, StateViews
@@ -38,7 +39,7 @@ from carom.user_data import UserData
 _DEVICE = "cpu"
 
 
-class World(DescriptionLoading, StateViews):
+class World(DescriptionLoading, Recordable, StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views

@@ -3,8 +3,8 @@
 A recording is compressed by zlib. Inside are the length of an index as a little-endian integer of four bytes,
 the index in JSON, and the numbers of its records one after the other. A record is a *message* about the scene
 (its header, and how many bytes follow), or a run of *frames* that have all but their times and numbers in
-common. The numbers of a run are floats of four bytes, each frame as the differences in bits from the one before
-it, sorted by byte, then by column, then by frame: what hardly changes becomes zeros, which pack well.
+common. The numbers of a run are floats of four bytes, each frame as the differences in bits from the one
+before it, sorted by byte, then by column, then by frame: what hardly changes becomes zeros, which pack well.
 
 `page/time/recording.js` reads and writes the same.
 """

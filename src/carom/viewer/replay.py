@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from carom.checks import positive
-from carom.viewer.board import Board
+from carom.viewer.board import Board, boards
 from carom.viewer.details import Details, Wish
 from carom.viewer.messages import decoded
 from carom.viewer.recording import Recording
@@ -22,9 +22,8 @@ _PAGE = 1
 # Times are sums of time steps: how far a frame may be early [of the time between two].
 _EARLY = 1e-6
 # What belongs to a moment; the rest says how a live page is to look.
-_KEPT = frozenset(
-    {"body", "mesh", "texture", "layout", "line", "text", "points", "slider", "dynamics", "constraints"}
-)
+_OF_BODIES = frozenset({"body", "mesh", "texture", "layout", "dynamics", "constraints"})
+_OF_SCRIPTS = frozenset({"line", "text", "points", "item", "slider"})
 
 
 class ReplayRecorder:
@@ -39,7 +38,6 @@ class ReplayRecorder:
         title: What the page is called; the name of the file by default.
         contacts: Record contacts and their forces.
         joints: Record positions, velocities and torques of joints.
-        board: Where else what is drawn is shown; of a viewer.
 
     Raises:
         ValueError: The rate is not positive.
@@ -54,17 +52,17 @@ class ReplayRecorder:
         title: str | None = None,
         contacts: bool = True,
         joints: bool = True,
-        board: Board | None = None,
     ) -> None:
         self._world = world
         self._path = Path(path)
         self._title = self._path.stem if title is None else title
         self._interval = 1.0 / float(positive(fps, "fps"))
-        self._boards = [Board()] if board is None else [Board(), board]
-        self._told = [0] * len(self._boards)
+        self._board = Board()
+        # Of the own board, and of that of a viewer: what scripts draw is there.
+        self._told = [0, 0]
         lock = RLock()
-        self._feed = SceneFeed(world, lock, self._boards[0])
-        self._details = Details(world, lock, self._boards[0])
+        self._feed = SceneFeed(world, lock, self._board)
+        self._details = Details(world, lock, self._board)
         wish = Wish(
             contacts=contacts, joints="all" if joints else frozenset(), dynamics=True, constraints=True
         )
@@ -139,16 +137,26 @@ class ReplayRecorder:
         page = replay_of(self._recording.packed(title=self._title, **self._facts))
         self._path.write_text(page, encoding="utf-8")
 
+    @property
+    def frame_count(self) -> int:
+        """How many frames have been recorded."""
+        return self._recording.frame_count
+
     def _take_news(self) -> None:
         """Takes in what is new on the boards."""
-        for number, board in enumerate(self._boards):
-            messages, self._told[number] = board.since(self._told[number])
-            for message in messages:
-                header, payload = decoded(message)
-                kind = header["type"]
-                if kind.removeprefix("no ") in _KEPT or kind == "no item":
-                    self._recording.add(header, payload)
-                elif kind == "options":
-                    self._facts["options"] = header
-                elif kind == "camera" and header["chosen"]:
-                    self._facts["camera"] = header
+        self._take_from(0, self._board, _OF_BODIES)
+        viewer_board = boards.get(self._world)
+        if viewer_board is not None:
+            self._take_from(1, viewer_board, _OF_SCRIPTS)
+
+    def _take_from(self, number: int, board: Board, kept: frozenset[str]) -> None:
+        messages, self._told[number] = board.since(self._told[number])
+        for message in messages:
+            header, payload = decoded(message)
+            kind = header["type"]
+            if kind.removeprefix("no ") in kept:
+                self._recording.add(header, payload)
+            elif kind == "options":
+                self._facts["options"] = header
+            elif kind == "camera" and header["chosen"]:
+                self._facts.setdefault("camera", header)

@@ -10,7 +10,7 @@ from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
-from carom.viewer.board import Board
+from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
 from carom.viewer.chores import Chores
 from carom.viewer.controls import Controls
@@ -145,6 +145,7 @@ class Viewer:
             world.observers.append(self._turnstile)
         else:
             self._turnstile = None
+        boards[world] = self._board
         self._server = PageServer(host, port, self._board, self._frame, self._receive, self._page_gone)
 
     @property

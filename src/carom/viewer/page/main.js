@@ -13,7 +13,7 @@ function say(text) {
 
 function watch() {
   const send = (message) => connection.send(message);
-  const app = new App(send, say);
+  const app = (window.app = new App(send, say));
   const connection = new Connection(
     (header, payload) => app.receive(header, payload),
     (connected) => {
@@ -25,7 +25,7 @@ function watch() {
 
 async function start() {
   const recording = document.getElementById("recording");
-  if (recording) await playRecording(recording.textContent.trim(), new App(() => {}, say));
+  if (recording) await playRecording(recording.textContent.trim(), (window.app = new App(() => {}, say)));
   else watch();
 }
 
