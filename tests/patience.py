@@ -4,7 +4,7 @@ from collections.abc import Callable
 from time import monotonic, sleep
 from typing import Any
 
-PATIENCE = float(__import__("os").environ.get("PATIENCE_", 60.0))
+PATIENCE = 60.0
 """Long enough for the busiest machine [s]; nothing waits for it when all is well."""
 
 

@@ -65,6 +65,10 @@ class Page:
         if message.type in ("error", "warning") and "GPU stall" not in message.text:
             self.complaints.append(message.text)
 
+    def until(self, expression: str) -> None:
+        """Waits until an expression is true in the page."""
+        wait_for(lambda: self.page.evaluate(expression), self)
+
     def picture(self) -> NDArray[np.int16]:
         """What the page shows of the scene alone: (height, width, 3) red, green and blue."""
         self.page.evaluate(

@@ -72,7 +72,7 @@ def test_nothing_in_the_page_comes_from_elsewhere():
 def test_a_replay_is_the_run(panda, browser):
     file, run = panda
     page = Page(browser, file.as_uri())
-    page.page.wait_for_function("window.app?.history.count > 0")
+    page.until("window.app?.history.count > 0")
     replayed = np.array(page.page.evaluate(ALL_POSES))
     assert replayed.shape == run.shape
     assert replayed == pytest.approx(run, abs=1e-6)
@@ -85,7 +85,7 @@ def test_a_replay_is_the_run(panda, browser):
 def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
     page = Page(browser, panda[0].as_uri(), 900, 600)
     moment = page.page.locator("#moment")
-    page.page.wait_for_function("window.app?.history.count > 0")
+    page.until("window.app?.history.count > 0")
     page.page.locator("#scrub").fill("4")
     assert moment.text_content() == "4.000 s, -6.00"
     page.page.locator("#forth").click()
@@ -96,13 +96,13 @@ def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
     page.page.select_option("#playback", "4")
     page.page.locator("#loop").click()
     page.page.locator("#play").click()
-    page.page.wait_for_function("app.player.clock < 5")
+    page.until("app.player.clock < 5")
     page.page.locator("#play").click()
     assert not page.page.evaluate("app.player.running")
     page.page.locator("#loop").click()
     page.page.locator("#scrub").fill("9.5")
     page.page.locator("#play").click()
-    page.page.wait_for_function("!app.player.running")
+    page.until("!app.player.running")
     assert page.page.evaluate("app.player.clock") == pytest.approx(10)
     assert page.complaints == []
     page.page.close()
@@ -111,7 +111,7 @@ def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
 @needs_browser
 def test_a_replay_shows_contacts_and_joints_and_plots_them(panda, browser):
     page = Page(browser, panda[0].as_uri(), 900, 700)
-    page.page.wait_for_function("window.app?.history.count > 0")
+    page.until("window.app?.history.count > 0")
     page.page.locator("#scrub").fill("8")
     assert page.page.evaluate("app.readings.contacts.length") == 4
     page.page.locator("#joint").select_option(label="panda · panda_joint4")
@@ -147,7 +147,7 @@ def test_bodies_and_drawings_come_and_go_in_a_replay(tmp_path: Path, browser):
         world.remove(second.id)
         world.step(240)
     page = Page(browser, (tmp_path / "two.html").as_uri())
-    page.page.wait_for_function("window.app?.history.count > 0")
+    page.until("window.app?.history.count > 0")
     for clock, bodies in (("0.5", 1), ("1.5", 2), ("2.5", 1), ("1.5", 2), ("0.5", 1)):
         page.page.locator("#scrub").fill(clock)
         assert page.page.evaluate("app.scene.bodies.size") == bodies
@@ -186,7 +186,7 @@ def test_a_script_is_recorded_by_the_command_line(tmp_path: Path):
     file = tmp_path / "fall.html"
     command = [sys.executable, "-m", "carom", "record", "--seconds", "2", script, file, "--fast"]
     environment = {"PYTHONPATH": str(ROOT / "src"), "PATH": "", "HOME": str(tmp_path.parent)}
-    done = subprocess.run([*map(str, command)], capture_output=True, text=True, env=environment, timeout=120)
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True, env=environment, check=False)
     assert done.returncode == 0, done.stderr
     assert "['--fast']" in done.stdout
     facts, messages = unpacked(_recording_in(file))

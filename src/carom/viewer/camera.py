@@ -53,7 +53,9 @@ class SharedCamera:
         self, distance: float, yaw: float, pitch: float, target: Vector3, *, chosen: bool = True
     ) -> None:
         """The camera of a page has moved, by its user or, if it is not `chosen`, by itself."""
-        self.chosen = self.chosen or chosen
+        if self.chosen and not chosen:
+            return
+        self.chosen = chosen
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
         self._board.amend("camera", self._message())
 

@@ -37,7 +37,7 @@ export class App {
     this.canvas = document.getElementById("view");
     const labels = document.getElementById("labels");
     this.renderer = new Renderer(this.canvas);
-    this.scene = new Scene(this.renderer.gl);
+    this.scene = new Scene(this.renderer.gl, this.renderer.byProcessor);
     this.camera = new Camera();
     this.options = new Options();
     this.readings = new Readings();

@@ -11,8 +11,10 @@ export const POSE_FLOATS = 7;
 const GLASS = 0.35;
 
 export class Scene {
-  constructor(gl) {
+  /** @param {boolean} plain textures cost as little as they can */
+  constructor(gl, plain) {
     this.gl = gl;
+    this.plain = plain;
     this.clear();
   }
 
@@ -49,7 +51,7 @@ export class Scene {
   }
 
   addTexture(header, payload) {
-    this.textures.set(header.texture, imageTexture(this.gl, header, payload));
+    this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.plain));
   }
 
   removeTexture({ texture }) {
