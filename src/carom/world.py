@@ -11,6 +11,7 @@ from typing import overload
 import numpy as np
 
 from carom.body import Body
+from carom.checks import vector
 from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
@@ -146,8 +147,8 @@ class World(DescriptionLoading, Recordable, StateViews):
 
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
         """Add a body at rest."""
-        px, py, pz = position
-        qx, qy, qz, qw = orientation
+        px, py, pz = vector(position, 3, "position").tolist()
+        qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
         pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
         rows, grown = self.arrays.append(spec, pose)
         body_id = self.free_ids.pop() if self.free_ids else self.next_id
@@ -309,7 +310,7 @@ class World(DescriptionLoading, Recordable, StateViews):
 
     @gravity.setter
     def gravity(self, value: Sequence[float]) -> None:
-        x, y, z = (float(component) for component in value)
+        x, y, z = vector(value, 3, "gravity").tolist()
         self.parameters.gravity = (x, y, z)
         self.apply_parameters()
 

@@ -149,6 +149,13 @@ def living_client(physics_client_id: Any) -> Client | None:
     return client
 
 
+def why_not_connected(physics_client_id: Any) -> str:
+    """What to do about a connection that does not exist."""
+    if physics_client_id in closed_by_users:
+        return f"The window of client {physics_client_id} has been closed."
+    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) before."
+
+
 def client_of(physics_client_id: Any) -> Client:
     """The client of an id.
 
@@ -160,7 +167,7 @@ def client_of(physics_client_id: Any) -> Client:
     if client is None or not client.window.is_open():
         client = living_client(physics_client_id)
     if client is None:
-        fail(NOT_CONNECTED, f"There is no client {physics_client_id}.")
+        fail(NOT_CONNECTED, why_not_connected(physics_client_id))
     return client
 
 

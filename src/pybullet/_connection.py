@@ -20,6 +20,7 @@ from pybullet._clients import (
     free_slot,
     living_client,
     remote_clients,
+    why_not_connected,
 )
 from pybullet._constants import (
     DIRECT,
@@ -202,7 +203,7 @@ def disconnect(physicsClientId: int = 0) -> None:
     if connection_of(physicsClientId) is None:
         number = index(physicsClientId)
         if number not in closed_by_users:
-            fail(NOT_CONNECTED, f"There is no client {physicsClientId}.")
+            fail(NOT_CONNECTED, why_not_connected(physicsClientId))
         closed_by_users.remove(number)
         return
     forget(index(physicsClientId))
@@ -298,7 +299,7 @@ def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
     """
     client = connection_of(physicsClientId)
     if client is None:
-        fail(NOT_CONNECTED, f"There is no client {physicsClientId}.")
+        fail(NOT_CONNECTED, why_not_connected(physicsClientId))
     client.set_timeout(real(timeOutInSeconds, "timeOutInSeconds"))
 
 
