@@ -88,7 +88,7 @@ def record(take: Take) -> list[Path]:
             watches.append(_Watch(world, take.seconds))
             world.observers.append(watches[-1])
 
-    World.__init__ = begin_recorded
+    World.__init__ = begin_recorded  # pyright: ignore[reportAttributeAccessIssue]
     arguments = sys.argv
     sys.argv = [str(take.script), *take.arguments]
     sys.path.insert(0, str(take.script.resolve().parent))
