@@ -7,10 +7,14 @@ import { Group } from "./group.js";
 const IDENTITY = { position: [0, 0, 0], orientation: [0, 0, 0, 1] };
 /** Numbers of a pose in a frame: position and quaternion. */
 export const POSE_FLOATS = 7;
+/** How much of a body is seen where bodies are made transparent. */
+const GLASS = 0.35;
 
 export class Scene {
-  constructor(gl) {
+  /** @param {boolean} plain textures cost as little as they can */
+  constructor(gl, plain) {
     this.gl = gl;
+    this.plain = plain;
     this.clear();
   }
 
@@ -22,9 +26,11 @@ export class Scene {
     this.meshes = new Map();
     this.textures = new Map();
     this.bodies = new Map();
+    this.dynamics = new Map();
     this.layout = { layout: 0, bodies: [] };
     this.groups = [];
     this.stale = true;
+    this.transparent = false;
     /** Grows with every change of what is where. */
     this.version = 0;
     /** Poses of the newest frame, all in one array, and where those of each body begin. */
@@ -45,12 +51,21 @@ export class Scene {
   }
 
   addTexture(header, payload) {
-    this.textures.set(header.texture, imageTexture(this.gl, header, payload));
+    this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.plain));
   }
 
   removeTexture({ texture }) {
     this.gl.deleteTexture(this.textures.get(texture) ?? null);
     this.textures.delete(texture);
+  }
+
+  /** Takes over masses and inertias of a body's links. */
+  addDynamics(header) {
+    this.dynamics.set(header.body, header);
+  }
+
+  removeDynamics({ body }) {
+    this.dynamics.delete(body);
   }
 
   addBody(header) {
@@ -67,9 +82,9 @@ export class Scene {
   }
 
   /** Takes over where all links are; a frame that was made for other bodies is left alone. */
-  place({ layout }, payload) {
+  place({ layout, poses }, payload) {
     if (layout !== this.layout.layout) return;
-    this.poses = new Float32Array(payload);
+    this.poses = new Float32Array(payload, 0, poses * POSE_FLOATS);
     if (this.startsOf !== this.layout) {
       this.startsOf = this.layout;
       let start = 0;
@@ -105,15 +120,17 @@ export class Scene {
   }
 
   /** Shapes that look alike, to be drawn at once. */
-  regroup() {
-    if (!this.stale) return;
+  regroup(options) {
+    if (!this.stale && options.transparent === this.transparent) return;
     this.stale = false;
+    this.transparent = options.transparent;
     for (const group of this.groups) group.dispose();
     const groups = new Map();
     for (const body of this.bodies.values()) {
+      const glassy = options.transparent && body.links.some((link) => link.moves);
       for (const shape of body.shapes) {
         if (shape.rgba[3] <= 0) continue;
-        const clear = shape.rgba[3] < 1;
+        const clear = glassy || shape.rgba[3] < 1;
         const numbers = shape.meshes.map(([mesh]) => mesh);
         // Shapes that are seen through are drawn one by one, from the back to the front.
         const key = [...numbers, shape.texture, shape.twoSided, !!shape.collision, clear && groups.size].join();
@@ -122,7 +139,7 @@ export class Scene {
           if (!levels.every(({ mesh }) => mesh?.count)) continue;
           groups.set(key, new Group(this.gl, levels, shape, clear));
         }
-        groups.get(key).add(body, shape);
+        groups.get(key).add(body, glassy ? { ...shape, rgba: [...shape.rgba.slice(0, 3), shape.rgba[3] * GLASS] } : shape);
       }
     }
     this.groups = [...groups.values()];

@@ -7,12 +7,28 @@ const FAR = 1000;
 const DEGREES_PER_PIXEL = 0.3;
 const STEEPEST = 89.9;
 
+/** The sphere around what is looked at, as part of the distance that just shows it; and the least sphere [m]. */
+const FIT_MARGIN = 1.35;
+const LEAST_FIT = 0.15;
+/** Yaw and pitch. */
+export const PRESETS = {
+  corner: [50, -35],
+  front: [90, 0],
+  back: [-90, 0],
+  left: [180, 0],
+  right: [0, 0],
+  top: [0, -STEEPEST],
+  below: [0, STEEPEST],
+};
+
 export class Camera {
   constructor() {
     this.distance = 5;
     this.yaw = 50;
     this.pitch = -35;
     this.target = [0, 0, 0];
+    /** Where the point is that the camera moves along with; null if there is none. */
+    this.followed = null;
     this.yUp = false;
     this.width = 1;
     this.height = 1;
@@ -66,6 +82,31 @@ export class Camera {
     this.view = viewMatrix(this.eye, this.right, this.up, this.forward);
     this.projection = perspective(this.width / this.height, NEAR, FAR);
     this.matrix = multiply(this.projection, this.view);
+  }
+
+  /** Looks at a box so that all of it is in view; the direction stays. */
+  fit([lower, upper]) {
+    this.target = lower.map((x, i) => 0.5 * (x + upper[i]));
+    const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
+    // The field of view is 90 degrees from edge to edge of the shorter side.
+    const narrow = Math.min(1, this.width / Math.max(this.height, 1));
+    this.distance = (FIT_MARGIN * radius) / narrow;
+    this.update();
+  }
+
+  /** Looks from one of the sides. */
+  preset(name) {
+    [this.yaw, this.pitch] = PRESETS[name];
+    this.update();
+  }
+
+  /** Moves along with a point that something is followed by. */
+  follow(point) {
+    if (this.followed && point) {
+      this.target = add(this.target, subtract(point, this.followed));
+      this.update();
+    }
+    this.followed = point;
   }
 
   /** Direction of unit length from the eye through a pixel. */

@@ -1,6 +1,9 @@
-// The mouse: it moves the camera, pulls bodies, and tells the script. Left pulls what it is on, or turns; the
+// The mouse: it moves the camera, selects and pulls bodies, and tells the script. Left pulls what it is on, or turns; the
 // middle button or Shift and left move, right or the wheel zooms; with Ctrl or Alt the left button always turns,
 // as in PyBullet's window.
+
+/** A mouse that moves less than this with a button down has clicked. */
+const CLICK_PIXELS = 3;
 
 export class Pointer {
   constructor(canvas, camera, send, cameraMoved) {
@@ -15,6 +18,10 @@ export class Pointer {
     this.hoverChanged = () => {};
     /** Takes hold of what is under the mouse; see picking.js. */
     this.grasp = null;
+    /** Called with the pixel of a click that is no drag. */
+    this.clicked = () => {};
+    /** Where the left button went down, until the mouse has moved: a click or a drag. */
+    this.pressed = null;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => this.up(event));
@@ -32,9 +39,7 @@ export class Pointer {
     this.at = [event.offsetX, event.offsetY];
     this.button = event.button;
     this.tell(event, { button: event.button, down: true });
-    if (event.button === 0 && !event.ctrlKey && !event.altKey && !event.shiftKey) {
-      this.grasp?.begin(event.offsetX, event.offsetY);
-    }
+    if (event.button === 0 && !event.ctrlKey && !event.altKey && !event.shiftKey) this.pressed = this.at;
   }
 
   move(event) {
@@ -43,6 +48,11 @@ export class Pointer {
     this.hoverChanged();
     this.tell(event, {});
     if (this.at === null) return;
+    if (this.pressed) {
+      if (Math.hypot(x - this.pressed[0], y - this.pressed[1]) < CLICK_PIXELS) return;
+      this.grasp?.begin(...this.pressed);
+      this.pressed = null;
+    }
     const [dx, dy] = [x - this.at[0], y - this.at[1]];
     this.at = [x, y];
     if (this.grasp?.busy) {
@@ -58,6 +68,8 @@ export class Pointer {
 
   up(event) {
     if (this.at === null) return;
+    if (this.pressed) this.clicked(...this.pressed);
+    this.pressed = null;
     this.at = null;
     this.tell(event, { button: event.button, down: false });
     this.grasp?.end();

@@ -32,6 +32,19 @@ export class Options {
     this.frames = false;
     this.bounds = false;
     this.collisions = false;
+    this.visuals = true;
+    this.transparent = false;
+    this.contacts = false;
+    this.forces = false;
+    this.cones = false;
+    this.axes = false;
+    this.torques = false;
+    this.limits = false;
+    this.positions = false;
+    this.masses = false;
+    this.inertias = false;
+    this.constraints = false;
+    this.rays = false;
     this.yUp = false;
     this.background = null;
     this.lightPosition = [-3, -2.2, 6];
@@ -41,6 +54,23 @@ export class Options {
     this.told = {};
     /** Grows when the script changes something. */
     this.version = 0;
+  }
+
+  /** Whether shapes are drawn: those that collide, or those that are there to be seen. */
+  shows(collision) {
+    return collision === this.collisions && (collision || this.visuals);
+  }
+
+  /** What frames have to tell for what is shown. */
+  get wants() {
+    return {
+      collisions: this.collisions,
+      contacts: this.contacts || this.forces || this.cones,
+      joints: this.torques || this.limits || this.positions,
+      dynamics: this.masses || this.inertias,
+      constraints: this.constraints,
+      rays: this.rays,
+    };
   }
 
   /** The colour a script has given to a link in wireframe, if any. */

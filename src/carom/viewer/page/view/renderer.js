@@ -2,17 +2,21 @@
 
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
+import { LINE_FLOATS } from "./lines.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, SURFACE, WIRE } from "./shaders.js";
 
 const GRID_EXTENT = 60;
 /** Far things fade from about this distance on, or this many times the camera's distance [m]. */
 const HAZE = 90;
 const HAZE_BY_DISTANCE = 16;
-const LINE_FLOATS = 10;
 /** Pictures that take longer than this make the next ones coarser, if so many in a row do [ms]. */
 const SLOW_MS = 70;
 const SLOW_PICTURES = 6;
-const LEAST_SHARPNESS = 0.5;
+const LEAST_SHARPNESS = 0.33;
+/** At first, where the processor draws. */
+const MODEST_SHARPNESS = 0.5;
+/** Side of the shadow map where the processor draws. */
+const SMALL_SHADOWS = 1024;
 
 /** Whether there is no graphics card: every pixel then costs time that the simulation needs. */
 function drawnByTheProcessor() {
@@ -47,7 +51,8 @@ export class Renderer {
     this.lineArray = this.makeLineArray();
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
-    this.sharpness = slow ? LEAST_SHARPNESS : 1;
+    this.byProcessor = slow;
+    this.sharpness = slow ? MODEST_SHARPNESS : 1;
     // Without smooth edges, pictures there is time for are made with more pixels.
     this.stillSharpness = slow ? 2 : 1;
     this.slow = 0;
@@ -80,13 +85,13 @@ export class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Float32Array, clouds: object[], signs: Sign[]}} drawings
+   * @param {{lines: Lines, clouds: object[], signs: Sign[]}} drawings
    */
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
-    scene.regroup();
+    scene.regroup(options);
     scene.fill(options, camera.eye, this.canvas.height / 2);
-    const shown = scene.groups.filter((group) => group.instances > 0 && group.collision === options.collisions);
+    const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
     const light = this.light(camera, options);
     const shadows = options.shadows && !options.wireframe;
     if (shadows) this.drawShadows(shown, light, options);
@@ -96,6 +101,7 @@ export class Renderer {
       lightCamera: light.matrix,
       shadowStrength: shadows ? options.shadowIntensity : 0,
       shadowTexel: 1 / this.map.size,
+      softShadows: this.byProcessor && !this.still ? 0 : 1,
       shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
     };
     if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading);
@@ -175,10 +181,11 @@ export class Renderer {
 
   drawShadows(groups, light, options) {
     const gl = this.gl;
-    if (this.map.size !== options.shadowResolution) {
+    const wanted = this.byProcessor ? Math.min(options.shadowResolution, SMALL_SHADOWS) : options.shadowResolution;
+    if (this.map.wanted !== wanted) {
       this.map.dispose();
-      this.map = new ShadowMap(gl, options.shadowResolution);
-      options.shadowResolution = this.map.size;
+      this.map = new ShadowMap(gl, wanted);
+      this.map.wanted = wanted;
     }
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.map.target);
     gl.viewport(0, 0, this.map.size, this.map.size);
@@ -275,7 +282,7 @@ export class Renderer {
     return array;
   }
 
-  drawLines(lines, camera) {
+  drawLines({ used: lines }, camera) {
     if (lines.length === 0) return;
     const gl = this.gl;
     this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height] });

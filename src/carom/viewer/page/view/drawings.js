@@ -1,4 +1,4 @@
-// What scripts draw: lines, points and texts, on links or in the world; and what the view adds itself.
+// What scripts draw: lines, points and texts, on links or in the world.
 
 import { add, turned } from "./maths.js";
 import { Sign } from "./sign.js";
@@ -8,13 +8,6 @@ const WORLD_AXES = [
   [0, 1, 0],
   [0, 0, 1],
 ];
-const AXIS_COLOURS = [
-  [0.86, 0.16, 0.14],
-  [0.13, 0.62, 0.22],
-  [0.16, 0.36, 0.86],
-];
-const AXIS_LENGTH = 0.1;
-const PULL_COLOUR = [0.95, 0.62, 0.1];
 const TEXT_PIXELS = 15;
 
 export class Drawings {
@@ -90,27 +83,16 @@ export class Drawings {
     return label;
   }
 
-  /**
-   * Lines as the renderer takes them: start, end, colour and width of each.
-   *
-   * @param {number[][][]} pulls start and end of what the mouse pulls
-   * @param {?{body: number, link: number}} named the link whose frame is shown
-   */
-  lines(scene, options, pulls, named) {
-    const lines = [];
-    for (const [start, end] of pulls) lines.push(start, end, PULL_COLOUR, [2.5]);
-    if (named) addFrame(lines, scene, named.body, named.link);
+  /** Adds the lines that scripts have drawn. */
+  addLines(lines, scene) {
     for (const item of this.items.values()) {
       if (item.type !== "line") continue;
       const pose = scene.linkPose(item.body, item.link);
-      if (pose) lines.push(inFrame(pose, item.start), inFrame(pose, item.end), item.colour, [item.width]);
+      if (pose) lines.line(inFrame(pose, item.start), inFrame(pose, item.end), item.colour, item.width);
     }
-    if (options.frames) addFrames(lines, scene);
-    if (options.bounds) addBounds(lines, scene, options);
-    return new Float32Array(lines.flat());
   }
 
-  /** Tells the names of the link under the mouse. */
+  /** Shows the names of the link under the mouse. */
   showName(scene, named, pixel) {
     this.name.hidden = !named;
     if (!named) return;
@@ -134,58 +116,4 @@ export class Drawings {
 
 function inFrame(pose, point) {
   return add(pose.position, turned(pose.orientation, point));
-}
-
-function addFrames(lines, scene) {
-  for (const body of scene.bodies.values()) {
-    body.links.forEach((_, link) => addFrame(lines, scene, body.body, link));
-  }
-}
-
-function addFrame(lines, scene, body, link) {
-  const pose = scene.linkPose(body, link);
-  if (!pose) return;
-  WORLD_AXES.forEach((axis, i) => {
-    const tip = axis.map((value) => value * AXIS_LENGTH);
-    lines.push(pose.position, inFrame(pose, tip), AXIS_COLOURS[i], [2]);
-  });
-}
-
-function addBounds(lines, scene, options) {
-  for (const body of scene.bodies.values()) {
-    body.links.forEach((_, link) => {
-      const bounds = boundsOfLink(scene, body, link, options.collisions);
-      if (bounds) addBox(lines, ...bounds);
-    });
-  }
-}
-
-function boundsOfLink(scene, body, link, collisions) {
-  const pose = scene.inertialPose(body.body, link);
-  const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions);
-  if (!pose || shapes.length === 0) return null;
-  const lower = [Infinity, Infinity, Infinity];
-  const upper = [-Infinity, -Infinity, -Infinity];
-  for (const shape of shapes) {
-    const mesh = scene.meshes.get(shape.meshes[0][0]);
-    if (!mesh) continue;
-    for (let corner = 0; corner < 8; corner++) {
-      const local = [0, 1, 2].map((i) => (corner & (1 << i) ? mesh.bounds.upper : mesh.bounds.lower)[i] * shape.scale[i]);
-      const point = inFrame(pose, add(shape.position, turned(shape.orientation, local)));
-      for (let i = 0; i < 3; i++) {
-        lower[i] = Math.min(lower[i], point[i]);
-        upper[i] = Math.max(upper[i], point[i]);
-      }
-    }
-  }
-  return [lower, upper];
-}
-
-function addBox(lines, lower, upper) {
-  const corner = (bits) => [0, 1, 2].map((i) => (bits & (1 << i) ? upper[i] : lower[i]));
-  for (let bits = 0; bits < 8; bits++) {
-    for (let i = 0; i < 3; i++) {
-      if (!(bits & (1 << i))) lines.push(corner(bits), corner(bits | (1 << i)), [0.9, 0.45, 0.1], [1]);
-    }
-  }
 }

@@ -135,8 +135,8 @@ function faceNormal(positions, [a, b, c]) {
   return n.map((value) => value / size);
 }
 
-/** A texture of RGB bytes, the lower row first, that repeats. */
-export function imageTexture(gl, { width, height }, payload) {
+/** A texture of RGB bytes, the lower row first, that repeats; `plain` where sharpness at a slant costs too much. */
+export function imageTexture(gl, { width, height }, payload, plain) {
   let texels = new Uint8Array(payload);
   // Small patterns have sharp borders, which smoothing would blur over half a pattern.
   const times = Math.max(width, height) <= 16 ? 32 : 1;
@@ -152,7 +152,7 @@ export function imageTexture(gl, { width, height }, payload) {
   gl.generateMipmap(gl.TEXTURE_2D);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-  const sharper = gl.getExtension("EXT_texture_filter_anisotropic");
+  const sharper = plain ? null : gl.getExtension("EXT_texture_filter_anisotropic");
   if (sharper) {
     const most = gl.getParameter(sharper.MAX_TEXTURE_MAX_ANISOTROPY_EXT);
     gl.texParameterf(gl.TEXTURE_2D, sharper.TEXTURE_MAX_ANISOTROPY_EXT, Math.min(8, most));

@@ -6,7 +6,7 @@ import { add, dot, scale, subtract, turned } from "./maths.js";
 export function pick(scene, options, eye, direction) {
   let nearest = null;
   for (const group of scene.groups) {
-    if (group.collision !== options.collisions) continue;
+    if (!options.shows(group.collision)) continue;
     for (const { body, shape } of group.members) {
       const pose = scene.inertialPose(body.body, shape.link);
       if (!pose) continue;
