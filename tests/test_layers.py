@@ -39,11 +39,12 @@ MAY_IMPORT = {
     "carom.worlds": {*ENGINE, "carom.checks", "carom.world", "carom.camera"},
     "carom.algorithms": {*ENGINE, "carom.world"},
     "carom.render": {*ENGINE, "carom.saved", "carom.world"},
-    "carom.viewer": {*ENGINE, "carom.world", "carom.render"},
+    "carom.viewer": {*ENGINE, "carom.checks", "carom.world", "carom.render"},
     "carom.camera": {*DESCRIPTION, "carom.checks", "carom.world", "carom.render"},
     "carom.video": {"carom.checks"},
     "carom.recorder": {"carom.checks", "carom.world", "carom.camera", "carom.video"},
     "carom.warmup": {*ENGINE, "carom.algorithms", "carom.render"},
+    "carom.record": {"carom.world", "carom.viewer"},
     "carom": {
         "carom.world",
         "carom.worlds",
@@ -55,6 +56,7 @@ MAY_IMPORT = {
     "carom.cli": {
         *MODEL,
         "carom.serve",
+        "carom.record",
         "carom.world",
         "carom.viewer",
         "carom.version",
@@ -78,8 +80,10 @@ MAY_IMPORT = {
     "pybullet_data": set(),
     "eglRenderer": set(),
     # The URDF editor writes files of its own.
-    "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
-    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_utils": {"pybullet", "pybullet_data", *DESCRIPTION, "carom.formats"},
+    "pybullet_robots": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils", "pybullet_robots"},
+    "pybullet_examples": {"pybullet_utils"},
 }
 
 

@@ -7,7 +7,7 @@ from carom.collision.gathering import AT_ONCE, find_new_point, gather
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import THERE, keep_previous, skip_contacts, write_new_contact
 from carom.collision.narrow_phase import touch
-from carom.collision.reach import breaking_distance, contact_reach
+from carom.collision.reach import breaking_distance, contact_reach, region_reach
 from carom.collision.sides import in_order_of_sides
 from carom.model.codes import ASLEEP
 from carom.model.contact_structs import Contacts, Pairs, Shapes
@@ -112,7 +112,8 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, fi
     found = find_new_point(shapes, pairs, world, sides, reach, first, last)
     count = Int32(0)
     if found == AT_ONCE:
-        count = touch(shapes, pairs, world, sides[0], sides[1], reach)
+        around = region_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+        count = touch(shapes, pairs, world, sides[0], sides[1], reach, around)
     return found, count
 
 

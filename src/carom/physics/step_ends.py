@@ -43,6 +43,25 @@ def abandon_tree(model: Model, state: State, scratch: Scratch, world: Int32, tre
         clear_forces(model, state, world, tree)
 
 
+@func
+def begin_step(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, moves: Int32
+):
+    """Keep the start of a step, and let joint friction act for all of it, if anything `moves`."""
+    begin_world(state, pairs, world)
+    for tree in range(settings.tree_count):
+        keep_start(model, state, scratch, world, tree)
+        if moves != 0:
+            joint_damping(model, state, world, tree)
+
+
+@func
+def end_step(settings: Settings, model: Model, state: State, world: Int32):
+    """Forces last until a step is complete."""
+    for tree in range(settings.tree_count):
+        clear_forces(model, state, world, tree)
+
+
 @kernel
 def begin_step_kernel(
     settings: Settings,
@@ -53,24 +72,14 @@ def begin_step_kernel(
     moves: Int32,
     first_world: Int32,
 ):
-    """Keep the start of a step, and let joint friction act for all of it.
-
-    `moves` is 0 where nothing but contacts are to be found.
-    """
-    world = first_world + wp.tid()
-    begin_world(state, pairs, world)
-    for tree in range(settings.tree_count):
-        keep_start(model, state, scratch, world, tree)
-        if moves != 0:
-            joint_damping(model, state, world, tree)
+    """Begin a step; `moves` is 0 where nothing but contacts are to be found."""
+    begin_step(settings, model, state, scratch, pairs, first_world + wp.tid(), moves)
 
 
 @kernel
 def end_step_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
-    """Forces last until a step is complete."""
-    world = first_world + wp.tid()
-    for tree in range(settings.tree_count):
-        clear_forces(model, state, world, tree)
+    """End a step."""
+    end_step(settings, model, state, first_world + wp.tid())
 
 
 @kernel
