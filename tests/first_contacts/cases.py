@@ -1,7 +1,7 @@
 """Bodies of every kind of shape that come into contact with every other: runs with PyBullet and with Carom.
 
-What decides how a motion goes on is the first contact: at which gap it is made, with how many points, which normal
-and which force. So each case is followed up to its third step with contact.
+What decides how a motion goes on is the first contact: at which gap it is made, with how many points, which
+normal and which force. So each case is followed up to its third step with contact.
 """
 
 from __future__ import annotations
@@ -64,8 +64,8 @@ def follow(p: Any, case: Case) -> list[dict[str, Any]]:
     """The first three steps with contact, in a connection of their own.
 
     Returns:
-        Of each its number, and of each point of contact the distance, the normal, the height of the point on the
-        moving body, and the normal force.
+        Of each its number, and of each point of contact the distance, the normal, the height of the point on
+        the moving body, and the normal force.
     """
     client = p.connect(p.DIRECT)
     try:
@@ -175,9 +175,7 @@ def _body(p: Any, case: Case, start: list[float], turn: Any) -> int:
         case "pair":
             shape = _shape(p, case.moving)
             other = p.createCollisionShape(p.GEOM_SPHERE, radius=0.02, collisionFramePosition=[0, 0, 0.1])
-            return p.createMultiBody(
-                1.0, shape, -1, start, turn, **_link(p, other, 0.2, p.JOINT_FIXED)
-            )
+            return p.createMultiBody(1.0, shape, -1, start, turn, **_link(p, other, 0.2, p.JOINT_FIXED))
     bare = p.createCollisionShape(p.GEOM_SPHERE, radius=0.01)
     high = [start[0], start[1], start[2] + 0.1]
     body = p.createMultiBody(

@@ -1,4 +1,4 @@
-"""Carom's first contacts beside PyBullet's, and the table of them: `python -m tests.first_contacts.compare`."""
+"""Carom's first contacts beside PyBullet's, as a table: `python -m tests.first_contacts.compare`."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pybullet as p
 from tests.first_contacts.cases import MOVING, RESTING, Case, cases, follow
 from tests.first_contacts.record import RECORDED
 
+import pybullet as p
+
 PAGE = Path(__file__).parents[2] / "docs" / "conformance" / "first-contacts.md"
 SAME_GAP = 1e-4
-"""Gaps of first contacts are the same within this [m]: PyBullet's hulls have corners on a grid of 10 to 30 µm."""
+"""Gaps of first contacts are the same within this [m]; corners of PyBullet's hulls are off by up to 0.03 mm."""
 SAME_FORCE = 0.05
 """So are the sums of normal forces within this fraction, and 0.25 N."""
 SAME_NORMAL = 0.02
@@ -87,51 +88,61 @@ def _normal(step: dict[str, Any]) -> list[float]:
 
 def page(found: list[Outcome]) -> str:
     """The page of the documentation."""
-    same = sum(it.same for it in found)
-    in_step = sum(it.same_step for it in found)
-    lines = [
-        "# First contacts",
-        "",
-        "<!-- Written by tests/first_contacts/compare.py. -->",
-        "",
-        "What decides how a motion goes on is the first contact. Bodies of every kind of shape come into contact with",
-        "every other: in place at the centre of mass, turned there, away from it, beside another shape, and on a",
-        "link; they fall, slide and roll, with the usual and with a larger `contactBreakingThreshold`. The first",
-        "contacts are compared with those recorded in PyBullet 3.2.7.",
-        "",
-        f"Of {len(found)} cases {in_step} make their first contact in the same step and at the same gap",
-        f"(within {SAME_GAP * 1e3:g} mm); in {same} the normal (within {SAME_NORMAL}) and the sum of the normal",
-        f"forces (within {SAME_FORCE:.0%}) are the same, too. In the table, by kinds of shape: the cases that are",
-        "the same in all of this, of those there are.",
-        "",
-        "| moving | " + " | ".join(RESTING) + " |",
-        "|---|" + "---:|" * len(RESTING),
-    ]
+    counts = {
+        "cases": len(found),
+        "in_step": sum(it.same_step for it in found),
+        "same": sum(it.same for it in found),
+        "gap": f"{SAME_GAP * 1e3:g}",
+        "normal": SAME_NORMAL,
+        "force": f"{SAME_FORCE:.0%}",
+    }
+    table = ["| moving | " + " | ".join(RESTING) + " |", "|---|" + "---:|" * len(RESTING)]
     for moving in MOVING:
-        entries = []
-        for resting in RESTING:
-            both = [it for it in found if (it.case.moving, it.case.resting) == (moving, resting)]
-            entries.append(f"{sum(it.same for it in both)} of {len(both)}")
-        lines.append(f"| {moving} | " + " | ".join(entries) + " |")
-    lines += [
-        "",
-        "## What differs",
-        "",
-        "PyBullet makes one point of a manifold in each step, and over the edges of meshes and height fields one for",
-        "each triangle it comes across; Carom makes the manifold at once and leaves out what inner edges would only",
-        "push sideways. So forces of first steps are shared out in another way where faces meet faces or triangles.",
-        "",
-        "| case | steps later | gap here, there [mm] | points here, there | force here, there [N] |",
-        "|---|---:|---:|---:|---:|",
-    ]
-    for it in found:
-        if not it.same:
-            gap, other_gap = (1e3 * gap for gap in it.gaps)
-            lines.append(
-                f"| {it.case.name} | {it.steps:+d} | {gap:.2f}, {other_gap:.2f} | {it.counts[0]}, {it.counts[1]} "
-                f"| {it.forces[0]:.0f}, {it.forces[1]:.0f} |"
-            )
-    return "\n".join(lines) + "\n"
+        rows = [
+            [it for it in found if (it.case.moving, it.case.resting) == (moving, resting)]
+            for resting in RESTING
+        ]
+        entries = [f"{sum(it.same for it in row)} of {len(row)}" for row in rows]
+        table.append(f"| {moving} | " + " | ".join(entries) + " |")
+    rest = [_row(it) for it in found if not it.same]
+    return "\n".join([_INTRODUCTION.format(**counts), *table, _DIFFERENCES, *rest]) + "\n"
+
+
+def _row(it: Outcome) -> str:
+    gap, other_gap = (1e3 * gap for gap in it.gaps)
+    cells = (
+        it.case.name,
+        f"{it.steps:+d}",
+        f"{gap:.2f}, {other_gap:.2f}",
+        f"{it.counts[0]}, {it.counts[1]}",
+        f"{it.forces[0]:.0f}, {it.forces[1]:.0f}",
+    )
+    return f"| {' | '.join(cells)} |"
+
+
+_INTRODUCTION = """# First contacts
+
+<!-- Written by tests/first_contacts/compare.py. -->
+
+What decides how a motion goes on is the first contact. Bodies of every kind of shape come into contact with
+every other: in place at the centre of mass, turned there, away from it, beside another shape, and on a link;
+they fall, slide and roll, with the usual and with a larger `contactBreakingThreshold`. The first contacts are
+compared with those recorded in PyBullet 3.2.7.
+
+Of {cases} cases {in_step} make their first contact in the same step and at the same gap (within {gap} mm); in
+{same} the normal (within {normal}) and the sum of the normal forces (within {force}) are the same, too. In the
+table, by kinds of shape: the cases that are the same in all of this, of those there are.
+"""
+
+_DIFFERENCES = """
+## What differs
+
+PyBullet makes one point of a manifold in each step, and over the edges of meshes and height fields one for
+each triangle it comes across; Carom makes the manifold at once and leaves out what inner edges would only push
+sideways. So forces of first steps are shared out in another way where faces meet faces or triangles.
+
+| case | steps later | gap here, there [mm] | points here, there | force here, there [N] |
+|---|---:|---:|---:|---:|"""
 
 
 def main() -> None:

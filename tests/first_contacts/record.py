@@ -1,4 +1,4 @@
-"""Records the first contacts of every case in real PyBullet: `.oracle/bin/python -m tests.first_contacts.record`."""
+"""Records all first contacts in real PyBullet: `.oracle/bin/python -m tests.first_contacts.record`."""
 
 from __future__ import annotations
 

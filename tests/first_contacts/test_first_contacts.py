@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 
 import pytest
-
 from tests.first_contacts.cases import Case, cases
 from tests.first_contacts.compare import outcome
 from tests.first_contacts.record import RECORDED
