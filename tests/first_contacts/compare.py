@@ -14,7 +14,7 @@ import pybullet as p
 
 PAGE = Path(__file__).parents[2] / "docs" / "conformance" / "first-contacts.md"
 SAME_GAP = 1e-4
-"""Gaps of first contacts are the same within this [m]; corners of PyBullet's hulls are off by up to 0.03 mm."""
+"""First gaps are the same within this [m]; corners of PyBullet's hulls are off by up to 0.03 mm."""
 SAME_FORCE = 0.05
 """So are the sums of normal forces within this fraction, and 0.25 N."""
 SAME_NORMAL = 0.02
@@ -129,17 +129,17 @@ every other: in place at the centre of mass, turned there, away from it, beside 
 they fall, slide and roll, with the usual and with a larger `contactBreakingThreshold`. The first contacts are
 compared with those recorded in PyBullet 3.2.7.
 
-Of {cases} cases {in_step} make their first contact in the same step and at the same gap (within {gap} mm); in
-{same} the normal (within {normal}) and the sum of the normal forces (within {force}) are the same, too. In the
-table, by kinds of shape: the cases that are the same in all of this, of those there are.
+Of {cases} cases {in_step} make their first contact in the same step and at the same gap (within {gap} mm);
+in {same} the normal (within {normal}) and the sum of the normal forces (within {force}) are the same, too. In
+the table, by kinds of shape: the cases that are the same in all of this, of those there are.
 """
 
 _DIFFERENCES = """
 ## What differs
 
 PyBullet makes one point of a manifold in each step, and over the edges of meshes and height fields one for
-each triangle it comes across; Carom makes the manifold at once and leaves out what inner edges would only push
-sideways. So forces of first steps are shared out in another way where faces meet faces or triangles.
+each triangle it comes across; Carom makes the manifold at once and leaves out what inner edges would only
+push sideways. So forces of first steps are shared out in another way where faces meet faces or triangles.
 
 | case | steps later | gap here, there [mm] | points here, there | force here, there [N] |
 |---|---:|---:|---:|---:|"""
