@@ -205,13 +205,13 @@ def test_everything_is_plotted_zoomed_and_saved(page: Page, arm: int, viewer: Vi
         p.stepSimulation()
         page.page.wait_for_timeout(2)
     page.until("app.plots.plotted.get('value error').samples.length > 10")
-    chart = page.page.locator(".chart", has_text="Values").or_(page.page.locator(".chart")).first
+    chart = page.page.locator(".chart", has_text="panda_joint2")
     weight = p.getDynamicsInfo(cube, -1)[0] * 10
     newest = f"app.plots.plotted.get('contact {cube}').samples.at(-1).values[0][0]"
     page.until(f"Math.abs({newest} - {weight}) < 0.1 * {weight}")
     fallen = f"app.plots.plotted.get('body {cube}').samples.at(-1).values[0][2]"
     assert page.page.evaluate(fallen) == pytest.approx(0.025, abs=2e-3)
-    span = "app.plots.plotted.values().next().value.charts[0].span"
+    span = "app.plots.plotted.get('1,1').charts[0].span"
     before = page.page.evaluate(span)
     canvas = chart.locator("canvas").first
     canvas.hover()
