@@ -9,7 +9,8 @@ SOURCE = Path(__file__).parents[1] / "src"
 
 DESCRIPTION = {"carom.errors", "carom.description"}
 MODEL = {*DESCRIPTION, "carom.formats", "carom.geometry", "carom.model"}
-ENGINE = {*MODEL, "carom.physics", "carom.collision"}
+KERNELS = {*MODEL, "carom.physics", "carom.collision"}
+ENGINE = {*KERNELS, "carom.engine"}
 
 # What each layer may import beside itself, the standard library and third parties.
 MAY_IMPORT = {
@@ -23,6 +24,7 @@ MAY_IMPORT = {
     "carom.model": {*DESCRIPTION, "carom.formats", "carom.geometry"},
     "carom.physics": {"carom.errors", "carom.model", "carom.collision"},
     "carom.collision": {"carom.errors", "carom.geometry", "carom.model"},
+    "carom.engine": KERNELS,
     "carom.remote": {"carom.errors"},
     "carom.control": {"carom.checks"},
     "carom.saved": MODEL,
@@ -34,6 +36,7 @@ MAY_IMPORT = {
         "carom.saved",
         "carom.version",
     },
+    "carom.worlds": {*ENGINE, "carom.checks", "carom.world", "carom.camera"},
     "carom.algorithms": {*ENGINE, "carom.world"},
     "carom.render": {*ENGINE, "carom.saved", "carom.world"},
     "carom.viewer": {*ENGINE, "carom.checks", "carom.world", "carom.render"},
@@ -42,7 +45,14 @@ MAY_IMPORT = {
     "carom.recorder": {"carom.checks", "carom.world", "carom.camera", "carom.video"},
     "carom.warmup": {*ENGINE, "carom.algorithms", "carom.render"},
     "carom.record": {"carom.world", "carom.viewer"},
-    "carom": {"carom.world", "carom.camera", "carom.recorder", "carom.control", "carom.version"},
+    "carom": {
+        "carom.world",
+        "carom.worlds",
+        "carom.camera",
+        "carom.recorder",
+        "carom.control",
+        "carom.version",
+    },
     "carom.cli": {
         *MODEL,
         "carom.serve",
@@ -70,8 +80,10 @@ MAY_IMPORT = {
     "pybullet_data": set(),
     "eglRenderer": set(),
     # The URDF editor writes files of its own.
-    "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
-    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_utils": {"pybullet", "pybullet_data", *DESCRIPTION, "carom.formats"},
+    "pybullet_robots": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils", "pybullet_robots"},
+    "pybullet_examples": {"pybullet_utils"},
 }
 
 

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from carom.link import Link
     from carom.recorder import Recorder
     from carom.world import World
+    from carom.worlds.worlds import Worlds
 
 _suggest_names()
 
-__all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "__version__", "control"]
+__all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "Worlds", "__version__", "control"]
 
 _HOME = {
     "Body": "carom.body",
@@ -32,6 +33,7 @@ _HOME = {
     "Link": "carom.link",
     "Recorder": "carom.recorder",
     "World": "carom.world",
+    "Worlds": "carom.worlds.worlds",
 }
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from carom.world import World
 
 # Of the squared length of a unit quaternion.
-_ROUNDING = 1e-15
+ROUNDING = 1e-15
 _NUMBER = np.dtype(NUMPY_REAL)
 _POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 
@@ -129,7 +129,7 @@ class Body:
         x, y, z, w = orientation
         squared = x * x + y * y + z * z + w * w
         # A pose that was read and is written back stays the same to the last digit.
-        scale = 1.0 if abs(squared - 1.0) < _ROUNDING else 1.0 / sqrt(squared)
+        scale = 1.0 if abs(squared - 1.0) < ROUNDING else 1.0 / sqrt(squared)
         _POSE.pack_into(
             self.world.position_memory,
             self.first_position * _NUMBER.itemsize,

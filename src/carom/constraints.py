@@ -154,16 +154,13 @@ class JointConstraints:
         """Number the islands anew after the base of a body was freed or held."""
         self.tags.move_base_to_end(body.id, moving_links(body))
 
-    def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> bool:
+    def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> None:
         """Write the sorted constraints, and which trees are solved together, to the model.
 
         Args:
             arrays: Where to.
             user_rows: Row of each user constraint, by number.
             minimum_island_size: Islands are solved together until they have more constraints.
-
-        Returns:
-            Whether arrays were replaced.
         """
         constraints, keys = self._by_island()
         order = quicksort_order(keys)
@@ -172,7 +169,7 @@ class JointConstraints:
         users = [constraint.user for constraint in ordered if constraint.user is not None]
         arrays.used["constraint"] = arrays.used["row"] = 0
         count = len(ordered)
-        grown = arrays.reserve(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
+        arrays.reserve(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
         arrays.used.update(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
         model = arrays.model.numpy
         trees = [constraint.moving_body.rows.tree for constraint in ordered]
@@ -185,7 +182,7 @@ class JointConstraints:
             for constraint in ordered
         ]
         for name in ("lower", "upper", "twist", "max_impulse"):
-            model[f"constraint_{name}"][:count] = [getattr(constraint, name) for constraint in ordered]
+            model[f"constraint_{name}"][:, :count] = [getattr(constraint, name) for constraint in ordered]
 
         tree_count = arrays.used["tree"]
         model["tree_constraint_count"][:tree_count] = np.bincount(
@@ -200,7 +197,6 @@ class JointConstraints:
             model["tree_batch"][batch] = root
             model["tree_first_constraint"][root] = first
             model["tree_batch_constraints"][root] = length
-        return grown
 
 
 def moving_links(body: Body) -> list[bool]:

@@ -47,7 +47,7 @@ class ContactSearch:
     def __init__(self, structs: KernelStructs, device: str) -> None:
         asked = {"body_a": -1, "link_a": -2, "body_b": -1, "link_b": -2, "time_step": NUMPY_REAL(0.0)}
         self._search = Question(
-            report_contacts_kernel, structs, "report", ArrayTable(ContactReport, None), device, asked, world=0
+            report_contacts_kernel, structs, "report", ArrayTable(ContactReport), device, asked, world=0
         )
         self._view()
 

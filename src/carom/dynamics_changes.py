@@ -18,11 +18,19 @@ _OF_BODY = {
     "linear_damping": "tree_linear_damping",
     "angular_damping": "tree_angular_damping",
     "max_joint_velocity": "tree_max_velocity",
-    "sleep_threshold": "tree_sleep_threshold",
 }
+_SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
-_NOT_OF_SURFACE = {*_OF_BODY, _ACTIVATION, *_OF_JOINT, "mass", "inertia", "joint_limit_force"}
+_NOT_OF_SURFACE = {
+    *_OF_BODY,
+    _SLEEP_THRESHOLD,
+    _ACTIVATION,
+    *_OF_JOINT,
+    "mass",
+    "inertia",
+    "joint_limit_force",
+}
 
 
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
@@ -32,12 +40,17 @@ def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     if surface:
         for name in surface:
             setattr(dynamics, name, changes[name])
+        looks_ahead = world.touch.shapes.looks_ahead
         world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics, surface)
+        if looks_ahead != world.touch.shapes.looks_ahead:
+            world.scene_changed()
         if len(surface) == len(changes):
             return
     for name, field in _OF_BODY.items():
         if name in changes:
-            world.arrays.model.numpy[field][body.rows.tree] = changes[name]
+            world.arrays.model.numpy[field][:, body.rows.tree] = changes[name]
+    if _SLEEP_THRESHOLD in changes:
+        world.arrays.model.numpy["tree_sleep_threshold"][body.rows.tree] = changes[_SLEEP_THRESHOLD]
     if _ACTIVATION in changes:
         _change_activation(body, ActivationChange(changes[_ACTIVATION]))
     if "mass" in changes:
@@ -74,7 +87,7 @@ def _change_activation(body: Body, change: ActivationChange) -> None:
         model["tree_can_wake"][tree] = True
     if change & ActivationChange.DISABLE_WAKEUP:
         model["tree_can_wake"][tree] = False
-    body.world.constraints_changed()
+    body.world.scene_changed()
 
 
 def _change_joint(body: Body, joint: int, changes: Mapping[str, Any]) -> None:
@@ -99,14 +112,15 @@ def _set_mass(body: Body, link: int, mass: float, inertia: Vector3 | None) -> No
     """Set the mass and the inertia, by default that of the collision shapes; a massless base is fixed."""
     dynamics = body.dynamics(link)
     dynamics.mass = mass
-    dynamics.inertia = _inertia_from_shapes(body, link, mass) if inertia is None else inertia
+    dynamics.inertia = shape_inertia(body, link, mass) if inertia is None else inertia
     _write(body, link)
     if link == BASE and (mass > 0.0) == body.fixed_base:
         body.world.set_base_freedom(body, free=mass > 0.0)
         body.world.touch.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
 
 
-def _inertia_from_shapes(body: Body, link: int, mass: float) -> Vector3:
+def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
+    """Principal moments [kg m²] that the collision shapes of a link have at a mass [kg]."""
     spec = body.link_spec(link)
     return inertia_from_shapes(
         mass,
@@ -131,7 +145,7 @@ def _write(body: Body, link: int) -> None:
 def _set_joint_damping(body: Body, joint: int, damping: float) -> None:
     body.dynamics(joint).joint_damping = damping
     first = body.velocity_index[joint]
-    body.world.arrays.model.numpy["dof_damping"][first : first + body.velocity_count[joint]] = damping
+    body.world.arrays.model.numpy["dof_damping"][:, first : first + body.velocity_count[joint]] = damping
 
 
 def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:
@@ -141,7 +155,7 @@ def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:
     dynamics.joint_lower_limit, dynamics.joint_upper_limit = lower, upper
     if body.velocity_count[joint] == 1:
         body.world.constraints.set_limit(body, joint, lower, upper)
-        body.world.constraints_changed()
+        body.world.scene_changed()
 
 
 def _set_limit_force(body: Body, joint: int, force: float) -> None:
@@ -151,4 +165,4 @@ def _set_limit_force(body: Body, joint: int, force: float) -> None:
     if limit is not None:
         limit.max_impulse = impulse
         body.dynamics(joint).joint_limit_impulse = impulse
-        body.world.constraints_changed()
+        body.world.scene_changed()

@@ -36,3 +36,7 @@ class SimulationError(CaromError):
 
 class StateError(CaromError):
     """A saved state does not fit the bodies there are; the world is as it was."""
+
+
+class SimulationWarning(RuntimeWarning):
+    """A world among many has been halted."""

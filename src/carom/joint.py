@@ -162,9 +162,11 @@ class Joint:
             max_velocity: Greatest velocity the motor asks for.
         """
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
+        world = world_of(self.body)
         joint_motor.aim_at_position(
-            world_of(self.body),
+            world.motor,
             self._one_dof,
+            world.parameters.substep_time,
             target,
             velocity,
             gain,
@@ -183,7 +185,15 @@ class Joint:
             gain: Share of the velocity error taken away per substep.
             max_force: Greatest force; `effort_limit` by default.
         """
-        joint_motor.aim_at_velocity(world_of(self.body), self._one_dof, target, gain, self._force(max_force))
+        world = world_of(self.body)
+        joint_motor.aim_at_velocity(
+            world.motor,
+            self._one_dof,
+            world.parameters.substep_time,
+            target,
+            gain,
+            self._force(max_force),
+        )
 
     def set_spring(
         self,
@@ -204,7 +214,13 @@ class Joint:
             max_force: Greatest force; `effort_limit` by default.
         """
         joint_motor.pull_like_a_spring(
-            world_of(self.body), self._one_dof, target, velocity, stiffness, damping, self._force(max_force)
+            world_of(self.body).pd,
+            self._one_dof,
+            target,
+            velocity,
+            stiffness,
+            damping,
+            self._force(max_force),
         )
 
     def set_orientation_target(
@@ -229,8 +245,15 @@ class Joint:
         length = np.linalg.norm(quaternion)
         if length == 0.0:
             raise ValueError("target must be a quaternion other than 0")
+        world = world_of(self.body)
         joint_motor.aim_at_orientation(
-            world_of(self.body), self._dofs, quaternion / length, gain, damping, self._force(max_force)
+            world.motor,
+            self._dofs,
+            world.parameters.substep_time,
+            quaternion / length,
+            gain,
+            damping,
+            self._force(max_force),
         )
 
     def set_torque(self, torque: ArrayLike) -> None:
@@ -243,7 +266,8 @@ class Joint:
 
     def disable_motor(self) -> None:
         """Let go of the joint: its motor, with which every joint starts, and its spring stop acting."""
-        joint_motor.switch_off(world_of(self.body), self._dofs)
+        world = world_of(self.body)
+        joint_motor.switch_off(world.motor, world.pd, self._dofs)
 
     @property
     def motor_torque(self) -> float:
@@ -376,9 +400,11 @@ class Joints(Named[Joint]):
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
         """
+        world = world_of(self._body)
         joint_motor.aim_at_position(
-            world_of(self._body),
+            world.motor,
             self._one_dof_each,
+            world.parameters.substep_time,
             np.clip(self._each(targets, "targets"), *self.limits),
             self._each(velocities, "velocities"),
             self._each(gains, "gains"),
@@ -391,9 +417,11 @@ class Joints(Named[Joint]):
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
         """`Joint.set_velocity_target` for all movable joints; scalars are for all of them."""
+        world = world_of(self._body)
         joint_motor.aim_at_velocity(
-            world_of(self._body),
+            world.motor,
             self._one_dof_each,
+            world.parameters.substep_time,
             self._each(targets, "targets"),
             self._each(gains, "gains"),
             self._each(self._forces(max_forces), "max_forces"),
@@ -406,7 +434,8 @@ class Joints(Named[Joint]):
 
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
-        joint_motor.switch_off(world_of(self._body), self._dofs)
+        world = world_of(self._body)
+        joint_motor.switch_off(world.motor, world.pd, self._dofs)
 
     @property
     def _dofs(self) -> slice:

@@ -1,12 +1,15 @@
-"""What the drive of a joint is told, written into the motor rows of a world.
+"""What the drive of a joint is told, written into the motor rows of one world or of many.
 
-The functions work on `dofs`, a slice of the world's velocity coordinates: those of one joint or of
-a whole body. Forces are in N m for revolute joints and in N for prismatic ones.
+The functions work on `motor` or `pd` of a world, shape (dofs, 8), or of many worlds at once,
+(worlds, dofs, 8), and there on `dofs`: a slice of the velocity coordinates, or their numbers. What is given
+is for all of these, or one number for each, or one for each world and each of these. Forces are in N m for
+revolute joints and in N for prismatic ones; a motor's bound is an impulse, the greatest force times
+`substep_time` [s].
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,13 +31,13 @@ from carom.model.codes import (
     PD_VELOCITY,
 )
 
-if TYPE_CHECKING:
-    from carom.world import World
+Dofs = slice | np.ndarray
 
 
 def aim_at_position(
-    world: World,
-    dofs: slice,
+    motor: np.ndarray,
+    dofs: Dofs,
+    substep_time: float,
     position: ArrayLike,
     velocity: ArrayLike,
     gain: ArrayLike,
@@ -48,22 +51,28 @@ def aim_at_position(
         MOTOR_VELOCITY: finite(velocity, "velocity"),
         MOTOR_KP: finite(gain, "gain"),
         MOTOR_KD: finite(velocity_gain, "velocity_gain"),
-        MOTOR_MAX_IMPULSE: _impulse(world, max_force),
+        MOTOR_MAX_IMPULSE: _impulse(max_force, substep_time),
         MOTOR_VELOCITY_CLAMP: not_negative(max_velocity, "max_velocity"),
     }
-    _write(world.motor[dofs], columns)
+    _write(motor, dofs, columns)
 
 
 def aim_at_velocity(
-    world: World, dofs: slice, velocity: ArrayLike, gain: ArrayLike, max_force: ArrayLike
+    motor: np.ndarray,
+    dofs: Dofs,
+    substep_time: float,
+    velocity: ArrayLike,
+    gain: ArrayLike,
+    max_force: ArrayLike,
 ) -> None:
     """Keep a velocity: take away the share `gain` of the velocity error in every substep."""
-    aim_at_position(world, dofs, 0.0, velocity, 0.0, gain, max_force, np.inf)
+    aim_at_position(motor, dofs, substep_time, 0.0, velocity, 0.0, gain, max_force, np.inf)
 
 
 def aim_at_orientation(
-    world: World,
+    motor: np.ndarray,
     dofs: slice,
+    substep_time: float,
     orientation: ArrayLike,
     gain: ArrayLike,
     damping: ArrayLike,
@@ -74,16 +83,16 @@ def aim_at_orientation(
     columns = {
         MOTOR_POSITION: np.array([x, y, z]),
         MOTOR_KP: finite(gain, "gain"),
-        MOTOR_MAX_IMPULSE: _impulse(world, max_force),
+        MOTOR_MAX_IMPULSE: _impulse(max_force, substep_time),
         MOTOR_DAMPING: finite(damping, "damping"),
     }
-    _write(world.motor[dofs], columns)
-    world.motor[dofs.start, MOTOR_TARGET_W] = w
+    _write(motor, dofs, columns)
+    motor[dofs.start, MOTOR_TARGET_W] = w
 
 
 def pull_like_a_spring(
-    world: World,
-    dofs: slice,
+    pd: np.ndarray,
+    dofs: Dofs,
     position: ArrayLike,
     velocity: ArrayLike,
     stiffness: ArrayLike,
@@ -98,21 +107,22 @@ def pull_like_a_spring(
         PD_KD: finite(damping, "damping"),
         PD_MAX_FORCE: not_negative(max_force, "max_force"),
     }
-    _write(world.pd[dofs], columns)
+    _write(pd, dofs, columns)
 
 
-def switch_off(world: World, dofs: slice) -> None:
+def switch_off(motor: np.ndarray, pd: np.ndarray, dofs: Dofs) -> None:
     """Let go: neither the motor nor a spring acts."""
-    world.motor[dofs, MOTOR_MAX_IMPULSE] = 0.0
-    world.pd[dofs, PD_MAX_FORCE] = 0.0
+    motor[..., dofs, MOTOR_MAX_IMPULSE] = 0.0
+    pd[..., dofs, PD_MAX_FORCE] = 0.0
 
 
-def _impulse(world: World, max_force: ArrayLike) -> np.ndarray:
-    return not_negative(max_force, "max_force") * world.parameters.substep_time
+def _impulse(max_force: ArrayLike, substep_time: float) -> np.ndarray:
+    return not_negative(max_force, "max_force") * substep_time
 
 
-def _write(rows: np.ndarray, columns: dict[int, np.ndarray]) -> None:
+def _write(rows: np.ndarray, dofs: Dofs, columns: Mapping[int, np.ndarray]) -> None:
     """Write columns only after all of them fit the rows, so that an error changes nothing."""
-    fitting = {column: np.broadcast_to(values, len(rows)) for column, values in columns.items()}
+    shape = rows[..., dofs, 0].shape
+    fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
     for column, values in fitting.items():
-        rows[:, column] = values
+        rows[..., dofs, column] = values

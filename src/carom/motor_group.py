@@ -57,7 +57,7 @@ class MotorGroup:
         kd: float,
     ) -> None:
         count = len(dofs)
-        commands = ArrayTable(MotorCommands, None)
+        commands = ArrayTable(MotorCommands)
         commands.reserve({"joint": count})
         arrays = commands.numpy
         arrays["joint_dof"][:count] = dofs
@@ -69,7 +69,7 @@ class MotorGroup:
         )
         self._refused: memoryview[int] = arrays["joint_refused"].data
         defaults = (NUMPY_REAL(force), NUMPY_REAL(kp), NUMPY_REAL(kd))
-        _, state, _ = world.arrays.structs(_DEVICE)
+        state = world.arrays.state.struct(_DEVICE)
         asked = (VELOCITY, 0, NUMPY_REAL(0.0))
         self._launch = Launch(
             command_motors_kernel,

@@ -11,11 +11,11 @@ import numpy as np
 
 from carom.collision.closest import Searches, closest_points_kernel
 from carom.description.pose import Vector3
+from carom.engine.touch_arrays import TouchArrays
 from carom.model.arrays import ArrayTable
 from carom.model.launch import KernelStructs
 from carom.model.real import NUMPY_REAL
 from carom.question import Question
-from carom.touch_arrays import TouchArrays
 
 _ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
 _INDEX = np.dtype(np.int32)

@@ -22,7 +22,7 @@ class PresentPoses:
 
     def __init__(self, poses: memoryview[int], structs: KernelStructs, device: str) -> None:
         self._poses = poses
-        self._find = launch(link_poses_kernel, structs, device).function
+        self._find = launch(link_poses_kernel, structs, device, first_world=0).function
         self._before: list[bytes] = []
 
     def __enter__(self) -> memoryview[int]:

@@ -3,118 +3,106 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from typing import Any
+from types import TracebackType
 
 from carom.collision.stages import broad_phase_kernel, narrow_phase_kernel
-from carom.model.launch import KernelStructs, Launch, argument_indices, launch
+from carom.engine.engine import Engine
+from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
+from carom.engine.program import Plan, Program, step_program
+from carom.model.launch import KernelStructs, Launch
+from carom.model.status import STATUS, WELL
+from carom.physics.kinematics import link_poses_kernel
 from carom.physics.stages import constraints_kernel, free_motion_kernel, islands_kernel, motion_kernel
-from carom.stepper import BEGINS, ENDS, SUBSTEPS, Detection, Stepper
-from carom.touch_arrays import TouchArrays
 
-STAGES = (
-    "link poses",
-    "broad phase",
-    "narrow phase",
-    "islands",
-    "free motion",
-    "constraints",
-    "integration",
-)
+# Stages by the kernels that are launched for them.
+_DETECTION = {
+    "link poses": link_poses_kernel,
+    "broad phase": broad_phase_kernel,
+    "narrow phase": narrow_phase_kernel,
+}
+_MOTION = {
+    "islands": islands_kernel,
+    "free motion": free_motion_kernel,
+    "constraints": constraints_kernel,
+    "integration": motion_kernel,
+}
+STAGES = (*_DETECTION, *_MOTION)
+_STAGE_OF = {kernel: stage for stage, kernel in (*_DETECTION.items(), *_MOTION.items())}
 
 
-class StageClock:
-    """Seconds that each stage has taken."""
+class StagedStepper(Stepper):
+    """Performs programs on the only world there is, as an `Interpreter` does, and times their stages.
 
-    def __init__(self) -> None:
+    Attributes:
+        seconds: What each stage has taken.
+        run: Performs what has been asked for.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._asked: dict[str, int] = {"first_substep": 0, "end_substep": ALL_SUBSTEPS}
         self.seconds: dict[str, float] = dict.fromkeys(STAGES, 0.0)
+        self.run = self._run
 
-    def time(self, stage: str, run: Callable[[], None]) -> None:
-        """Run something that belongs to a stage."""
-        start = time.perf_counter()
-        run()
-        self.seconds[stage] += time.perf_counter() - start
+    def load(self, program: Program) -> None:
+        """Perform another program from now on."""
+        self.program = program
 
+    def ask(self, **asked: int) -> None:
+        """Set scalars as those of `Interpreter`."""
+        self._asked.update(asked)
 
-class ProfiledDetection(Detection):
-    """Collision detection, timed by stage."""
+    def _run(self) -> None:
+        program, due = self.program, self._engine.due[0]
+        rounds = max(1, due)
+        first, end = self._asked["first_substep"], self._asked["end_substep"]
+        well = first > 0 or self._perform(program.begin)
+        for _ in range(first, min(end, rounds)):
+            well = well and self._perform(program.detection) and (due == 0 or self._perform(program.motion))
+        if well and end >= rounds:
+            well = self._perform(program.end)
+        if not well:
+            for launch in program.abandon:
+                launch()
 
-    def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str, clock: StageClock) -> None:
-        super().__init__(structs, touch, device)
-        self._clock = clock
-        self._broad_phase = launch(broad_phase_kernel, structs, device)
-        self._narrow_phase = launch(narrow_phase_kernel, structs, device)
-
-    def _detect(self) -> None:
-        self._clock.time("link poses", self._poses)
-        self._clock.time("broad phase", self._broad_phase)
-        self._clock.time("narrow phase", self._narrow_phase)
-
-
-class StagedStep:
-    """The launches that make up that of a step; it is called and changed like one."""
-
-    def __init__(self, structs: KernelStructs, device: str, clock: StageClock) -> None:
-        self._clock = clock
-        self._arguments = {SUBSTEPS: 1, BEGINS: 1, ENDS: 1}
-        self._islands = launch(islands_kernel, structs, device, **{BEGINS: 1})
-        self._free_motion = launch(free_motion_kernel, structs, device)
-        self._constraints = launch(constraints_kernel, structs, device)
-        self._motion = launch(motion_kernel, structs, device, **{ENDS: 1})
-
-    def replace(self, name: str, value: int) -> None:
-        """Change an argument for all later runs."""
-        self._arguments[name] = value
-
-    def __call__(self) -> None:
-        """Run all stages of as many substeps as asked for."""
-        count = max(1, self._arguments[SUBSTEPS])
-        for substep in range(count):
-            begins = self._arguments[BEGINS] if substep == 0 else 0
-            ends = self._arguments[ENDS] if substep == count - 1 else 0
-            self._run(self._islands, islands_kernel, BEGINS, begins, "islands")
-            self._clock.time("free motion", self._free_motion)
-            self._clock.time("constraints", self._constraints)
-            self._run(self._motion, motion_kernel, ENDS, ends, "integration")
-
-    def _run(self, stage: Launch, kernel: Any, flag: str, value: int, name: str) -> None:
-        stage.replace(argument_indices(kernel)[flag], value)
-        self._clock.time(name, stage)
+    def _perform(self, launches: list[Launch]) -> bool:
+        for launch in launches:
+            start = time.perf_counter()
+            launch()
+            stage = _STAGE_OF.get(launch.kernel)
+            if stage is not None:
+                self.seconds[stage] += time.perf_counter() - start
+            if self._engine.status[0, STATUS] != WELL:
+                return False
+        return True
 
 
-class ProfiledStepper(Stepper):
-    """Steps as `Stepper` does, timed by stage."""
+class Profile:
+    """A context in which an engine's steps are cut into stages.
 
-    def __init__(
-        self,
-        structs: KernelStructs,
-        touch: TouchArrays,
-        fault: memoryview,
-        substeps: int,
-        device: str,
-        *,
-        touching: bool,
-        sleeping: bool,
-        watched: bool,
-        clock: StageClock,
+    Attributes:
+        seconds: What each stage has taken.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._stepper = StagedStepper(engine)
+        self.seconds = self._stepper.seconds
+
+    def __enter__(self) -> Profile:
+        self._engine.step_by(staged_program, [self._stepper])
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        super().__init__(
-            structs,
-            touch,
-            fault,
-            substeps,
-            device,
-            touching=touching,
-            sleeping=sleeping,
-            watched=watched,
-        )
-        self._once = None
-        self._launch = StagedStep(structs, device, clock)
-        self._index = {name: name for name in (SUBSTEPS, BEGINS, ENDS)}
-        if touching:
-            self.detection = ProfiledDetection(structs, touch, device, clock)
+        self._engine.step_by(step_program)
 
-    @property
-    def single(self) -> None:
-        """No step is a single launch here."""
-        return
+
+def staged_program(structs: KernelStructs, device: str, plan: Plan) -> Program:
+    """The launches of a step as `step_program` gives them, in stages."""
+    program = step_program(structs, device, plan._replace(coupled=True))
+    detection = [structs.launch(kernel, device, first_world=0) for kernel in _DETECTION.values()]
+    stages = [structs.launch(kernel, device, first_world=0) for kernel in _MOTION.values()]
+    motion = [*program.motion[:-2], *stages, program.motion[-1]] if plan.sleeping else stages
+    return program._replace(detection=detection if plan.touching else [], motion=motion)

@@ -6,18 +6,18 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
 from struct import Struct
-from typing import Any
 
 import numpy as np
 
 from carom.collision.closest import place_shapes_kernel
 from carom.collision.hierarchy import IN_HIERARCHY, PLACED, READINESS
 from carom.collision.manifold import THERE
-from carom.collision.places import Places
+from carom.collision.places import places_struct
 from carom.collision.rays import prepare_rays_kernel
 from carom.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
+from carom.engine.touch_arrays import TouchArrays
 from carom.model.arrays import ArrayTable
 from carom.model.bounds import Bounds, turned_box
 from carom.model.codes import PLANE
@@ -25,7 +25,6 @@ from carom.model.launch import KernelStructs, Launch, launch
 from carom.model.real import NUMPY_REAL
 from carom.pair_search import NearestPoints, PairSearch
 from carom.ray_cast import Points, RayCast, RayHit
-from carom.touch_arrays import TouchArrays
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
 # A distance that counts as none.
@@ -41,6 +40,7 @@ class Queries:
         places: Body and link that each row of the link arrays stands for.
         present_poses: `World.present_poses`.
         touch: The arrays of shapes.
+        pairs: Room for the intermediate results of collision detection.
         device: Warp device name.
     """
 
@@ -51,10 +51,11 @@ class Queries:
         places: Sequence[tuple[int, int]],
         present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         touch: TouchArrays,
+        pairs: ArrayTable,
         device: str,
     ) -> None:
         self._structs = structs
-        structs["places"] = _struct_of(places, device)
+        structs["places"] = places_struct(places, device)
         self._link_count = len(places)
         self._device = device
         self._touch = touch
@@ -63,8 +64,8 @@ class Queries:
         self._all_shapes = touch.shapes
         self._shape_count = touch.shapes.shape_count
         self._shapes = touch.shapes.table.numpy
-        self._pairs = touch.pairs.numpy
-        self._counts = memoryview(touch.pairs.numpy["count_pairs"][0])
+        self._pairs = pairs.numpy
+        self._counts = memoryview(pairs.numpy["count_pairs"][0])
         self._contact_counts = memoryview(touch.contacts.numpy["count_contacts"][0])
         self._ready_for: tuple[int, bytes] | None = None
 
@@ -72,7 +73,7 @@ class Queries:
     def _make_ready(self) -> dict[int, Launch]:
         return {
             PLACED: launch(place_shapes_kernel, self._structs, self._device),
-            IN_HIERARCHY: launch(prepare_rays_kernel, self._structs, self._device),
+            IN_HIERARCHY: launch(prepare_rays_kernel, self._structs, self._device, first_world=0),
         }
 
     @cached_property
@@ -202,12 +203,3 @@ class Queries:
 
 def _meet(center: float, half: float, lower: float, upper: float) -> bool:
     return center - half <= upper and center + half >= lower
-
-
-def _struct_of(places: Sequence[tuple[int, int]], device: str) -> Any:
-    """A Warp struct of the bodies and links that the rows of the link arrays stand for."""
-    table = ArrayTable(Places, None)
-    table.reserve({"place": len(places)})
-    for name, column in zip(("place_body", "place_link"), zip(*places, strict=True), strict=False):
-        table.numpy[name][: len(places)] = column
-    return table.struct(device)

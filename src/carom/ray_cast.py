@@ -40,10 +40,10 @@ class RayCast:
             rays_kernel,
             structs,
             "rays",
-            ArrayTable(Rays, None),
+            ArrayTable(Rays),
             device,
             {"mask": -1, "hit_number": 0, "separation": NUMPY_REAL(0.0)},
-            world=0,
+            first_world=0,
             threads=1,
         )
         self._view()

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from carom.model.arrays import ArrayTable
     from carom.world import World
 
-# Not state: it says what became of the last step.
-_FAULT = "fault"
+# Axes of what is not the state of bodies: what became of the last step, impulses of user constraints.
+_NOT_OF_BODIES = ("status", "user")
 # Axis of the contacts themselves.
 _CONTACT = "contact"
 # Drives of joints; the rows of bases mean nothing.
@@ -119,8 +119,12 @@ def take(world: World, layout: Layout) -> Snapshot:
         name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy()
         for name, rows in _rows(world.arrays.state, world.arrays.used)
     }
+    islands = snapshot.state["tree_island"]
+    if islands.size and islands.max() >= len(islands):
+        # Those of the last step, since which a body has gone. The next step makes others.
+        islands[:] = np.arange(len(islands))
     snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, world.touch.contact_count)}
-    snapshot.user_impulses = world.touch.couplings.numpy["user_impulse"][0, : world.touch.user_count].copy()
+    snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][0, : world.touch.user_count].copy()
     return snapshot
 
 
@@ -144,19 +148,19 @@ def put_back(world: World, layout: Layout, snapshot: Snapshot) -> None:
     else:
         _write(world, _reordered(snapshot, layout))
         world.touch.forget_contacts()
-    impulses = world.touch.couplings.numpy["user_impulse"][0]
+    impulses = world.arrays.state.numpy["user_impulse"][0]
     if len(snapshot.user_impulses) == world.touch.user_count:
         impulses[: world.touch.user_count] = snapshot.user_impulses
     world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
     if snapshot.state["tree_activity"].any():
-        world.constraints_changed()
+        world.scene_changed()
 
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
     """Fields of the state and their rows in use, of the one world there is."""
     for name, array in table.numpy.items():
         axis = name.partition("_")[0]
-        if axis != _FAULT:
+        if axis not in _NOT_OF_BODIES:
             yield name, array[0, : used[axis]]
 
 
@@ -173,7 +177,7 @@ def _write(world: World, snapshot: Snapshot) -> None:
 def _write_contacts(world: World, snapshot: Snapshot) -> None:
     count = int(snapshot.contacts["count_contacts"][THERE])
     if world.touch.contacts.reserve({_CONTACT: count}):
-        world.constraints_changed()
+        world.scene_changed()
     for name, rows in _contact_rows(world, count):
         rows[:] = snapshot.contacts[name]
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.engine.touch_arrays import TouchArrays
+from carom.model.arrays import ArrayTable
 from carom.model.codes import UserConstraintKind
-from carom.touch_arrays import TouchArrays
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -44,6 +45,7 @@ class UserConstraint:
         gear_auxiliary_link: Link of the parent whose joint's motion is taken off; -1 for none.
         relative_position_target: What the gear's joint positions are to add up to [rad].
         erp: Share of a gear's position error that is taken back; 0 leaves positions alone.
+        enabled: Whether it holds anything.
     """
 
     id: int
@@ -61,6 +63,7 @@ class UserConstraint:
     gear_auxiliary_link: int = -1
     relative_position_target: float = 0.0
     erp: float = 0.0
+    enabled: bool = True
 
 
 class UserConstraints:
@@ -167,8 +170,9 @@ class UserConstraints:
             )
             users["user_relative_target"][row] = constraint.relative_position_target
             users["user_erp"][row] = constraint.erp
+            users["user_enabled"][:, row] = constraint.enabled
 
-    def impulses(self, constraint: UserConstraint, touch: TouchArrays) -> np.ndarray:
+    def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
         """Impulses of a constraint's rows in the last substep, shape (rows,)."""
         row = self.rows[constraint.id]
-        return touch.couplings.numpy["user_impulse"][0, row, : ROWS[constraint.kind]].copy()
+        return state.numpy["user_impulse"][0, row, : ROWS[constraint.kind]].copy()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import overload
@@ -16,28 +16,41 @@ from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
 from carom.description_loading import DescriptionLoading
-from carom.engine_settings import EngineSettings
+from carom.engine.engine import DEVICE, Engine
+from carom.engine.touch_arrays import TouchArrays
 from carom.errors import SimulationError
+from carom.faults import cause_in
 from carom.log import Log, Observer, SubstepObserver
+from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.launch import KernelStructs, TreeLaunch
+from carom.model.status import STATUS, WELL
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.present_poses import PresentPoses
-from carom.prospects import can_sleep, can_touch
 from carom.queries import Queries
 from carom.recordable import Recordable
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
 from carom.solver_report import solver_report
 from carom.state_views import VIEWS, StateViews
-from carom.stepper import Stepper
-from carom.touch_arrays import TouchArrays
 from carom.user_constraints import UserConstraint, UserConstraints
 from carom.user_data import UserData
 
-_DEVICE = "cpu"
+
+@dataclass(slots=True)
+class Derived:
+    """What follows from the bodies, constraints and arrays of a world, once somebody has asked for it."""
+
+    step: Callable[[], None] | None = None
+    queries: Queries | None = None
+    present_poses: PresentPoses | None = None
+    pose_launch: TreeLaunch | None = None
+    twist_launch: TreeLaunch | None = None
+    layout: Layout | None = None
+    link_places: list[tuple[int, int]] | None = None
+    link_columns: tuple[list[int], list[int]] | None = None
 
 
 class World(DescriptionLoading, Recordable, StateViews):
@@ -64,30 +77,29 @@ class World(DescriptionLoading, Recordable, StateViews):
         self.time: float = 0.0
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
-        self._stepper_type: Callable[..., Stepper] = Stepper
         self.unspent_time: float = 0.0
+        self._viewed: ArrayTable | None = None
+        self._replacements = 0
         self._start_empty()
 
     def _start_empty(self) -> None:
         self.bodies.clear()
-        self.arrays: WorldArrays = WorldArrays()
-        self._settings = EngineSettings()
-        self._kernels = KernelStructs(settings=self._settings.struct)
-        self.touch: TouchArrays = TouchArrays(self.arrays, _DEVICE)
+        arrays = WorldArrays()
+        self._take_arrays(arrays, TouchArrays(arrays))
         self.constraints: JointConstraints = JointConstraints()
         self.user_constraints: UserConstraints = UserConstraints()
         self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
         self.next_id: int = 0
         self.unspent_time = 0.0
-        self._step: Callable[[], None] | None = None
-        self._made_for: tuple[int, int] | None = None
-        # What the constraints in the arrays were grouped by; None if they are not those there are now.
-        self._island_size: int | None = None
-        self._layout: Layout | None = None
-        self._link_places: list[tuple[int, int]] | None = None
-        self._link_columns: tuple[list[int], list[int]] | None = None
-        self._take_arrays()
+
+    def _take_arrays(self, arrays: WorldArrays, touch: TouchArrays) -> None:
+        self.arrays: WorldArrays = arrays
+        self.touch: TouchArrays = touch
+        self.engine: Engine = Engine(arrays, touch)
+        self._status: memoryview[int] = memoryview(self.engine.status[0])
+        self._growths = 0
+        self.scene_changed()
 
     def __enter__(self) -> World:
         return self
@@ -150,7 +162,7 @@ class World(DescriptionLoading, Recordable, StateViews):
         px, py, pz = vector(position, 3, "position").tolist()
         qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
         pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
-        rows, grown = self.arrays.append(spec, pose)
+        rows = self.arrays.append(spec, pose)
         body_id = self.free_ids.pop() if self.free_ids else self.next_id
         self.next_id = max(self.next_id, body_id + 1)
         body = Body(self, body_id, spec, rows)
@@ -160,16 +172,12 @@ class World(DescriptionLoading, Recordable, StateViews):
         except Exception:
             self.arrays.remove(rows, [])
             self.free_ids.append(body_id)
-            if grown:
-                self._take_arrays()
+            self.scene_changed()
             raise
         self.bodies[body_id] = body
-        self._layout = self._link_places = self._link_columns = None
         self.constraints.add_body(body)
         self.user_data.add_stated(body_id, spec)
-        if grown:
-            self._take_arrays()
-        self.constraints_changed()
+        self.scene_changed()
         body.update_link_poses()
         return body
 
@@ -180,7 +188,6 @@ class World(DescriptionLoading, Recordable, StateViews):
             KeyError: There is no such body.
         """
         body = self.bodies.pop(body_id)
-        self._layout = self._link_places = self._link_columns = None
         self.constraints.remove_body(body)
         self.user_constraints.remove_body(body)
         self.user_data.remove_body(body_id)
@@ -190,13 +197,22 @@ class World(DescriptionLoading, Recordable, StateViews):
         for other in self.bodies.values():
             other.relocate()
         self.free_ids.append(body_id)
-        self.constraints_changed()
+        self.scene_changed()
 
     def reset(self) -> None:
         """Remove all bodies and set all parameters back, but for the time step and the substeps."""
         kept = self.parameters
         self.parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
         self._start_empty()
+
+    def copy(self) -> World:
+        """A world of its own with the same bodies, that goes on exactly as this one does.
+
+        Handles of bodies are found in `bodies` under their numbers. Observers and logs are not copied.
+        """
+        from carom.world_copy import copy_world
+
+        return copy_world(self)
 
     def tie(
         self,
@@ -219,14 +235,14 @@ class World(DescriptionLoading, Recordable, StateViews):
             kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame, hidden=hidden
         )
         self.constraints.add_user(constraint)
-        self.constraints_changed()
+        self.scene_changed()
         return constraint
 
     def untie(self, constraint: UserConstraint) -> None:
         """Remove a constraint made by `tie`."""
         self.user_constraints.remove(constraint.id)
         self.constraints.remove_user(constraint)
-        self.constraints_changed()
+        self.scene_changed()
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Let the base of a body move, or hold it where it is."""
@@ -234,25 +250,33 @@ class World(DescriptionLoading, Recordable, StateViews):
         body.fixed_base = not free
         body.derived.clear()
         self.constraints.base_freedom_changed(body)
-        self.constraints_changed()
+        self.scene_changed()
 
     # State
 
     @property
     def link_places(self) -> list[tuple[int, int]]:
         """Body and link, -1 for the base, that each row of the link arrays stands for."""
-        if self._link_places is None:
+        if self._derived.link_places is None:
             bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
-            self._link_places = [(body.id, link) for body in bodies for link in range(-1, body.joint_count)]
-        return self._link_places
+            self._derived.link_places = [
+                (body.id, link) for body in bodies for link in range(-1, body.joint_count)
+            ]
+        return self._derived.link_places
 
     @property
     def link_columns(self) -> tuple[list[int], list[int]]:
         """The bodies and the links of `link_places`, and -1 for row -1, which stands for none."""
-        if self._link_columns is None:
+        if self._derived.link_columns is None:
             places = [*self.link_places, (-1, -1)]
-            self._link_columns = [body for body, _ in places], [link for _, link in places]
-        return self._link_columns
+            self._derived.link_columns = [body for body, _ in places], [link for _, link in places]
+        return self._derived.link_columns
+
+    @property
+    def _layout(self) -> Layout:
+        if self._derived.layout is None:
+            self._derived.layout = layout(self)
+        return self._derived.layout
 
     def snapshot(self) -> Snapshot:
         """The present state, to come back to by `restore` as often as needed.
@@ -260,8 +284,6 @@ class World(DescriptionLoading, Recordable, StateViews):
         It holds positions and velocities, motors, applied forces, contacts and time; not what bodies
         are made of, constraints, gravity and the other parameters.
         """
-        if self._layout is None:
-            self._layout = layout(self)
         return take(self, self._layout)
 
     def restore(self, state: Snapshot | str | Path) -> None:
@@ -281,8 +303,6 @@ class World(DescriptionLoading, Recordable, StateViews):
 
             restore_world(self, Path(state))
             return
-        if self._layout is None:
-            self._layout = layout(self)
         put_back(self, self._layout, state)
 
     def log(self, *names: str, every: int = 1) -> Log:
@@ -317,19 +337,20 @@ class World(DescriptionLoading, Recordable, StateViews):
     def apply_parameters(self) -> None:
         """Make changes of `parameters` take effect."""
         shapes, breaking = self.touch.shapes, self.parameters.contact_breaking_threshold
-        if self._step is None or self._structure() != self._made_for or breaking != shapes.breaking_fraction:
+        if breaking != shapes.breaking_fraction or self._structure() != self._made_for:
             shapes.set_breaking_fraction(breaking)
-            self._step = None
-            self._queries = None
-        else:
-            self._update_settings()
+            self.scene_changed()
+        elif self._derived.step is not None:
+            self.engine.update_settings(self.parameters)
 
-    def constraints_changed(self) -> None:
-        """Sort and number the constraints again before the next step."""
-        self._island_size = None
-        self._step = None
-        self._queries = None
-        self._present_poses = None
+    def scene_changed(self) -> None:
+        """Bring everything up to date before it is used again: bodies, constraints or arrays have changed."""
+        self._derived = Derived()
+        self._made_for: tuple[int, int] | None = None
+        self.engine.changed()
+        if self.arrays.state is not self._viewed or self.arrays.state.replacements != self._replacements:
+            self.view(self.arrays.state)
+            self._viewed, self._replacements = self.arrays.state, self.arrays.state.replacements
 
     # Time
 
@@ -345,9 +366,9 @@ class World(DescriptionLoading, Recordable, StateViews):
             if self.observers:
                 for observer in self.observers:
                     observer.before_step()
-            (self._step or self._prepare_step())()
-            if self._fault[0]:
-                self._raise_fault()
+            (self._derived.step or self._prepare_step())()
+            if self._status[STATUS]:
+                self._look_into_status()
             if self._substep_observers:
                 self._tell_of_substep()
             self.time += self.parameters.time_step
@@ -358,13 +379,13 @@ class World(DescriptionLoading, Recordable, StateViews):
     def watch_substeps(self, observer: SubstepObserver) -> None:
         """From now on tell an observer of every substep."""
         self._substep_observers.append(observer)
-        self._step = None
+        self.scene_changed()
 
     def unwatch_substeps(self, observer: SubstepObserver) -> None:
         """Tell an observer no more, if it is told of substeps."""
         if observer in self._substep_observers:
             self._substep_observers.remove(observer)
-            self._step = None
+            self.scene_changed()
 
     def profile(self, count: int = 100) -> dict[str, float]:
         """Advance the world by `count` time steps, as `step` does, and say where the time goes.
@@ -382,20 +403,37 @@ class World(DescriptionLoading, Recordable, StateViews):
         Raises:
             carom.errors.SimulationError: As from `step`.
         """
-        from carom.profile import ProfiledStepper, StageClock
+        from carom.profile import Profile
 
-        clock = StageClock()
-        self._stepper_type, self._step = partial(ProfiledStepper, clock=clock), None
+        self.prepare()
         try:
-            self.step(count)
+            with Profile(self.engine) as profile:
+                self._derived.step = self._step_staged
+                self.step(count)
         finally:
-            self._stepper_type, self._step = Stepper, None
-        return {stage: seconds / count for stage, seconds in clock.seconds.items()}
+            self.scene_changed()
+        return {stage: seconds / count for stage, seconds in profile.seconds.items()}
+
+    def _step_staged(self) -> None:
+        self.engine.step([self._substeps_due()])
+
+    def _look_into_status(self) -> None:
+        """Step again with more room, if there was not enough; complain of what is not finite."""
+        self.engine.recover()
+        self._renew_after_growth()
+        if self._status[STATUS]:
+            self._raise_fault()
+
+    def _renew_after_growth(self) -> None:
+        if self.engine.growths != self._growths:
+            self._growths = self.engine.growths
+            self.scene_changed()
 
     def _raise_fault(self) -> None:
         """Throw away what the failed step left besides the coordinates, and say which body it was."""
-        tree = self._fault[0] - 1
+        tree = self._status[STATUS] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        cause = cause_in(body)
         self.joint_reaction[:] = 0.0
         self.motor_impulse[:] = 0.0
         self.touch.forget_contacts()
@@ -403,104 +441,90 @@ class World(DescriptionLoading, Recordable, StateViews):
             other.update_link_poses()
         raise SimulationError(
             f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
-            "the world is as it was before the step"
+            f"the world is as it was before the step{cause and f': {cause}'}"
         )
+
+    def prepare(self) -> None:
+        """Bring the arrays of the engine up to date with the bodies, constraints and parameters there are.
+
+        Steps do it by themselves; whoever copies the arrays wants it done before.
+        """
+        if self._derived.step is None:
+            self._prepare_step()
 
     def _prepare_step(self) -> Callable[[], None]:
-        """The function that performs one step with the bodies and parameters there are."""
-        stepper = self._make_stepper()
-        if self.parameters.substeps <= 1:
-            self.unspent_time = 0.0
-        self._step = stepper.single or self._step_with_care
-        return self._step
-
-    def _make_stepper(self) -> Stepper:
-        """Write constraints and settings to the arrays and make the launches of a step."""
-        island_size = self.parameters.minimum_island_size
-        if island_size != self._island_size:
-            if self.constraints.write(self.arrays, self.user_constraints.rows, island_size):
-                self._take_arrays()
-            self._island_size = island_size
+        """Write constraints and settings to the arrays; returns what performs a step."""
+        self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.touch)
-        self._queries = None
+        self._derived.queries = None
         self._made_for = self._structure()
-        self._stepper = self._stepper_type(
-            self._kernel_structs(),
-            self.touch,
-            self._fault,
-            self.parameters.substeps,
-            _DEVICE,
-            touching=can_touch(self),
-            sleeping=can_sleep(self),
-            watched=bool(self._substep_observers) and self.parameters.substeps > 1,
-        )
-        return self._stepper
+        self.engine.update_settings(self.parameters)
+        in_substeps = self.parameters.substeps > 1
+        self.engine.prepare(watched=in_substeps and bool(self._substep_observers))
+        if in_substeps:
+            step = self._step_in_substeps
+        else:
+            self.unspent_time = 0.0
+            step = self.engine.run_prepared
+        self._derived.step = step
+        return step
 
-    def _step_with_care(self) -> None:
-        """One step in substeps, and again with longer arrays as long as something does not fit."""
-        substeps = self._substeps_due()
-        between = self._tell_of_substep if self._substep_observers else None
-        done = self._stepper.step(substeps, between=between)
-        while done < max(1, substeps):
-            if done == 0:
-                for observer in self._substep_observers:
-                    observer.step_repeated()
-            done = self._make_stepper().step(substeps, done, between)
+    def _step_in_substeps(self) -> None:
+        """One step in substeps, of each of which observers are told."""
+        due = self._substeps_due()
+        if not self._substep_observers:
+            self.engine.step([due])
+            return
+        rounds = max(1, due)
+        substep = 0
+        while substep < rounds and self._status[STATUS] <= WELL:
+            if self.engine.substep(due, substep):
+                substep += 1
+                if substep < rounds and self._status[STATUS] == WELL:
+                    self._tell_of_substep()
+                continue
+            for observer in self._substep_observers:
+                observer.step_repeated()
+            substep = 0
 
     def _tell_of_substep(self) -> None:
         for observer in self._substep_observers:
             observer.after_substep()
 
     def _substeps_due(self) -> int:
-        """Substeps of the next step.
-
-        Like Bullet's clock it counts as many as fit the time that has passed, which rounding can make
-        one fewer, then one more, than asked for; never more.
-        """
-        if self.parameters.substeps <= 1:
-            return 1
-        part = self.parameters.substep_time
-        self.unspent_time += self.parameters.time_step
-        count = int(self.unspent_time / part)
-        self.unspent_time -= count * part
-        return min(count, self.parameters.substeps)
+        """Substeps of the next step."""
+        due, self.unspent_time = self.parameters.substeps_due(self.unspent_time)
+        return due
 
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
-        if self._step is None:
-            self._prepare_step()
-        detection = self._stepper.detection
-        while detection is not None and not detection.run():
-            detection = self._make_stepper().detection
+        self.prepare()
+        if self.engine.can_touch:
+            self.engine.detect()
+            self._renew_after_growth()
 
     def queries(self) -> Queries:
         """Rays, nearest points and overlaps for the present coordinates."""
-        if self._queries is None:
-            self._queries = Queries(
+        if self._derived.queries is None:
+            self._derived.queries = Queries(
                 self._kernel_structs(),
                 self.position_memory,
                 self.link_places,
                 self.present_poses,
                 self.touch,
-                _DEVICE,
+                self.engine.workspace.pairs,
+                DEVICE,
             )
-        return self._queries
+        return self._derived.queries
 
     def _structure(self) -> tuple[int, int]:
         """The parameters that decide which launches a step consists of."""
         return self.parameters.substeps, self.parameters.minimum_island_size
 
-    def _update_settings(self) -> None:
-        """Bring the settings that kernels get up to date, those of launches that are there as well."""
-        if self._settings.update(self.parameters, self.arrays, self.touch):
-            self._kernels.changed("settings")
-
     def _kernel_structs(self) -> KernelStructs:
         """Structs over the present arrays, by the name kernels give them."""
-        model, state, scratch = self._structs
-        self._kernels.update(model=model, state=state, scratch=scratch, **self.touch.structs())
-        self._update_settings()
-        return self._kernels
+        self.engine.update_settings(self.parameters)
+        return self.engine.structs()
 
     def analytics(self) -> list[dict[str, float]]:
         """What the solver did in the last substep, for each group of bodies solved together.
@@ -511,34 +535,23 @@ class World(DescriptionLoading, Recordable, StateViews):
         """
         return solver_report(self)
 
-    # Memory
-
-    def _take_arrays(self) -> None:
-        """Make views and launches for the present arrays."""
-        self._structs = self.arrays.structs(_DEVICE)
-        self._step = None
-        self._queries: Queries | None = None
-        self._pose_launch: TreeLaunch | None = None
-        self._present_poses: PresentPoses | None = None
-        self._twist_launch: TreeLaunch | None = None
-        self.view(self.arrays.state)
-        self._fault = memoryview(self.arrays.state.numpy["fault_tree"][0])
+    # Poses
 
     def present_poses(self) -> PresentPoses:
         """A context in which `link_pose` is up to date with the coordinates of all bodies."""
-        if self._present_poses is None:
+        if self._derived.present_poses is None:
             poses = self.arrays.state.bytes_of("link_pose")
-            self._present_poses = PresentPoses(poses, self._kernel_structs(), _DEVICE)
-        return self._present_poses
+            self._derived.present_poses = PresentPoses(poses, self._kernel_structs(), DEVICE)
+        return self._derived.present_poses
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
-        if self._pose_launch is None:
-            self._pose_launch = TreeLaunch(forward_kinematics_kernel, self._structs[:2], _DEVICE)
-        self._pose_launch(body.rows.tree)
+        if self._derived.pose_launch is None:
+            self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs(), DEVICE)
+        self._derived.pose_launch(body.rows.tree)
 
     def update_link_velocities(self, body: Body) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
-        if self._twist_launch is None:
-            self._twist_launch = TreeLaunch(link_twist_kernel, self._structs, _DEVICE)
-        self._twist_launch(body.rows.tree)
+        if self._derived.twist_launch is None:
+            self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs(), DEVICE)
+        self._derived.twist_launch(body.rows.tree)

@@ -51,7 +51,7 @@ def setCollisionFilterPair(
         return
     with client.lock:
         client.world.touch.shapes.filters.set(row_a, row_b, enabled=enabled)
-        client.world.constraints_changed()
+        client.world.scene_changed()
 
 
 @exported
@@ -87,7 +87,7 @@ def setCollisionFilterGroupMask(
     row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
     if row is not None:
         client.world.touch.shapes.set_group_and_mask(row, group, mask)
-        client.world.constraints_changed()
+        client.world.scene_changed()
 
 
 def _row(client: Client, body_id: Any, link_index: Any, function: str) -> int | None:

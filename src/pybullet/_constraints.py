@@ -316,7 +316,7 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
     """
     constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't getConstraintState.")
     world = client_of(physicsClientId).world
-    impulses = world.user_constraints.impulses(constraint, world.touch)
+    impulses = world.user_constraints.impulses(constraint, world.arrays.state)
     # PyBullet's point-to-point rows count the other way round.
     sign = -1.0 if constraint.kind == JOINT_POINT2POINT else 1.0
     return tuple((sign * impulses / world.parameters.substep_time).tolist())

@@ -123,7 +123,7 @@ class RobotLog(BinaryLog):
     def _keep_torques(self) -> None:
         """Keeps the torques of the next substep, damping included."""
         if self._flags & STATE_LOG_JOINT_USER_TORQUES:
-            damping = self._world.arrays.model.numpy["dof_damping"][: len(self._torque)]
+            damping = self._world.arrays.model.numpy["dof_damping"][0, : len(self._torque)]
             self._applied = self._torque - damping * self._world.velocity
 
     def after_substep(self) -> None:

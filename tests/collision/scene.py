@@ -23,7 +23,9 @@ from carom.model.arrays import ArrayTable
 from carom.model.codes import Rolling, ShapeKind
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import NUMPY_REAL
-from carom.model.structs import Model, Settings, State
+from carom.model.status import OVERFLOW, STATUS
+from carom.model.structs import ENTRY_VIEWS, Model, Scratch, Settings, State
+from carom.physics.step_ends import abandon_step_kernel, begin_step_kernel
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 
@@ -102,15 +104,17 @@ class Scene:
     def __init__(self, shapes: Sequence[Shape], contact_room: int = 64, pair_room: int = 64) -> None:
         count = len(shapes)
         self.tables = {
-            "shapes": ArrayTable(Shapes, None),
-            "model": ArrayTable(Model, None),
-            "state": ArrayTable(State, 1),
-            "contacts": ArrayTable(Contacts, 1),
-            "pairs": ArrayTable(Pairs, 1),
+            "shapes": ArrayTable(Shapes),
+            "model": ArrayTable(Model),
+            "state": ArrayTable(State),
+            "scratch": ArrayTable(Scratch, entry_views=ENTRY_VIEWS),
+            "contacts": ArrayTable(Contacts),
+            "pairs": ArrayTable(Pairs),
         }
         self.tables["shapes"].reserve({"shape": count, "link": count})
         self.tables["model"].reserve({"link": count, "tree": count})
         self.tables["state"].reserve({"link": count})
+        self.tables["scratch"].reserve({"link": count})
         self.tables["contacts"].reserve({"contact": contact_room})
         self.grow_scratch(count, pair_room)
         self.settings = Settings()
@@ -140,8 +144,8 @@ class Scene:
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1
         arrays["link_mask"][row] = -1
-        arrays["link_anisotropy"][row] = 1.0
-        arrays["link_processing_threshold"][row] = np.inf
+        arrays["link_anisotropy"][0, row] = 1.0
+        arrays["link_processing_threshold"][0, row] = np.inf
         model["link_parent"][row] = -1
         model["link_dof_count"][row] = 0 if shape.static else 6
         self.place(row, shape.position, shape.orientation)
@@ -190,16 +194,21 @@ class Scene:
         return {name: table.struct("cpu") for name, table in self.tables.items()}
 
     def collide(self) -> None:
-        """Run collision detection."""
+        """Run collision detection, as the first substep of a step; what does not fit changes no contacts."""
         structs = self.structs()
-        wp.launch(
-            collide_kernel,
-            dim=1,
-            inputs=[
-                self.settings,
-                *(structs[name] for name in ("shapes", "model", "state", "contacts", "pairs")),
-            ],
-        )
+        self._launch(begin_step_kernel, structs, "model", "state", "scratch", "pairs", scalars=(0,))
+        self._launch(collide_kernel, structs, "shapes", "model", "state", "scratch", "contacts", "pairs")
+        if self.status[STATUS] == OVERFLOW:
+            self._launch(abandon_step_kernel, structs, "model", "state", "scratch", "contacts", "pairs")
+
+    def _launch(self, kernel, structs: dict[str, Any], *names: str, scalars: Sequence[int] = ()) -> None:
+        first_world = 0
+        wp.launch(kernel, 1, [self.settings, *(structs[name] for name in names), *scalars, first_world])
+
+    @property
+    def status(self) -> np.ndarray:
+        """What became of the last collision detection: columns of `carom.model.status`."""
+        return self.numpy("state")["status_entry"][0]
 
     def closest(self, pairs: Sequence[tuple[int, int]], reach: float = 1e6) -> np.ndarray:
         """Nearest points: (n, 8) point on b, normal on b, distance, 1 if within reach."""
@@ -210,7 +219,7 @@ class Scene:
             inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
         )
         count = len(pairs)
-        table = ArrayTable(Searches, 1)
+        table = ArrayTable(Searches)
         table.reserve({"search": count})
         for side, name in enumerate(("search_first", "search_second")):
             table.numpy[name][0, :count] = [pair[side] for pair in pairs]
@@ -236,10 +245,10 @@ class Scene:
         )
         starts, ends = (np.reshape(points, (-1, 3)) for points in (starts, ends))
         count, threads = len(starts), 2
-        table = ArrayTable(Rays, None)
+        table = ArrayTable(Rays)
         table.reserve({"ray": count})
         table.numpy["ray_start"][:count], table.numpy["ray_end"][:count] = starts, ends
-        places = ArrayTable(Places, None)
+        places = ArrayTable(Places)
         places.reserve({"place": self.settings.shape_count})
         question = (0, count, threads, mask, hit_number, NUMPY_REAL(separation))
         wp.launch(

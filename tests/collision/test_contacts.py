@@ -5,6 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, box, capsule, cylinder, hull, plane, sphere
 
+from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
+
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.5
 UPRIGHT_X = (0, np.sqrt(0.5), 0, np.sqrt(0.5))
 UPRIGHT_Y = (np.sqrt(0.5), 0, 0, np.sqrt(0.5))
@@ -180,13 +182,25 @@ def test_boxes_that_touched_stay_in_contact_up_to_the_breaking_distance():
 
 
 def test_parts_of_a_compound_make_contacts_only_where_their_bounds_meet():
-    scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.51))])
+    scene = Scene([box((0.5, 0.5, 0.5)), sphere(0.5, position=(0, 0, 1.01))])
+    scene.collide()
+    assert len(scene.contacts("distance")) == 1
     scene.numpy("shapes")["link_shape_count"][1] = 2
     scene.collide()
     assert len(scene.contacts("distance")) == 0
-    scene.place(1, (0, 0, 0.4999))
+    scene.place(1, (0, 0, 0.9999))
     scene.collide()
     assert len(scene.contacts("distance")) == 1
+
+
+def test_parts_of_a_compound_always_meet_the_bounds_of_a_plane():
+    scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.51))])
+    scene.numpy("shapes")["link_shape_count"][1] = 2
+    scene.collide()
+    assert len(scene.contacts("distance")) == 1
+    scene.place(1, (0, 0, 0.5201))
+    scene.collide()
+    assert len(scene.contacts("distance")) == 0
 
 
 def test_contacts_without_room_are_found_when_there_is_and_have_lost_nothing():
@@ -199,10 +213,11 @@ def test_contacts_without_room_are_found_when_there_is_and_have_lost_nothing():
     for i in range(1, 9):
         scene.place(i, (2 * i, 0, 0.5))
     scene.collide()
-    counts = scene.numpy("contacts")["count_contacts"][0]
-    assert counts[:2].tolist() == [0, 32]
-    scene.collide()
-    assert scene.numpy("contacts")["count_contacts"][0][:2].tolist() == [0, 32]
+    for _ in range(2):
+        assert scene.status[[STATUS, CONTACTS_WANTED]].tolist() == [OVERFLOW, 32]
+        assert len(scene.contacts("impulse")) == 4
+        assert_allclose(scene.contacts("impulse"), 7.0)
+        scene.collide()
 
     scene.tables["contacts"].reserve({"contact": 32})
     scene.grow_scratch(len(shapes), 64)
@@ -217,7 +232,7 @@ def test_pairs_without_room_are_counted():
     scene = Scene([plane(), *(sphere(0.5, position=(2 * i, 0, 0.5)) for i in range(30))], pair_room=16)
     assert scene.tables["pairs"].capacity["pair"] == 16
     scene.collide()
-    assert scene.numpy("pairs")["count_pairs"][0, 0] == 30
+    assert scene.status[[STATUS, PAIRS_WANTED]].tolist() == [OVERFLOW, 30]
     assert len(scene.contacts("impulse")) == 0
     scene.grow_scratch(31, 30)
     scene.collide()

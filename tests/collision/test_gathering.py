@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, plane
 
 from carom.model.codes import Rolling
+from carom.model.status import CONTACTS_WANTED
 
 RADIUS, HALF_LENGTH, BREAKING = 0.1, 0.15, 0.004
 LYING = (2**-0.5, 0.0, 0.0, 2**-0.5)
@@ -183,8 +184,8 @@ def test_gathered_contacts_without_room_are_found_when_there_is_and_have_lost_no
             for row in range(40):
                 scene.place(row, (row, 0, RADIUS), product(turn(0, tilt), LYING))
             scene.collide()
-        count = int(small.numpy("contacts")["count_contacts"][0, 1])
-        if count > small.tables["contacts"].capacity["contact"]:
+        count = int(small.status[CONTACTS_WANTED])
+        if count:
             small.tables["contacts"].reserve({"contact": count})
             small.grow_scratch(41, 64)
             small.collide()

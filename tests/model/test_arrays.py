@@ -10,13 +10,13 @@ from carom.model.structs import ENTRY_VIEWS, Model, Scratch, State
 
 @pytest.fixture(params=[None, 1, 3], ids=["shared", "one world", "three worlds"])
 def table(request) -> ArrayTable:
-    return ArrayTable(Model if request.param is None else State, request.param)
+    return ArrayTable(Model) if request.param is None else ArrayTable(State, request.param)
 
 
 def rows(table: ArrayTable, name: str) -> np.ndarray:
     """An array with its rows in front, whether or not it has a world axis."""
     array = table.numpy[name]
-    return array if table.numpy.get("link_mass") is not None else array.swapaxes(0, 1)
+    return array if name in ("link_unit_axis", "dof_parent") else array.swapaxes(0, 1)
 
 
 def test_fields_belong_to_the_axis_they_are_named_after():
@@ -33,14 +33,13 @@ def test_fields_belong_to_the_axis_they_are_named_after():
 def test_fields_of_an_array_of_structs_are_arrays_of_their_own():
     link = fields_of(Model)["link"]
     assert (link.axis, link.shape) == ("link", ())
-    assert link.scalar["mass"] == np.float64
-    numpy = ArrayTable(Model, None).numpy
-    assert numpy["link_mass"].shape == (16,)
-    assert numpy["link_inertia"].shape == (16, 3)
+    assert link.scalar["joint_rotation"].base == np.float64
+    numpy = ArrayTable(Model).numpy
+    assert numpy["link_joint_type"].shape == (16,)
     assert numpy["link_joint_rotation"].shape == (16, 4)
     assert numpy["link_parent"].dtype == np.int32
-    numpy["link_inertia"][3] = (1.0, 2.0, 3.0)
-    assert numpy["link_inertia"][3].tolist() == [1.0, 2.0, 3.0]
+    numpy["link_unit_axis"][3] = (1.0, 2.0, 3.0)
+    assert numpy["link_unit_axis"][3].tolist() == [1.0, 2.0, 3.0]
     assert ArrayTable(Scratch, 2).numpy["link_rotation"].shape == (2, 16, 3, 3)
 
 
@@ -57,7 +56,7 @@ def test_reserving_what_there_is_changes_nothing(table):
 
 
 def test_growth_is_geometric_and_keeps_what_was_there(table):
-    name = "link_mass" if "link_mass" in table.numpy else "link_pose"
+    name = "link_unit_axis" if "link_unit_axis" in table.numpy else "link_pose"
     view = rows(table, name)
     view[:] = np.arange(16.0).reshape(16, *[1] * (view.ndim - 1))
     assert table.reserve({"link": 17}) is True
@@ -73,7 +72,7 @@ def test_growth_is_geometric_and_keeps_what_was_there(table):
 
 
 def test_adding_rows_one_by_one_replaces_arrays_seldom():
-    table = ArrayTable(Model, None)
+    table = ArrayTable(Model)
     assert sum(table.reserve({"link": count}) for count in range(1, 2000)) == 7
 
 
@@ -82,7 +81,7 @@ def test_adding_rows_one_by_one_replaces_arrays_seldom():
     [(0, 4, 16), (5, 3, 16), (13, 3, 16), (15, 1, 16), (0, 16, 16), (5, 3, 12), (9, 3, 12)],
 )
 def test_deleted_rows_close_up_and_leave_zeros(table, start, count, used):
-    name = "link_mass" if "link_mass" in table.numpy else "link_twist"
+    name = "link_unit_axis" if "link_unit_axis" in table.numpy else "link_twist"
     view = rows(table, name)
     view[:] = np.arange(1.0, 17.0).reshape(16, *[1] * (view.ndim - 1))
     other = rows(table, "dof_parent" if "dof_parent" in table.numpy else "dof_velocity")
@@ -119,6 +118,39 @@ def test_entry_views_show_blocks_column_by_column():
         np.testing.assert_array_equal(entries.numpy(), blocks.reshape(2, -1))
 
 
+def test_all_worlds_share_a_single_row_until_it_is_spread():
+    table = ArrayTable(Model)
+    table.numpy["link_mass"][:, 3] = 2.5
+    shared = table.struct("cpu").link_mass
+    assert shared.strides[0] == 0
+    assert table.spread("link_mass", 4) is True
+    assert table.spread("link_mass", 4) is False
+    own = table.struct("cpu").link_mass
+    assert own.strides[0] == own.shape[1] * 8
+    np.testing.assert_array_equal(table.numpy["link_mass"][:, 3], 2.5)
+    table.reserve({"link": 17})
+    assert table.numpy["link_mass"].shape == (4, 32)
+    assert table.numpy["link_inertia"].shape == (1, 32, 3)
+
+
+def test_growth_that_fails_leaves_everything_as_it_was(monkeypatch):
+    table = ArrayTable(Model)
+    before = dict(table.numpy)
+    allocate, made = ArrayTable._allocate, []
+
+    def run_short(self, name, capacity):
+        made.append(name)
+        if len(made) > 2:
+            raise MemoryError
+        return allocate(self, name, capacity)
+
+    monkeypatch.setattr(ArrayTable, "_allocate", run_short)
+    with pytest.raises(MemoryError):
+        table.reserve({"link": 1000})
+    assert set(table.capacity.values()) == {16}
+    assert all(table.numpy[name] is array for name, array in before.items())
+
+
 def test_clear_sets_everything_to_zero(table):
     for array in table.numpy.values():
         array.fill(3)
@@ -127,8 +159,8 @@ def test_clear_sets_everything_to_zero(table):
 
 
 def test_bytes_of_a_field_follow_it_when_it_is_replaced():
-    table = ArrayTable(Model, None)
-    table.numpy["link_mass"][0] = 2.5
+    table = ArrayTable(Model)
+    table.numpy["link_unit_axis"][0] = 2.5
     before = table.bytes_of("link")
     assert table.bytes_of("link") is before
     table.reserve({"link": 1000})

@@ -23,7 +23,7 @@ SPECS = [
 
 def filled(specs: list[BodySpec]) -> tuple[WorldArrays, list[TreeRows]]:
     arrays = WorldArrays()
-    return arrays, [arrays.append(spec, Pose((float(n), 0.0, 0.0)))[0] for n, spec in enumerate(specs)]
+    return arrays, [arrays.append(spec, Pose((float(n), 0.0, 0.0))) for n, spec in enumerate(specs)]
 
 
 def used_rows(arrays: WorldArrays) -> dict[str, np.ndarray]:
@@ -34,7 +34,8 @@ def used_rows(arrays: WorldArrays) -> dict[str, np.ndarray]:
         for name, array in table.numpy.items():
             axis = name.partition("_")[0]
             if axis in used:
-                content[name] = array[: used[axis]] if table is arrays.model else array[:, : used[axis]]
+                rows = np.s_[:, : used[axis]] if table.is_per_world(name) else np.s_[: used[axis]]
+                content[name] = array[rows]
     return content
 
 
@@ -52,7 +53,7 @@ def test_a_removed_body_leaves_no_trace(removed):
     expected = WorldArrays()
     for n, spec in enumerate(SPECS):
         if n != removed:
-            kept = expected.append(spec, Pose((float(n), 0.0, 0.0)))[0]
+            kept = expected.append(spec, Pose((float(n), 0.0, 0.0)))
             assert rows[n - (n > removed)] == kept
     assert_same_content(arrays, expected)
 
@@ -61,11 +62,11 @@ def test_bodies_added_after_removals_are_as_in_a_fresh_world():
     arrays, rows = filled(SPECS)
     arrays.remove(rows.pop(1), rows)
     arrays.remove(rows.pop(0), rows)
-    late, _ = arrays.append(SPECS[0], IDENTITY)
+    late = arrays.append(SPECS[0], IDENTITY)
     expected = WorldArrays()
     for n in (2, 3):
         expected.append(SPECS[n], Pose((float(n), 0.0, 0.0)))
-    assert late == expected.append(SPECS[0], IDENTITY)[0]
+    assert late == expected.append(SPECS[0], IDENTITY)
     assert_same_content(arrays, expected)
 
 
@@ -82,9 +83,9 @@ def test_arrays_grow_with_their_contents():
     arrays, rows = WorldArrays(), []
     grew = []
     for _ in range(20):
-        body_rows, grown = arrays.append(SPECS[1], IDENTITY)
-        rows.append(body_rows)
-        grew.append(grown)
+        before = arrays.state.replacements
+        rows.append(arrays.append(SPECS[1], IDENTITY))
+        grew.append(arrays.state.replacements > before)
     assert grew[0]
     assert not all(grew)
     assert [row.tree for row in rows] == list(range(20))
@@ -92,7 +93,9 @@ def test_arrays_grow_with_their_contents():
     expected = WorldArrays()
     expected.reserve(**dict.fromkeys(expected.used, 10_000))
     for _ in range(20):
-        assert not expected.append(SPECS[1], IDENTITY)[1]
+        before = expected.state.replacements
+        expected.append(SPECS[1], IDENTITY)
+        assert expected.state.replacements == before
     assert_same_content(arrays, expected)
 
 

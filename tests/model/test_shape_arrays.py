@@ -58,7 +58,7 @@ class Scene:
         self.bodies: list[tuple[BodySpec, TreeRows]] = []
 
     def add(self, spec: BodySpec) -> int:
-        rows, _ = self.arrays.append(spec, IDENTITY)
+        rows = self.arrays.append(spec, IDENTITY)
         self.shapes.append(spec, rows, [LinkDynamics.of(link) for link in (spec.base, *spec.links)])
         self.bodies.append((spec, rows))
         return rows.first["link"]
@@ -71,7 +71,9 @@ class Scene:
     def column(self, name: str) -> np.ndarray:
         axis = name.partition("_")[0]
         count = self.shapes.filter_count if axis == "filter" else self.shapes.used[axis]
-        return self.shapes.table.numpy[name][:count]
+        table = self.shapes.table
+        array = table.numpy[name]
+        return (array[0] if table.is_per_world(name) else array)[:count]
 
 
 SPECS = [
@@ -268,7 +270,7 @@ def test_a_mesh_without_area_is_refused_and_nothing_changes() -> None:
     before = dict(scene.shapes.used)
     sliver = TriangleMesh(np.zeros((3, 3)), np.array([(0, 1, 2)], np.int32))
     spec = body(one(sliver))
-    rows, _ = scene.arrays.append(spec, IDENTITY)
+    rows = scene.arrays.append(spec, IDENTITY)
     with pytest.raises(DescriptionError, match="area"):
         scene.shapes.append(spec, rows, [LinkDynamics.of(spec.base)])
     assert scene.shapes.used == before

@@ -38,9 +38,9 @@ def test_two_runs_give_the_same_bits() -> None:
 def test_contacts_beyond_the_room_there_was_change_nothing(substeps: int) -> None:
     small, roomy = earth(substeps=substeps), earth(substeps=substeps)
     few = heap(small)
-    roomy.touch.pairs.reserve({"pair": 5000})
+    roomy.engine.workspace.pairs.reserve({"pair": 5000})
     roomy.touch.contacts.reserve({"contact": 5000})
-    roomy.touch.couplings.reserve({"coupling": 20000, "jacobian": 40000})
+    roomy.engine.workspace.couplings.reserve({"coupling": 20000, "jacobian": 40000})
     many = heap(roomy)
     room = small.touch.contacts.capacity["contact"]
     for world in (small, roomy):

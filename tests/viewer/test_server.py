@@ -1,6 +1,7 @@
 """What pages are told over their socket, and what they can do."""
 
 import http.client
+import socket
 import threading
 from pathlib import Path
 
@@ -315,3 +316,11 @@ def test_an_address_that_cannot_be_had():
     with pytest.raises(p.error, match=r"^Cannot open the window:"):
         p.connect(p.GUI, options="--host=203.0.113.7")
     assert not p.isConnected()
+
+
+def test_a_request_with_two_names_is_turned_away(viewer: Viewer):
+    host, port = viewer.address.removeprefix("http://").rstrip("/").rsplit(":", 1)
+    with socket.create_connection((host, int(port)), PATIENCE) as peer:
+        name = f"Host: {host}:{port}\r\n"
+        peer.sendall(f"GET / HTTP/1.1\r\n{name}{name}\r\n".encode())
+        assert peer.recv(100).startswith(b"HTTP/1.1 421")

@@ -34,7 +34,7 @@ class BodyChain:
         first_coordinate = np.cumsum([0, *(POSITION_COUNT[code] for code in codes)]).tolist()
         first_dof = np.cumsum([0, *(DOF_COUNT[code] for code in codes)]).tolist()
         moving = [link for link in _ancestors(body, links) if codes[link] != JointCode.FIXED]
-        self.arrays: ArrayTable = ArrayTable(Chain, None)
+        self.arrays: ArrayTable = ArrayTable(Chain)
         self.sizes: Any = ChainSizes()
         self.sizes.joints = len(moving)
         self.sizes.ends = len(links)

@@ -118,7 +118,7 @@ class _Solver:
         self._dofs = int(sizes.dofs)
         self._coordinates = int(sizes.coordinates)
         blocks = 2 * len(links)
-        search = ArrayTable(Search, None)
+        search = ArrayTable(Search)
         search.reserve(
             {
                 "base": BASE_POSITIONS,

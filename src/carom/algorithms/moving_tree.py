@@ -65,7 +65,7 @@ class MovingTree:
         sizes.base_dofs = self.dofs - self.joint_dofs
         first_position = int(BASE_MOTION)
         first_rate = first_position + self.coordinates
-        table = ArrayTable(Tree, None)
+        table = ArrayTable(Tree)
         table.reserve(
             {
                 "node": len(nodes),

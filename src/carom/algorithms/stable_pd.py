@@ -81,7 +81,7 @@ class _Controller:
         self._body = body
         tree = MovingTree(extended_nodes(body, as_pybullet=not body.fixed_base), free=True)
         self._tree = tree
-        control = ArrayTable(Control, None)
+        control = ArrayTable(Control)
         control.reserve({"coordinate": tree.coordinates, "dof": tree.dofs, "entry": tree.dofs**2})
         arrays = control.numpy
         self._target = numbers_of(arrays["coordinate_target"])

@@ -6,7 +6,7 @@ from carom.collision.extremes import greater, greatest_entry, upper_corner
 from carom.model.codes import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, Matrix3, Vector3, func, real
-from carom.model.structs import Model, Settings, State
+from carom.model.structs import Model, Scratch, Settings, State
 
 # Half the size of what has no bounds; its square still is an ordinary number.
 UNBOUNDED = real(1.0e18)
@@ -79,18 +79,26 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
 
 @func
 def look_ahead(
-    shapes: Shapes, model: Model, settings: Settings, state: State, pairs: Pairs, world: Int32, shape: Int32
+    shapes: Shapes,
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    shape: Int32,
 ) -> real:
-    """How far ahead of a shape continuous collision detection looks, before the shape is placed anew [m].
+    """How far ahead of a shape continuous collision detection looks [m].
 
-    As far as it moved since it was placed last, or as its base moves in a step, if that is more than
-    half its swept sphere's radius: slower ones are caught in time without.
+    As far as it moved in the last substep, from `Scratch.link_pose` on, or as its base moves in the next
+    one, if that is more than half its swept sphere's radius: slower ones are caught in time without.
     """
     radius = shapes.shape_ccd_radius[shape]
     if radius <= 0.0:
         return 0.0
-    pose = state.link_pose[world, shapes.shape_link[shape]] * shapes.shape_pose[shape]
-    motion = wp.length(wp.transform_get_translation(pose) - pairs.shape_position[world, shape])
+    link = shapes.shape_link[shape]
+    now = wp.transform_get_translation(state.link_pose[world, link] * shapes.shape_pose[shape])
+    before = wp.transform_get_translation(scratch.link_pose[world, link] * shapes.shape_pose[shape])
+    motion = wp.length(now - before)
     first = model.tree[shapes.shape_tree[shape]].first_velocity
     velocity = Vector3(
         state.dof_velocity[world, first + 3],

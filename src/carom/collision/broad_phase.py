@@ -23,7 +23,7 @@ from carom.collision.hierarchy import (
 from carom.collision.reach import bounds_reach
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Index4, Int32, func, real
-from carom.model.structs import Model, Settings, State
+from carom.model.structs import Model, Scratch, Settings, State
 
 
 @func
@@ -155,11 +155,25 @@ def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
 
 
 @func
-def find_pairs(shapes: Shapes, model: Model, state: State, settings: Settings, pairs: Pairs, world: Int32):
+def find_pairs(
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+):
     """Sorted pairs of shapes whose bounds meet and that may touch, from the link poses."""
     for shape in range(settings.shape_count):
-        pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, pairs, world, shape)
+        pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
     place_shapes(shapes, state, settings, pairs, world)
+    find_pairs_of_placed(shapes, model, settings, pairs, world)
+
+
+@func
+def find_pairs_of_placed(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
+    """As `find_pairs`, once all shapes have been placed."""
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, READINESS] = STALE
     pairs.count_pairs[world, PAIRS] = 0

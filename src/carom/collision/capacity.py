@@ -26,6 +26,6 @@ def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
         "candidate": CANDIDATES,
         "polygon": CORNERS,
         "polytope": 2 * MOST_CORNERS,
-        "previous": contact_capacity,
+        "previous": 2 * contact_capacity,
         "count": COLUMNS,
     }

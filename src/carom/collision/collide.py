@@ -5,14 +5,15 @@ import warp as wp
 from carom.collision.broad_phase import find_pairs
 from carom.collision.gathering import AT_ONCE, find_new_point, gather
 from carom.collision.hierarchy import PAIRS
-from carom.collision.manifold import REPEATED, THERE, WANTED, keep_previous, skip_contacts, write_new_contact
+from carom.collision.manifold import THERE, keep_previous, skip_contacts, write_new_contact
 from carom.collision.narrow_phase import touch
-from carom.collision.reach import breaking_distance, contact_reach
+from carom.collision.reach import breaking_distance, contact_reach, region_reach
 from carom.collision.sides import in_order_of_sides
 from carom.model.codes import ASLEEP
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Index4, Int32, func, kernel, real
-from carom.model.structs import Model, Settings, State
+from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
+from carom.model.structs import Model, Scratch, Settings, State
 
 # A point that is as near as this to where it was has not been moved [m].
 UNMOVED = real(1.0e-9)
@@ -56,7 +57,7 @@ def can_stay(
     They are if both shapes are at rest and nobody has moved them. The next row to write being theirs,
     they have not been overwritten.
     """
-    if wanted != first or contacts.count_contacts[world, REPEATED] != 0:
+    if wanted != first:
         return False
     if not (
         is_at_rest(shapes, model, state, world, pair[0]) and is_at_rest(shapes, model, state, world, pair[1])
@@ -76,50 +77,116 @@ def make_contacts(
     contacts: Contacts,
     pairs: Pairs,
     world: Int32,
-    previous_count: Int32,
+    kept: Int32,
 ) -> Int32:
-    """Contacts of all pairs; returns how many there are, those beyond the capacity included."""
-    room = contacts.contact_shapes.shape[1]
+    """Contacts of all pairs; returns how many there are, those beyond the capacity included.
+
+    The first of the previous contacts is at `kept`.
+    """
+    end = kept + contacts.count_contacts[world, THERE]
     wanted = Int32(0)
-    first = Int32(0)
+    first = kept + 0
     for i in range(pairs.count_pairs[world, PAIRS]):
         pair = pairs.pair_shapes[world, i]
-        first = skip_contacts(pairs, world, first, previous_count, pair, 0)
-        last = skip_contacts(pairs, world, first, previous_count, pair, 1)
-        if can_stay(shapes, model, state, contacts, world, pair, wanted, first, last):
+        first = skip_contacts(pairs, world, first, end, pair, 0)
+        last = skip_contacts(pairs, world, first, end, pair, 1)
+        if can_stay(shapes, model, state, contacts, world, pair, wanted, first - kept, last - kept):
             wanted += last - first
             first = last
             continue
-        reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
-        sides = in_order_of_sides(shapes, pair)
-        far = breaking_distance(shapes, pair[0], pair[1])
-        found = find_new_point(shapes, pairs, world, sides, reach, first, last)
-        if found != AT_ONCE:
-            wanted = gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
-        else:
-            for candidate in range(touch(shapes, pairs, world, sides[0], sides[1], reach)):
-                if wanted < room:
-                    write_new_contact(
-                        shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
-                    )
-                wanted += 1
+        found, count = find_candidates(shapes, pairs, world, pair, first, last)
+        wanted = add_manifold(shapes, state, contacts, pairs, world, pair, found, count, first, last, wanted)
         first = last
     return wanted
 
 
 @func
+def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, first: Int32, last: Int32):
+    """Write the candidates of a pair, whose contacts of the last substep are [first, last).
+
+    Returns:
+        What `find_new_point` returned; the number of candidates if that is `AT_ONCE`, else 0.
+    """
+    reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+    sides = in_order_of_sides(shapes, pair)
+    found = find_new_point(shapes, pairs, world, sides, reach, first, last)
+    count = Int32(0)
+    if found == AT_ONCE:
+        around = region_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+        count = touch(shapes, pairs, world, sides[0], sides[1], reach, around)
+    return found, count
+
+
+@func
+def add_manifold(
+    shapes: Shapes,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+    pair: Index4,
+    found: Int32,
+    count: Int32,
+    first: Int32,
+    last: Int32,
+    wanted: Int32,
+) -> Int32:
+    """Write the contacts that come of the candidates of a pair; those beyond the capacity are counted only.
+
+    Args:
+        shapes: All shapes.
+        state: Poses of the links.
+        contacts: Where they go.
+        pairs: Candidates and previous contacts.
+        world: The world.
+        pair: The pair.
+        found: What `find_candidates` returned.
+        count: As well.
+        first: First previous contact of the pair.
+        last: End of these.
+        wanted: Number of contacts of the pairs before.
+
+    Returns:
+        Number of contacts, these included.
+    """
+    sides = in_order_of_sides(shapes, pair)
+    far = breaking_distance(shapes, pair[0], pair[1])
+    if found != AT_ONCE:
+        return gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
+    for candidate in range(count):
+        if wanted < contacts.contact_shapes.shape[1]:
+            write_new_contact(
+                shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
+            )
+        wanted += 1
+    return wanted
+
+
+@func
+def report_overflow(state: State, world: Int32, pairs_wanted: Int32, contacts_wanted: Int32):
+    """Note that pairs or contacts did not fit, and how many there would have been."""
+    state.status_entry[world, STATUS] = OVERFLOW
+    state.status_entry[world, PAIRS_WANTED] = pairs_wanted
+    state.status_entry[world, CONTACTS_WANTED] = contacts_wanted
+
+
+@func
 def find_contacts(shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32):
-    """Contacts of all pairs, if the pairs did fit; those that persist keep their impulses."""
-    if pairs.count_pairs[world, PAIRS] <= pairs.pair_shapes.shape[1]:
-        previous_count = keep_previous(contacts, pairs, world)
-        wanted = make_contacts(shapes, model, state, contacts, pairs, world, previous_count)
-        contacts.count_contacts[world, WANTED] = wanted
-        if wanted <= contacts.contact_shapes.shape[1]:
-            contacts.count_contacts[world, THERE] = wanted
-            contacts.count_contacts[world, REPEATED] = 0
-        else:
-            contacts.count_contacts[world, THERE] = 0
-            contacts.count_contacts[world, REPEATED] = 1
+    """Contacts of all pairs, if all of them fit; those that persist keep their impulses."""
+    if pairs.count_pairs[world, PAIRS] > pairs.pair_shapes.shape[1]:
+        report_overflow(state, world, pairs.count_pairs[world, PAIRS], 0)
+        return
+    kept = keep_previous(contacts, pairs, world)
+    accept_contacts(state, contacts, world, make_contacts(shapes, model, state, contacts, pairs, world, kept))
+
+
+@func
+def accept_contacts(state: State, contacts: Contacts, world: Int32, wanted: Int32):
+    """Let the contacts that have been written be there, if all of them did fit."""
+    if wanted > contacts.contact_shapes.shape[1]:
+        report_overflow(state, world, 0, wanted)
+        return
+    contacts.count_contacts[world, THERE] = wanted
 
 
 @func
@@ -127,6 +194,7 @@ def collide(
     shapes: Shapes,
     model: Model,
     state: State,
+    scratch: Scratch,
     contacts: Contacts,
     pairs: Pairs,
     settings: Settings,
@@ -134,25 +202,23 @@ def collide(
 ):
     """Find all contacts for the present `State.link_pose`; those that persist keep their impulses.
 
-    If pairs or contacts do not fit (see `overflowed`), it has to be repeated with more room before anything
-    else is done with the contacts.
+    If pairs or contacts do not fit, `State.status_entry` says so: it has to be repeated with more room,
+    from the contacts that there were, before anything else is done with them.
     """
-    find_pairs(shapes, model, state, settings, pairs, world)
+    find_pairs(shapes, model, state, scratch, settings, pairs, world)
     find_contacts(shapes, model, state, contacts, pairs, world)
-
-
-@func
-def overflowed(contacts: Contacts, pairs: Pairs, world: Int32) -> bool:
-    """Whether the last collision of a world needs more room for pairs or contacts."""
-    return (
-        pairs.count_pairs[world, PAIRS] > pairs.pair_shapes.shape[1]
-        or contacts.count_contacts[world, WANTED] > contacts.contact_shapes.shape[1]
-    )
 
 
 @kernel
 def collide_kernel(
-    settings: Settings, shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    contacts: Contacts,
+    pairs: Pairs,
+    first_world: Int32,
 ):
-    """Collision detection of each world, without a step."""
-    collide(shapes, model, state, contacts, pairs, settings, wp.tid())
+    """Collision detection of each world."""
+    collide(shapes, model, state, scratch, contacts, pairs, settings, first_world + wp.tid())

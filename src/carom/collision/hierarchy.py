@@ -20,8 +20,10 @@ LEAF_SIZE = 4
 # As few shapes as this are not worth sorting: they make one leaf.
 ONE_LEAF = 32
 # Columns of `Pairs.count_pairs`.
-PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH = 0, 1, 2, 3, 4, 5
-COLUMNS = 6
+PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH, START_CONTACTS = 0, 1, 2, 3, 4, 5, 6
+COLUMNS = 7
+# What START_CONTACTS is, the number of contacts at the start of a step, before they have been put aside.
+NONE_KEPT = -1
 # What READINESS says of shapes between steps: they are where the last step saw them; they have been placed
 # since; and the hierarchy has been built over them.
 STALE, PLACED, IN_HIERARCHY = 0, 1, 2

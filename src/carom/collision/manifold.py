@@ -11,14 +11,13 @@ from carom.collision.candidates import (
     candidate_point,
 )
 from carom.collision.extremes import lesser
+from carom.collision.hierarchy import NONE_KEPT, START_CONTACTS
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import State
 
-# Columns of `Contacts.count_contacts`: contacts there are, contacts the last collision would have made,
-# contacts of the step before that are put aside, and whether they are so for a collision that is to be
-# repeated with more room.
-THERE, WANTED, KEPT, REPEATED = 0, 1, 2, 3
+# Column of `Contacts.count_contacts`: contacts there are.
+THERE = 0
 
 _HALF_ROOT = real(math.sqrt(0.5))
 
@@ -35,48 +34,87 @@ def friction_direction(normal: Vector3) -> Vector3:
 
 @func
 def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
-    """Put aside what new contacts inherit from those of the last step; returns the number of these."""
-    if contacts.count_contacts[world, REPEATED] == 0:
-        contacts.count_contacts[world, KEPT] = contacts.count_contacts[world, THERE]
-        for row in range(contacts.count_contacts[world, THERE]):
-            pairs.previous_shapes[world, row] = contacts.contact_shapes[world, row]
-            pairs.previous_normal[world, row] = contacts.contact_normal[world, row]
-            pairs.previous_distance[world, row] = contacts.contact_distance[world, row]
-            pairs.previous_local_a[world, row] = contacts.contact_local_a[world, row]
-            pairs.previous_local_b[world, row] = contacts.contact_local_b[world, row]
-            pairs.previous_anchor_a[world, row] = contacts.contact_anchor_a[world, row]
-            pairs.previous_anchor_b[world, row] = contacts.contact_anchor_b[world, row]
-            pairs.previous_impulse[world, row] = contacts.contact_impulse[world, row]
-    count = contacts.count_contacts[world, KEPT]
+    """Put aside the contacts of the last substep, for new ones to inherit from.
+
+    Those at the start of a step stay there until it ends, to be restored if it is abandoned.
+
+    Returns:
+        Where the first of them is put.
+    """
+    count = contacts.count_contacts[world, THERE]
+    first = Int32(0)
+    if pairs.count_pairs[world, START_CONTACTS] == NONE_KEPT:
+        pairs.count_pairs[world, START_CONTACTS] = count
+    else:
+        first = contacts.contact_shapes.shape[1]
     for row in range(count):
-        pairs.previous_taken[world, row] = 0
-    return count
+        kept = first + row
+        pairs.previous_shapes[world, kept] = contacts.contact_shapes[world, row]
+        pairs.previous_normal[world, kept] = contacts.contact_normal[world, row]
+        pairs.previous_direction1[world, kept] = contacts.contact_direction1[world, row]
+        pairs.previous_direction2[world, kept] = contacts.contact_direction2[world, row]
+        pairs.previous_distance[world, kept] = contacts.contact_distance[world, row]
+        pairs.previous_local_a[world, kept] = contacts.contact_local_a[world, row]
+        pairs.previous_local_b[world, kept] = contacts.contact_local_b[world, row]
+        pairs.previous_point_a[world, kept] = contacts.contact_point_a[world, row]
+        pairs.previous_point_b[world, kept] = contacts.contact_point_b[world, row]
+        pairs.previous_anchor_a[world, kept] = contacts.contact_anchor_a[world, row]
+        pairs.previous_anchor_b[world, kept] = contacts.contact_anchor_b[world, row]
+        pairs.previous_impulse[world, kept] = contacts.contact_impulse[world, row]
+        pairs.previous_taken[world, kept] = 0
+    return first
 
 
 @func
-def skip_contacts(
-    pairs: Pairs, world: Int32, first: Int32, count: Int32, pair: Index4, equal: Int32
-) -> Int32:
-    """The first of `count` sorted previous contacts, from `first` on, that comes after what is skipped.
+def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
+    """Put back the contacts at the start of a step, if they have been put aside."""
+    count = pairs.count_pairs[world, START_CONTACTS]
+    if count == NONE_KEPT:
+        return
+    for row in range(count):
+        contacts.contact_shapes[world, row] = pairs.previous_shapes[world, row]
+        contacts.contact_normal[world, row] = pairs.previous_normal[world, row]
+        contacts.contact_direction1[world, row] = pairs.previous_direction1[world, row]
+        contacts.contact_direction2[world, row] = pairs.previous_direction2[world, row]
+        contacts.contact_distance[world, row] = pairs.previous_distance[world, row]
+        contacts.contact_local_a[world, row] = pairs.previous_local_a[world, row]
+        contacts.contact_local_b[world, row] = pairs.previous_local_b[world, row]
+        contacts.contact_point_a[world, row] = pairs.previous_point_a[world, row]
+        contacts.contact_point_b[world, row] = pairs.previous_point_b[world, row]
+        contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, row]
+        contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, row]
+        contacts.contact_impulse[world, row] = pairs.previous_impulse[world, row]
+    contacts.count_contacts[world, THERE] = count
+
+
+@func
+def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index4, equal: Int32) -> Int32:
+    """The first of sorted previous contacts [first, end) that comes after what is skipped.
 
     Args:
         pairs: Holds the previous contacts.
         world: The world.
         first: Where to start.
-        count: Number of previous contacts.
+        end: End of the previous contacts.
         pair: A pair of shapes.
         equal: 1 to skip the contacts of this pair as well as those of pairs before it, 0 not to.
     """
     row = first
-    skipping = row < count
+    skipping = row < end
     while skipping:
-        shapes = pairs.previous_shapes[world, row]
-        lower = wp.min(shapes[0], shapes[1])
-        skipping = lower < pair[0] or (lower == pair[0] and wp.max(shapes[0], shapes[1]) < pair[1] + equal)
+        skipping = comes_before(pairs, world, row, pair, equal)
         if skipping:
             row += 1
-            skipping = row < count
+            skipping = row < end
     return row
+
+
+@func
+def comes_before(pairs: Pairs, world: Int32, row: Int32, pair: Index4, equal: Int32) -> bool:
+    """Whether a previous contact is one of those that `skip_contacts` skips."""
+    shapes = pairs.previous_shapes[world, row]
+    lower = wp.min(shapes[0], shapes[1])
+    return lower < pair[0] or (lower == pair[0] and wp.max(shapes[0], shapes[1]) < pair[1] + equal)
 
 
 @func

@@ -224,6 +224,7 @@ def cast_packet(
     fractions = limit
     remaining = hit_number
     while remaining >= 0:
+        found = Int32(0)
         for ray in range(packet.first, packet.end):
             rays.ray_last_shape[ray] = rays.ray_shape[ray]
             rays.ray_last_fraction[ray] = rays.ray_fraction[ray]
@@ -234,7 +235,10 @@ def cast_packet(
             rays.ray_fraction[ray] = lane_of(fractions, lane)
             if rays.ray_shape[ray] < 0:
                 looking = with_lane(looking, lane, NOWHERE)
-        remaining -= 1
+            else:
+                found = Int32(1)
+        # Behind the last hit there are no others, however many are asked for.
+        remaining = wp.where(found == 1, remaining - 1, Int32(-1))
 
 
 @func
@@ -255,9 +259,9 @@ def tell_hit(shapes: Shapes, places: Places, rays: Rays, ray: Int32):
 
 
 @kernel
-def prepare_rays_kernel(settings: Settings, shapes: Shapes, state: State, pairs: Pairs):
+def prepare_rays_kernel(settings: Settings, shapes: Shapes, state: State, pairs: Pairs, first_world: Int32):
     """Poses, bounds and hierarchy of all shapes, for rays and other queries between steps."""
-    world = wp.tid()
+    world = first_world + wp.tid()
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, READINESS] = IN_HIERARCHY
@@ -269,29 +273,33 @@ def rays_kernel(
     pairs: Pairs,
     places: Places,
     rays: Rays,
-    world: Int32,
+    first_world: Int32,
     count: Int32,
     threads: Int32,
     mask: Int32,
     hit_number: Int32,
     separation: real,
 ):
-    """Cast rays; `prepare_rays_kernel` must have run.
+    """Cast the rays of a world, which come after those of the worlds before it.
+
+    `prepare_rays_kernel` must have run for that world.
 
     Args:
         shapes: All shapes.
         pairs: Poses and hierarchy.
         places: What links are reported as.
         rays: The rays, and room for what they hit.
-        world: The world they are in.
-        count: How many there are.
+        first_world: The world they are in.
+        count: How many there are in each world.
         threads: How many threads share them.
         mask: Groups of links that are hit.
         hit_number: 0 for the first hit, n for the n-th after it, in the order along the ray.
         separation: Later hits on the same link less than this fraction after one are passed over.
     """
-    for first in range(LANES * wp.tid(), count, LANES * threads):
-        packet, limit = packet_of(rays, first, count)
+    world = first_world
+    start = world * count
+    for first in range(start + LANES * wp.tid(), start + count, LANES * threads):
+        packet, limit = packet_of(rays, first, start + count)
         cast_packet(shapes, pairs, world, rays, packet, limit, mask, hit_number, separation)
         for ray in range(packet.first, packet.end):
             tell_hit(shapes, places, rays, ray)

@@ -3,6 +3,9 @@
 An `ArrayTable` owns one NumPy array per field. Arrays of the same axis (links, coordinates...)
 grow together and geometrically, so that adding bodies one by one costs linear time; a Warp struct
 is filled with views of the same memory.
+
+Fields whose arrays have two dimensions have a world axis in front. Where there is one row on it, all
+worlds share that: kernels see it at a stride of zero.
 """
 
 from __future__ import annotations
@@ -15,7 +18,10 @@ from typing import Any, cast
 import numpy as np
 import warp as wp
 
+from carom.model.zeros import zeros
+
 _FIRST_CAPACITY = 16
+_KEPT = "_carom_memory"
 
 
 def numbers_of(numbers: np.ndarray) -> memoryview[float]:
@@ -29,12 +35,14 @@ class Field:
 
     Attributes:
         axis: Name of the axis its rows belong to.
+        per_world: Whether there is a world axis in front of it.
         dtype: Warp type of one entry.
         shape: Shape of one entry; () for a scalar or a struct.
         scalar: NumPy type of the scalars, or of the struct.
     """
 
     axis: str
+    per_world: bool
     dtype: Any
     shape: tuple[int, ...]
     scalar: np.dtype[Any]
@@ -51,27 +59,28 @@ def fields_of(struct: Any) -> Mapping[str, Field]:
         else:
             shape = tuple(getattr(dtype, "_shape_", ()))
             scalar = np.dtype(wp.dtype_to_numpy(getattr(dtype, "_wp_scalar_type_", dtype)))
-        fields[name] = Field(name.partition("_")[0], dtype, shape, scalar)
+        fields[name] = Field(name.partition("_")[0], annotation.ndim == 2, dtype, shape, scalar)
     return fields
 
 
 class ArrayTable:
-    """Arrays by name, grouped by axis, with an optional leading world axis.
+    """Arrays by name, grouped by axis, those of two dimensions with a leading world axis.
 
     Attributes:
         numpy: The arrays by the names of their fields. An array of structs is there as one array for
             each of their fields, named after both: `link_mass` is the field `mass` of `link`.
         capacity: Rows there are, by axis.
+        replacements: How often an array has been replaced by another.
     """
 
     def __init__(
-        self, struct: Any, world_count: int | None, entry_views: Mapping[str, str] | None = None
+        self, struct: Any, world_count: int = 1, entry_views: Mapping[str, str] | None = None
     ) -> None:
         """Make the arrays with the least capacity.
 
         Args:
             struct: Warp struct class whose fields are all arrays.
-            world_count: Length of the leading world axis; None for arrays shared by all worlds.
+            world_count: Length of the world axis.
             entry_views: Fields that show the vectors of another field scalar by scalar.
         """
         self._struct = struct
@@ -79,30 +88,37 @@ class ArrayTable:
         self._fields = {
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
-        self._world_count = world_count
+        self._world_counts = dict.fromkeys(self._fields, world_count)
         self.capacity: dict[str, int] = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
+        self.replacements: int = 0
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         self._made: dict[str, Any] = {}
         self._bytes: dict[str, memoryview[int]] = {}
         for name in self._fields:
-            self._replace(name, self._allocate(name))
+            self._replace(name, self._allocate(name, _FIRST_CAPACITY))
 
-    def _allocate(self, name: str) -> np.ndarray:
+    def _allocate(self, name: str, capacity: int) -> np.ndarray:
         field = self._fields[name]
-        shape: tuple[int, ...] = (self.capacity[field.axis],)
-        if self._world_count is not None:
-            shape = (self._world_count, *shape)
-        return np.zeros((*shape, *field.shape), dtype=field.scalar)
+        shape: tuple[int, ...] = (capacity,)
+        if field.per_world:
+            shape = (self._world_counts[name], *shape)
+        return zeros((*shape, *field.shape), field.scalar)
 
     def _replace(self, name: str, array: np.ndarray) -> None:
         self._memory[name] = array
+        self.replacements += 1
         self._made.clear()
         self._bytes.pop(name, None)
         if array.dtype.names is None:
             self.numpy[name] = array
         for part in array.dtype.names or ():
             self.numpy[f"{name}_{part}"] = array[part]
+
+    def is_per_world(self, name: str) -> bool:
+        """Whether the array of that name in `numpy` has a world axis."""
+        field = self._fields.get(name) or self._fields[name.partition("_")[0]]
+        return field.per_world
 
     def bytes_of(self, name: str) -> memoryview[int]:
         """The memory of a field, for reading a few rows at less cost than NumPy has for one."""
@@ -112,24 +128,86 @@ class ArrayTable:
             memory = self._bytes[name] = memoryview(array).cast("B")
         return memory
 
-    def reserve(self, needed: Mapping[str, int]) -> bool:
-        """Make room for `needed` rows on each axis; true if arrays were replaced."""
-        grown = set()
-        for axis, count in needed.items():
-            if axis not in self.capacity or count <= self.capacity[axis]:
-                continue
-            self.capacity[axis] = max(count, 2 * self.capacity[axis])
-            grown.add(axis)
+    def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
+        """Make room for `needed` rows on each axis; true if arrays were replaced.
+
+        Args:
+            needed: Rows by axis.
+            growth: An axis that grows becomes at least so many times as long.
+        """
+        grown = {
+            axis: max(count, int(growth * self.capacity[axis]))
+            for axis, count in needed.items()
+            if axis in self.capacity and count > self.capacity[axis]
+        }
+        if not grown:
+            return False
+        # All of them are there before the first is put in place: memory may be short, or the user in a hurry.
+        longer = {
+            name: self._lengthened(name, grown[field.axis])
+            for name, field in self._fields.items()
+            if field.axis in grown
+        }
+        for name, array in longer.items():
+            self._replace(name, array)
+        self.capacity.update(grown)
+        return True
+
+    def _lengthened(self, name: str, capacity: int) -> np.ndarray:
+        """A longer array with the rows of one there is."""
+        old = self._memory[name]
+        new = self._allocate(name, capacity)
+        if self._fields[name].per_world:
+            new[:, : old.shape[1]] = old
+        else:
+            new[: len(old)] = old
+        return new
+
+    def spread(self, name: str, world_count: int) -> bool:
+        """Give each world rows of its own of a field that all have shared; true if they had not."""
+        if self._world_counts[name] == world_count:
+            return False
+        self._world_counts[name] = world_count
+        self._replace(name, np.repeat(self._memory[name], world_count, axis=0))
+        return True
+
+    def copy(self, world_count: int | None = None, rows: Mapping[str, int] | None = None) -> ArrayTable:
+        """A table with the same content.
+
+        Args:
+            world_count: Give each of so many worlds rows of its own, all like those of the first; None for
+                worlds as they are.
+            rows: Of these axes, keep so many rows and no room for more.
+        """
+        rows = rows or {}
+        other = ArrayTable.__new__(ArrayTable)
+        other.__dict__.update(self.__dict__)
+        other.numpy, other._memory, other._made, other._bytes = {}, {}, {}, {}
+        other._world_counts = self._world_counts.copy()
+        other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
         for name, field in self._fields.items():
-            if field.axis in grown:
-                old = self._memory[name]
-                new = self._allocate(name)
-                if self._world_count is None:
-                    new[: len(old)] = old
-                else:
-                    new[:, : old.shape[1]] = old
-                self._replace(name, new)
-        return bool(grown)
+            array, count = self._memory[name], other.capacity[field.axis]
+            if field.per_world:
+                other._world_counts[name] = world_count or len(array)
+                array = array[:, :count]
+                array = array.copy() if world_count is None else _repeated(array[0], world_count)
+            else:
+                array = array[:count].copy()
+            other._replace(name, array)
+        return other
+
+    def bytes_per_world(self, rows: Mapping[str, int] | None = None) -> int:
+        """Memory that each world takes with so many rows on some axes [bytes]."""
+        rows = rows or {}
+        return sum(
+            rows.get(field.axis, self.capacity[field.axis]) * self._memory[name][0, :1].nbytes
+            for name, field in self._fields.items()
+            if field.per_world
+        )
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> ArrayTable:
+        memo[id(self)] = other = self.copy()
+        return other
 
     def delete(self, axis: str, start: int, count: int, used: int) -> None:
         """Remove `count` of the `used` rows of an axis; later ones move up and the freed ones are zero."""
@@ -137,7 +215,7 @@ class ArrayTable:
         for name, field in self._fields.items():
             if field.axis == axis:
                 array = self._memory[name]
-                rows = array if self._world_count is None else array.swapaxes(0, 1)
+                rows = array.swapaxes(0, 1) if field.per_world else array
                 if after < used:
                     rows[start : used - count] = rows[after:used]
                 rows[used - count : used].fill(0)
@@ -151,15 +229,35 @@ class ArrayTable:
     def _make_struct(self, device: str) -> Any:
         struct = self._struct()
         for name, field in self._fields.items():
-            setattr(struct, name, wp.array(self._memory[name], dtype=field.dtype, device=device, copy=False))
+            setattr(struct, name, _shown(self._memory[name], field, device))
         for name, source in self._entry_views.items():
             array = self._memory[source]
             entries = array.reshape(*array.shape[:-2], -1)
-            dtype = fields_of(self._struct)[name].dtype
-            setattr(struct, name, wp.array(entries, dtype=dtype, device=device, copy=False))
+            setattr(struct, name, _shown(entries, fields_of(self._struct)[name], device))
         return struct
 
     def clear(self) -> None:
         """Set every entry to zero."""
         for array in self.numpy.values():
             array.fill(0)
+
+
+def _repeated(rows: np.ndarray, count: int) -> np.ndarray:
+    """The same rows so many times. Memory that holds nothing but zeros is not touched, and takes no room."""
+    array = zeros((count, *rows.shape), rows.dtype)
+    if rows.dtype.names is not None or rows.any():
+        array[:] = rows
+    return array
+
+
+def _shown(memory: np.ndarray, field: Field, device: str) -> Any:
+    """A Warp array over memory; where there is one row on the world axis every world is shown it."""
+    if not field.per_world or len(memory) > 1:
+        return wp.array(memory, dtype=field.dtype, device=device, copy=False)
+    rows, size = memory.shape[1], memory.strides[1]
+    shared = wp.array(
+        ptr=memory.ctypes.data, dtype=field.dtype, shape=(1, rows), strides=(0, size), device=device
+    )
+    # It does not keep the memory alive by itself.
+    setattr(shared, _KEPT, memory)
+    return shared

@@ -27,7 +27,7 @@ from carom.model.codes import (
     JointCode,
 )
 from carom.model.flags import LoadFlags
-from carom.model.structs import ENTRY_VIEWS, Model, Scratch, State
+from carom.model.structs import Model, State
 
 # Bullet's default, a float32 in its source.
 DEFAULT_LINK_DAMPING = float(np.float32(0.04))
@@ -68,25 +68,33 @@ class WorldArrays:
 
     def __init__(self, world_count: int = 1) -> None:
         self.world_count = world_count
-        self.model: ArrayTable = ArrayTable(Model, None)
+        self.model: ArrayTable = ArrayTable(Model)
         self.state: ArrayTable = ArrayTable(State, world_count)
-        self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.used: dict[str, int] = dict.fromkeys(
             ("tree", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
         )
 
+    def repeated(self, world_count: int) -> WorldArrays:
+        """The arrays of so many worlds, all like the first; they share its parameters."""
+        other = WorldArrays.__new__(WorldArrays)
+        other.world_count = world_count
+        other.used = self.used.copy()
+        other.model = self.model.copy()
+        other.state = self.state.copy(world_count, self.used)
+        return other
+
     @property
-    def tables(self) -> tuple[ArrayTable, ArrayTable, ArrayTable]:
-        """Model, state and scratch."""
-        return self.model, self.state, self.scratch
+    def tables(self) -> tuple[ArrayTable, ArrayTable]:
+        """Model and state."""
+        return self.model, self.state
 
-    def reserve(self, **more: int) -> bool:
-        """Make room for more rows on the named axes; true if arrays were replaced."""
+    def reserve(self, **more: int) -> None:
+        """Make room for more rows on the named axes."""
         needed = {axis: self.used[axis] + count for axis, count in more.items()}
-        grown = [table.reserve(needed) for table in self.tables]
-        return any(grown)
+        for table in self.tables:
+            table.reserve(needed)
 
-    def append(self, spec: BodySpec, base_pose: Pose) -> tuple[TreeRows, bool]:
+    def append(self, spec: BodySpec, base_pose: Pose) -> TreeRows:
         """Add a body at rest, its joints at zero.
 
         Args:
@@ -94,7 +102,7 @@ class WorldArrays:
             base_pose: World pose of the base's inertial frame.
 
         Returns:
-            Where it is, and whether arrays were replaced.
+            Where it is.
         """
         codes = [JOINT_CODE[link.joint_type] for link in spec.links]
         joint_dofs = sum(DOF_COUNT[code] for code in codes)
@@ -109,7 +117,7 @@ class WorldArrays:
             "block": dofs * blocks,
             "delta": blocks,
         }
-        grown = self.reserve(**count)
+        self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
         self._write_tree(rows, spec.flags)
         self._write_links(rows, spec, codes)
@@ -117,7 +125,7 @@ class WorldArrays:
         self._write_start(rows, base_pose)
         for axis, number in count.items():
             self.used[axis] += number
-        return rows, grown
+        return rows
 
     def _write_tree(self, rows: TreeRows, flags: int) -> None:
         model = self.model.numpy
@@ -132,9 +140,9 @@ class WorldArrays:
         model["tree_sensor_count"][tree] = 0
         model["tree_constraint_count"][tree] = 0
         model["tree_batch"][tree] = tree
-        model["tree_linear_damping"][tree] = DEFAULT_LINK_DAMPING
-        model["tree_angular_damping"][tree] = DEFAULT_LINK_DAMPING
-        model["tree_max_velocity"][tree] = DEFAULT_MAX_VELOCITY
+        model["tree_linear_damping"][:, tree] = DEFAULT_LINK_DAMPING
+        model["tree_angular_damping"][:, tree] = DEFAULT_LINK_DAMPING
+        model["tree_max_velocity"][:, tree] = DEFAULT_MAX_VELOCITY
         model["tree_can_sleep"][tree] = bool(flags & LoadFlags.ENABLE_SLEEPING)
         model["tree_can_wake"][tree] = True
         model["tree_sleep_threshold"][tree] = DEFAULT_SLEEP_THRESHOLD
@@ -146,7 +154,7 @@ class WorldArrays:
         model["link_joint_type"][first_link] = JointCode.FIXED
         model["link_first_position"][first_link] = rows.first["position"]
         model["link_first_dof"][first_link] = first_dof
-        model["dof_damping"][first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        model["dof_damping"][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
 
         last_dof = {BASE: -1}
@@ -165,7 +173,7 @@ class WorldArrays:
             last_dof[j] = last_dof[link.parent]
             for _ in range(DOF_COUNT[code]):
                 model["dof_parent"][dof] = last_dof[j]
-                model["dof_damping"][dof] = link.damping
+                model["dof_damping"][:, dof] = link.damping
                 last_dof[j] = dof
                 self._reset_motor(dof, code)
                 dof += 1
@@ -203,8 +211,8 @@ class WorldArrays:
 
     def write_inertia(self, row: int, mass: float, inertia: Vector3) -> None:
         """Set a link's mass [kg] and principal moments [kg m²]."""
-        self.model.numpy["link_mass"][row] = mass
-        self.model.numpy["link_inertia"][row] = inertia
+        self.model.numpy["link_mass"][:, row] = mass
+        self.model.numpy["link_inertia"][:, row] = inertia
 
     def _write_joint(self, row: int, link: LinkSpec, parent: LinkSpec, code: JointCode) -> None:
         model = self.model.numpy
@@ -276,9 +284,9 @@ class WorldArrays:
         for other in others:
             other.tree = other.first["tree"]
 
-    def structs(self, device: str) -> tuple[Any, Any, Any]:
-        """Warp structs of model, state and scratch over the present arrays."""
-        return self.model.struct(device), self.state.struct(device), self.scratch.struct(device)
+    def structs(self, device: str) -> dict[str, Any]:
+        """Warp structs over the present arrays, by the name kernels give them."""
+        return {"model": self.model.struct(device), "state": self.state.struct(device)}
 
 
 def _difference(a: Vector3, b: Vector3) -> Vector3:

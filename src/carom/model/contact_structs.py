@@ -27,7 +27,6 @@ from carom.model.real import (
     Vector3Rows,
     Vector4,
     Vector4Rows,
-    Vector6Rows,
     Vector8,
     Vector8Rows,
     Vectors3,
@@ -38,7 +37,10 @@ from carom.model.real import (
 
 @wp.struct
 class Shapes:
-    """Geometry and surface of everything that touches; shared by all worlds."""
+    """Geometry and surface of everything that touches.
+
+    All worlds share the geometry. As in `Model`, what has a leading world axis may differ between them.
+    """
 
     shape_link: Ints
     shape_tree: Ints
@@ -74,15 +76,15 @@ class Shapes:
     link_group: Ints
     link_mask: Ints
     link_self_collision: Ints  # loading flags that decide about collisions within the body
-    link_lateral_friction: Reals
-    link_rolling_friction: Reals
-    link_spinning_friction: Reals
-    link_restitution: Reals
-    link_stiffness: Reals  # negative: rigid
-    link_contact_damping: Reals
-    link_friction_anchor: Ints
-    link_anisotropy: Vectors3  # factors on friction along the axes of the inertial frame
-    link_processing_threshold: Reals  # contacts of shapes farther apart are not solved [m]
+    link_lateral_friction: RealRows
+    link_rolling_friction: RealRows
+    link_spinning_friction: RealRows
+    link_restitution: RealRows
+    link_stiffness: RealRows  # negative: rigid
+    link_contact_damping: RealRows
+    link_friction_anchor: IntRows
+    link_anisotropy: Vector3Rows  # factors on friction along the axes of the inertial frame
+    link_processing_threshold: RealRows  # contacts of shapes farther apart are not solved [m]
 
     # Pairs of links whose collisions users switched on or off, sorted by the two link rows.
     filter_link_a: Ints
@@ -122,12 +124,17 @@ class Pairs:
     polytope_face: Index4Rows  # its corners, and 1 if it is in use
     polytope_edge: Index4Rows  # edges of the hole where a new corner goes
 
-    # What the contacts of the last step leave to their successors.
+    # What the contacts of the last substep leave to their successors: in the first half those at the
+    # start of the step, in the second those of later substeps.
     previous_shapes: Index4Rows
     previous_normal: Vector3Rows
+    previous_direction1: Vector3Rows
+    previous_direction2: Vector3Rows
     previous_distance: RealRows
     previous_local_a: Vector3Rows
     previous_local_b: Vector3Rows
+    previous_point_a: Vector3Rows
+    previous_point_b: Vector3Rows
     previous_anchor_a: Vector3Rows
     previous_anchor_b: Vector3Rows
     previous_impulse: Vector4Rows
@@ -176,6 +183,7 @@ class UserConstraints:
     user_gear_auxiliary: Ints  # link row of a joint whose motion is taken off, -1 for none
     user_relative_target: Reals
     user_erp: Reals
+    user_enabled: IntRows  # 0: as if it were not there
 
 
 @wp.struct
@@ -286,7 +294,6 @@ class Couplings:
     run_block: Vector4Rows  # see `physics.long_patches`
     entry_run: RealRows
 
-    user_impulse: Vector6Rows  # of the last substep, by row of the constraint
     user_first_row: IntRows
     visit_row: IntRows  # rows of motors, limits and user constraints in their order: -1 - row of the latter
 

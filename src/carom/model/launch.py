@@ -27,9 +27,12 @@ class Launch:
 
     Arrays are kept alive, scalars and structs are copied; `replace` changes a scalar argument.
     On CPU calling it returns when the kernel is done.
+
+    Attributes:
+        kernel: The kernel.
     """
 
-    __slots__ = ("_bounds", "_command", "_entry_point", "_keep_alive", "_packed", "_pointer")
+    __slots__ = ("_bounds", "_command", "_entry_point", "_keep_alive", "_packed", "_pointer", "kernel")
 
     def __init__(self, kernel: Any, count: int, arguments: Sequence[Any], device: str = "cpu") -> None:
         """Compile or load `kernel` if need be and pack its arguments.
@@ -45,6 +48,7 @@ class Launch:
                 kernel, dim=count, inputs=list(arguments), device=device, record_cmd=True
             )
         _launched_before.add(kernel)
+        self.kernel = kernel
         self._keep_alive = list(arguments)
         self._entry_point = None
         if self._command.device.is_cpu and self._command.block_dim <= 1:
@@ -77,6 +81,26 @@ class Launch:
         else:
             setattr(self._packed, f"p{index}", struct.__ctype__())
 
+    def addresses(self, *scalars: str) -> list[int]:
+        """What another native function needs to run the kernel on the CPU, as long as this launch is kept.
+
+        Args:
+            *scalars: Names of the scalar arguments that it will change.
+
+        Returns:
+            Addresses of the function, of its two arguments, and of these scalars; 0 where there is no such
+            argument.
+        """
+        if self._entry_point is None:
+            raise ValueError("a launch on a GPU has no addresses")
+        entry: Any = ctypes.cast(self._entry_point, ctypes.c_void_p).value
+        packed = ctypes.addressof(self._packed)
+        indices, fields = argument_indices(self.kernel), type(self._packed)
+        places = [
+            packed + getattr(fields, f"p{indices[name]}").offset if name in indices else 0 for name in scalars
+        ]
+        return [entry, ctypes.addressof(self._command.params[0]), packed, *places]
+
     @property
     def function(self) -> Callable[[], None]:
         """The run as a plain function with the least overhead."""
@@ -94,20 +118,20 @@ class Launch:
 
 
 class TreeLaunch:
-    """A kernel whose last argument is a tree, ready to run on any: for what is over in a microsecond.
+    """A kernel one of whose arguments is a tree, ready to run on any: for what is over in a microsecond.
 
     Args:
         kernel: The kernel.
-        structs: Its arguments but the tree.
+        structs: Structs by the name kernels give them.
         device: Warp device name.
     """
 
     __slots__ = ("_launch", "_place", "_run", "_tree")
 
-    def __init__(self, kernel: Any, structs: Sequence[Any], device: str) -> None:
-        self._launch = Launch(kernel, 1, [*structs, 0], device)
+    def __init__(self, kernel: Any, structs: KernelStructs, device: str) -> None:
+        self._launch = structs.launch(kernel, device, tree=0, first_world=0)
         self._run = self._launch.brief_function
-        self._place = len(structs)
+        self._place = argument_indices(kernel)["tree"]
         self._tree = 0
 
     def __call__(self, tree: int) -> None:
@@ -127,8 +151,9 @@ def argument_indices(kernel: Any) -> Mapping[str, int]:
 class KernelStructs(dict[str, Any]):
     """Structs by the names kernels give them.
 
-    It remembers the last launch of each kernel over them. Making one takes a hundred times as long as
-    running it, and most of what a world's users do between two steps leaves its arrays where they are.
+    It remembers the last launch of each kernel over them, for each choice of its scalars. Making one takes
+    a hundred times as long as running it, and most of what a world's users do between two steps leaves its
+    arrays where they are.
     """
 
     def __init__(self, **structs: Any) -> None:
@@ -138,11 +163,12 @@ class KernelStructs(dict[str, Any]):
     def launch(self, kernel: Any, device: str, **scalars: float) -> Launch:
         """A launch of a kernel with these structs and scalars.
 
-        Those made before of the same kernel become this one, or may keep arguments of the past.
+        Those made before of the same kernel and scalars become this one, or may keep arguments of the past.
         """
         indices = argument_indices(kernel)
         arguments = {name: scalars[name] if name in scalars else self[name] for name in indices}
-        before, made = self._launches.get(kernel) or ({}, None)
+        key = kernel, *scalars.items()
+        before, made = self._launches.get(key) or ({}, None)
         if made is None:
             made = Launch(kernel, 1, list(arguments.values()), device)
         else:
@@ -151,13 +177,13 @@ class KernelStructs(dict[str, Any]):
                     made.replace(indices[name], argument)
                 elif argument is not before[name]:
                     made.replace_struct(indices[name], argument)
-        self._launches[kernel] = arguments, made
+        self._launches[key] = arguments, made
         return made
 
     def changed(self, name: str) -> None:
         """Let the launches made before know that fields of a struct have other values now."""
-        struct = self[name]
-        for kernel, (arguments, made) in self._launches.items():
+        struct = self.get(name)
+        for (kernel, *_), (arguments, made) in self._launches.items():
             if arguments.get(name) is struct:
                 made.replace_struct(argument_indices(kernel)[name], struct)
 

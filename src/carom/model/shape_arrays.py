@@ -98,14 +98,16 @@ class ShapeArrays:
         used: Rows in use, by axis.
         breaking_fraction: See `BREAKING_FRACTION`.
         changes: How often the bounds of a shape have changed in its link.
+        looks_ahead: Whether some shape has ever had a swept sphere, for continuous detection.
     """
 
     def __init__(self) -> None:
-        self.table: ArrayTable = ArrayTable(Shapes, None)
+        self.table: ArrayTable = ArrayTable(Shapes)
         self.filters: PairFilters = PairFilters(self.table)
         self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
         self.breaking_fraction: float = BREAKING_FRACTION
         self.changes: int = 0
+        self.looks_ahead: bool = False
         self._bodies: dict[int, BodyShapes] = {}
 
     @property
@@ -267,13 +269,17 @@ class ShapeArrays:
             field = _SURFACE_FIELDS.get(name)
             if field is None:
                 continue
-            rows = link_row if field.startswith("link") else self._shapes_of(link_row)
+            if field.startswith("link"):
+                numpy[field][:, link_row] = getattr(surface, name)
+                continue
             if field == "shape_margin":
                 body, link = self._body_of(link_row)
                 if not body.own_margin[link]:
                     continue
                 self.changes += 1
-            numpy[field][rows] = getattr(surface, name)
+            elif field == "shape_ccd_radius" and surface.ccd_swept_sphere_radius > 0.0:
+                self.looks_ahead = True
+            numpy[field][self._shapes_of(link_row)] = getattr(surface, name)
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
         """Put a link in the group of fixed bases, which do not touch each other, or of the rest."""

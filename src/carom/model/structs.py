@@ -22,6 +22,7 @@ from carom.model.real import (
     RealRows,
     TransformRows,
     Vector3,
+    Vector3Rows,
     Vector4Rows,
     Vector6Rows,
     Vector8Rows,
@@ -34,7 +35,6 @@ class Settings:
     """Engine parameters, passed to kernels by value."""
 
     time_step: real  # of one substep [s]
-    gravity: Vector3
     iterations: Int32
     inner_iterations: Int32
     residual_threshold: real
@@ -55,6 +55,7 @@ class Settings:
     constraint_count: Int32
     shape_count: Int32
     filter_count: Int32  # entries of `Shapes.filter_link_a`
+    looks_ahead: Int32  # 1: some shape has a swept sphere, see `collision.bounds`
     filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
 
 
@@ -77,9 +78,6 @@ class TreeModel:
     batch: Int32  # first tree of those solved together with it for lack of constraints
     first_constraint: Int32  # of its batch, if it is the first tree of one
     batch_constraints: Int32  # of its batch, if it is the first tree of one; else 0
-    linear_damping: real
-    angular_damping: real
-    max_velocity: real
     can_sleep: Int32
     can_wake: Int32  # by moving
     sleep_threshold: real  # sum of its squared velocities below which it grows tired
@@ -96,8 +94,6 @@ class LinkModel:
     dof_count: Int32
     nearest_dof: Int32  # last of the dofs that move it, -1 if none does
     sensor: Int32
-    mass: real
-    inertia: Vector3  # principal moments
     joint_rotation: Quaternion  # inertial frame in the parent's inertial frame at position 0
     pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
     com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
@@ -112,7 +108,6 @@ class DofModel:
     """One velocity coordinate."""
 
     parent: Int32  # next active dof towards the root, -1 at the root
-    damping: real
 
 
 @wp.struct
@@ -122,10 +117,6 @@ class ConstraintModel:
     kind: Int32
     tree: Int32
     link: Int32  # of a user constraint: its row
-    lower: real
-    upper: real
-    twist: real
-    max_impulse: real
 
 
 if TYPE_CHECKING:
@@ -145,13 +136,26 @@ class Model:
     """Topology and parameters of every body.
 
     Link rows include the base of each tree, its first. Indices of links, dofs and positions count
-    over all trees.
+    over all trees. All worlds share the topology. What may differ from world to world has a leading world
+    axis, with one row for each world, or a single one that all of them share.
     """
 
     tree: Trees
     link: Links
     dof: Dofs
     constraint: Constraints
+
+    gravity_vector: Vector3Rows  # its first entry [m/s²]
+    tree_linear_damping: RealRows
+    tree_angular_damping: RealRows
+    tree_max_velocity: RealRows
+    link_mass: RealRows
+    link_inertia: Vector3Rows  # principal moments
+    dof_damping: RealRows
+    constraint_lower: RealRows
+    constraint_upper: RealRows
+    constraint_twist: RealRows
+    constraint_max_impulse: RealRows
 
 
 @wp.struct
@@ -174,7 +178,8 @@ class State:
     tree_activity: IntRows  # see `codes.Activity`
     tree_tired: IntRows  # 1: it sleeps as soon as all of its island are
     tree_idle_time: RealRows  # for how long it has hardly moved [s]
-    fault_tree: IntRows  # its first entry: 1 + the tree whose velocities were not finite, 0, or OVERFLOW
+    user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
+    status_entry: IntRows  # what became of the last step: see the columns in `physics.quarantine`
 
 
 @wp.struct
@@ -202,10 +207,19 @@ class LinkScratch:
 
 
 @wp.struct
+class TreeScratch:
+    """Whether a tree slept at the start of the step."""
+
+    start_activity: Int32
+    start_tired: Int32
+    start_idle_time: real
+
+
+@wp.struct
 class DofScratch:
     """Motion subspace and force of one dof."""
 
-    start_velocity: real
+    start_velocity: real  # at the start of the step
     start_torque: real
     angular: Vector3  # motion subspace
     linear: Vector3
@@ -230,10 +244,12 @@ class RowScratch:
 
 
 if TYPE_CHECKING:
+    TreeRows = Any
     LinkRows = Any
     DofRows = Any
     ConstraintRows = Any
 else:
+    TreeRows = wp.array2d(dtype=TreeScratch)
     LinkRows = wp.array2d(dtype=LinkScratch)
     DofRows = wp.array2d(dtype=DofScratch)
     ConstraintRows = wp.array2d(dtype=RowScratch)
@@ -243,8 +259,9 @@ else:
 class Scratch:
     """Intermediate results of one step."""
 
+    tree: TreeRows
     link: LinkRows
-    link_pose: TransformRows  # like `State.link_pose`, for other coordinates
+    link_pose: TransformRows  # like `State.link_pose`, for other coordinates or of the substep before
     dof: DofRows
     position_start: RealRows
 

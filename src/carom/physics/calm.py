@@ -77,13 +77,13 @@ def is_rigid(model: Model, tree: Int32) -> bool:
 
 
 @func
-def has_plain_contacts(shapes: Shapes, link: Int32) -> bool:
+def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
     """Whether a link is rigid in contact and knows but lateral friction, alike in all directions."""
     return (
-        shapes.link_stiffness[link] < 0.0
-        and shapes.link_rolling_friction[link] == 0.0
-        and shapes.link_spinning_friction[link] == 0.0
-        and shapes.link_anisotropy[link] == Vector3(1.0, 1.0, 1.0)
+        shapes.link_stiffness[world, link] < 0.0
+        and shapes.link_rolling_friction[world, link] == 0.0
+        and shapes.link_spinning_friction[world, link] == 0.0
+        and shapes.link_anisotropy[world, link] == Vector3(1.0, 1.0, 1.0)
     )
 
 
@@ -98,7 +98,7 @@ def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -
         after = Int32(-1)
     if not same_shapes(contacts, world, after, pair) and not same_shapes(contacts, world, contact - 1, pair):
         return False
-    return has_plain_contacts(shapes, pair[2]) and has_plain_contacts(shapes, pair[3])
+    return has_plain_contacts(shapes, world, pair[2]) and has_plain_contacts(shapes, world, pair[3])
 
 
 @func

@@ -89,7 +89,7 @@ def add_contact_rows(
         upper = coefficient
         softness = real(0.0)
         if place == row:
-            change = normal_change(settings, shapes, terms, velocity)
+            change = normal_change(settings, shapes, terms, world, velocity)
             lower = real(0.0)
             upper = real(0.0) + _UNBOUNDED
             softness = terms.softness

@@ -16,17 +16,18 @@ _DEFAULT_DAMPING = 0.1
 
 
 @func
-def contact_damping(shapes: Shapes, link: Int32) -> real:
+def contact_damping(shapes: Shapes, world: Int32, link: Int32) -> real:
     """Damping of a link's contacts [N s/m]."""
-    damping = shapes.link_contact_damping[link]
-    return wp.where(shapes.link_stiffness[link] > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
+    damping = shapes.link_contact_damping[world, link]
+    stiffness = shapes.link_stiffness[world, link]
+    return wp.where(stiffness > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
 
 
 @func
-def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) -> Vector3:
+def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
     """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
-    stiffness_a = shapes.link_stiffness[a]
-    stiffness_b = shapes.link_stiffness[b]
+    stiffness_a = shapes.link_stiffness[world, a]
+    stiffness_b = shapes.link_stiffness[world, b]
     if stiffness_a < 0.0 and stiffness_b < 0.0:
         return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
     # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
@@ -35,7 +36,7 @@ def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) ->
         compliance += 1.0 / stiffness_a
     if stiffness_b > 0.0:
         compliance += 1.0 / stiffness_b
-    damping = contact_damping(shapes, a) + contact_damping(shapes, b)
+    damping = contact_damping(shapes, world, a) + contact_damping(shapes, world, b)
     stiffness = 1.0 / greater(compliance, _LEAST_DENOMINATOR)
     denominator = greater(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
     return Vector3(
@@ -44,19 +45,23 @@ def contact_stiffness(settings: Settings, shapes: Shapes, a: Int32, b: Int32) ->
 
 
 @func
-def combined_restitution(shapes: Shapes, a: Int32, b: Int32) -> real:
+def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
     """Share of the speed with which two links part after they collide."""
-    return shapes.link_restitution[a] * shapes.link_restitution[b]
+    return shapes.link_restitution[world, a] * shapes.link_restitution[world, b]
 
 
 @func
-def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
+def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
     """Combined coefficients of two links: lateral, rolling, spinning."""
-    lateral_a = shapes.link_lateral_friction[a]
-    lateral_b = shapes.link_lateral_friction[b]
+    lateral_a = shapes.link_lateral_friction[world, a]
+    lateral_b = shapes.link_lateral_friction[world, b]
     lateral = lateral_a * lateral_b
-    rolling = shapes.link_rolling_friction[a] * lateral_b + shapes.link_rolling_friction[b] * lateral_a
-    spinning = shapes.link_spinning_friction[a] * lateral_b + shapes.link_spinning_friction[b] * lateral_a
+    rolling_a = shapes.link_rolling_friction[world, a]
+    rolling_b = shapes.link_rolling_friction[world, b]
+    rolling = rolling_a * lateral_b + rolling_b * lateral_a
+    spinning_a = shapes.link_spinning_friction[world, a]
+    spinning_b = shapes.link_spinning_friction[world, b]
+    spinning = spinning_a * lateral_b + spinning_b * lateral_a
     return Vector3(
         within_bounds(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
         within_bounds(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
@@ -67,7 +72,7 @@ def contact_friction(shapes: Shapes, a: Int32, b: Int32) -> Vector3:
 @func
 def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
     """A friction direction, its components along a link's axes times the factors of that link."""
-    factors = shapes.link_anisotropy[link]
+    factors = shapes.link_anisotropy[world, link]
     if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
         return direction
     turn = wp.transform_get_rotation(state.link_pose[world, link])
@@ -86,7 +91,7 @@ def scaled_direction(
 def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
     """From where a contact with a friction anchor began to stick on b to where it did on a; else 0."""
     pair = contacts.contact_shapes[world, contact]
-    if shapes.link_friction_anchor[pair[2]] == 0 and shapes.link_friction_anchor[pair[3]] == 0:
+    if shapes.link_friction_anchor[world, pair[2]] == 0 and shapes.link_friction_anchor[world, pair[3]] == 0:
         return Vector3(0.0, 0.0, 0.0)
     on_a = wp.transform_point(state.link_pose[world, pair[2]], contacts.contact_anchor_a[world, contact])
     on_b = wp.transform_point(state.link_pose[world, pair[3]], contacts.contact_anchor_b[world, contact])
@@ -167,7 +172,7 @@ def contact_terms(
     lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
     contacts.contact_direction1[world, contact] = lateral1
     contacts.contact_direction2[world, contact] = lateral2
-    soft = contact_stiffness(settings, shapes, a, b)
+    soft = contact_stiffness(settings, shapes, world, a, b)
     terms = ContactTerms()
     terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
     terms.point_a = contacts.contact_point_a[world, contact]
@@ -179,12 +184,15 @@ def contact_terms(
     terms.rolling2 = direction2
     terms.drift = anchor_drift(state, shapes, contacts, world, contact)
     terms.distance = contacts.contact_distance[world, contact]
-    terms.friction = contact_friction(shapes, a, b)
+    terms.friction = contact_friction(shapes, world, a, b)
     terms.softness = soft[0]
     terms.erp = soft[1]
     terms.start = starting_impulse(share, contacts.contact_impulse[world, contact])
     terms.ignored = Int32(0)
-    if terms.distance > lesser(shapes.link_processing_threshold[a], shapes.link_processing_threshold[b]):
+    solved_up_to = lesser(
+        shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
+    )
+    if terms.distance > solved_up_to:
         terms.ignored = Int32(1)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b
@@ -193,7 +201,7 @@ def contact_terms(
         model, state, world, terms.ends[2]
     )
     terms.gain = real(0.0)
-    if combined_restitution(shapes, a, b) > 0.0:
+    if combined_restitution(shapes, world, a, b) > 0.0:
         terms.gain = gained(
             settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
         ) - gained(settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal)
@@ -201,7 +209,9 @@ def contact_terms(
 
 
 @func
-def normal_change(settings: Settings, shapes: Shapes, terms: ContactTerms, velocity: real) -> real:
+def normal_change(
+    settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, velocity: real
+) -> real:
     """Change of the velocity along the normal that keeps a contact from closing.
 
     A gap may close within the step but not more. Penetration is taken back at the rate `terms.erp`, on top
@@ -214,7 +224,7 @@ def normal_change(settings: Settings, shapes: Shapes, terms: ContactTerms, veloc
         parting *= terms.erp
     if wp.abs(velocity) < settings.restitution_threshold or velocity >= 0.0:
         return parting - velocity
-    restitution = combined_restitution(shapes, terms.ends[1], terms.ends[3])
+    restitution = combined_restitution(shapes, world, terms.ends[1], terms.ends[3])
     if restitution <= 0.0:
         return parting - velocity
     rebound = greater(restitution, 1.0) * (terms.gain - velocity)

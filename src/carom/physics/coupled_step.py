@@ -1,4 +1,4 @@
-"""One step of worlds whose bodies touch or are tied together."""
+"""One substep of worlds whose bodies touch or are tied together."""
 
 import warp as wp
 
@@ -7,7 +7,7 @@ from carom.model.real import Int32, func, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.islands import build_islands, may_be_pushed
 from carom.physics.solver import solve_island
-from carom.physics.step import begin_step, constrained_motion, end_step, free_motion
+from carom.physics.step import constrained_motion, free_motion
 
 
 @func
@@ -38,24 +38,14 @@ def coupled_step_kernel(
     contacts: Contacts,
     users: UserConstraints,
     couplings: Couplings,
-    substeps: Int32,
-    begins: Int32,
-    ends: Int32,
+    first_world: Int32,
 ):
-    """Advance each world by `substeps` substeps of one step.
-
-    Where bodies can touch, collision detection comes between substeps and each is a launch: then
-    `begins` and `ends` tell the first and the last of a step.
-    """
-    world = wp.tid()
-    if begins != 0:
-        begin_step(settings, model, state, scratch, world)
-    for _substep in range(substeps):
-        build_islands(settings, model, state, shapes, contacts, users, couplings, world)
-        for tree in range(settings.tree_count):
-            free_motion(
-                model, settings, state, scratch, world, tree, may_be_pushed(model, couplings, world, tree)
-            )
-        solve_islands(model, settings, state, scratch, shapes, contacts, users, couplings, world)
-        constrained_motion(settings, model, state, scratch, world)
-    end_step(settings, model, state, scratch, world, ends)
+    """Advance each world by one substep, its contacts being those of the present coordinates."""
+    world = first_world + wp.tid()
+    build_islands(settings, model, state, shapes, contacts, users, couplings, world)
+    for tree in range(settings.tree_count):
+        free_motion(
+            model, settings, state, scratch, world, tree, may_be_pushed(model, couplings, world, tree)
+        )
+    solve_islands(model, settings, state, scratch, shapes, contacts, users, couplings, world)
+    constrained_motion(settings, model, state, scratch, world)

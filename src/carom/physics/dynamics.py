@@ -21,8 +21,8 @@ def link_inertias(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         rotation = scratch.link[world, link].rotation
-        about_com = turned_inertia(rotation, model.link[link].inertia)
-        mass = model.link[link].mass
+        about_com = turned_inertia(rotation, model.link_inertia[world, link])
+        mass = model.link_mass[world, link]
         c = scratch.link[world, link].offset
         scratch.link[world, link].com_inertia = about_com
         scratch.link[world, link].composite_mass = mass
@@ -60,10 +60,10 @@ def damping_rate(coefficient: real, speed: real) -> real:
 
 
 @func
-def external_force(state: State, settings: Settings, mass: real, world: Int32, link: Int32) -> Vector3:
+def external_force(model: Model, state: State, mass: real, world: Int32, link: Int32) -> Vector3:
     """Gravity and the force the user applied, at the centre of mass [N]."""
     wrench = state.link_wrench[world, link]
-    return settings.gravity * mass + Vector3(wrench[0], wrench[1], wrench[2])
+    return model.gravity_vector[world, 0] * mass + Vector3(wrench[0], wrench[1], wrench[2])
 
 
 @func
@@ -91,8 +91,8 @@ def link_bias_forces(
     centripetal force of the links.
     """
     base = model.tree[tree].first_link
-    linear_damping = model.tree[tree].linear_damping
-    angular_damping = model.tree[tree].angular_damping
+    linear_damping = model.tree_linear_damping[world, tree]
+    angular_damping = model.tree_angular_damping[world, tree]
 
     for link in range(base, base + model.tree[tree].link_count):
         omega = base_omega(model, state, world, tree)
@@ -127,7 +127,7 @@ def link_bias_forces(
         scratch.link[world, link].alpha = alpha
         scratch.link[world, link].acceleration = acceleration
 
-        mass = model.link[link].mass
+        mass = model.link_mass[world, link]
         c = scratch.link[world, link].offset
         about_com = scratch.link[world, link].com_inertia
         com_velocity = velocity + wp.cross(omega, c)
@@ -144,7 +144,7 @@ def link_bias_forces(
             torque += spin * damping_rate(angular_damping, wp.length(omega))
 
         if purpose != CONSTRAINT_FEEDBACK:
-            force -= external_force(state, settings, mass, world, link)
+            force -= external_force(model, state, mass, world, link)
             torque -= external_torque(state, world, link)
         else:
             force -= scratch.link[world, link].constraint_force
@@ -189,7 +189,7 @@ def update_velocities(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Velocities after the step if nothing constrained them; `dof_force` holds accelerations."""
-    bound = model.tree[tree].max_velocity
+    bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     total = real(0.0)
     for dof in range(first, first + model.tree[tree].dof_count):

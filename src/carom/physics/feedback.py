@@ -74,7 +74,7 @@ def measure_joint_wrenches(
 
     # The force for that, gathered towards the root on top of the bias forces.
     for link in range(base, base + count):
-        mass = model.link[link].mass
+        mass = model.link_mass[world, link]
         c = scratch.link[world, link].offset
         alpha = scratch.link[world, link].alpha
         acceleration = scratch.link[world, link].acceleration

@@ -37,6 +37,14 @@ def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
 
 
 @func
+def unite_tied(settings: Settings, model: Model, state: State, users: UserConstraints, world: Int32):
+    """Put trees that user constraints tie together into one island."""
+    for user in range(settings.user_count):
+        if users.user_enabled[world, user] != 0:
+            unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
+
+
+@func
 def note_touch(couplings: Couplings, world: Int32, tree: Int32, touches: Int32):
     """Note that a tree has a contact, and of what kind."""
     couplings.tree_touches[world, tree] = couplings.tree_touches[world, tree] | touches
@@ -74,8 +82,7 @@ def build_islands(
             note_touch(couplings, world, shapes.shape_tree[pair[1]], touches)
         if moves_a and moves_b:
             unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
-    for user in range(settings.user_count):
-        unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
+    unite_tied(settings, model, state, users, world)
 
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = island_root(state, world, tree)

@@ -32,8 +32,8 @@ def is_constrained(model: Model, state: State, world: Int32, root: Int32) -> boo
         elif kind == LIMIT:
             position = state.position[world, model.link[link].first_position]
             if (
-                position <= model.constraint[constraint].lower
-                or position >= model.constraint[constraint].upper
+                position <= model.constraint_lower[world, constraint]
+                or position >= model.constraint_upper[world, constraint]
             ):
                 return True
         else:
@@ -126,10 +126,15 @@ def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratc
 
     residual = real(0.0)
     sweep = Int32(0)
-    searching = count > 0
+    searching = count > 0 and settings.iterations > 0
     while searching:
-        for _inner in range(settings.inner_iterations):
+        inner = Int32(0)
+        while inner < settings.inner_iterations:
             residual = row_sweep(scratch, world, count, sweep)
+            inner += 1
+            if residual == 0.0:
+                # Nothing has changed, so nothing ever will.
+                inner = settings.inner_iterations
         sweep += 1
         searching = residual > settings.residual_threshold and sweep < settings.iterations
     keep_row_results(model, settings, state, scratch, world, root, count, sweep, residual)
@@ -177,7 +182,7 @@ def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: I
 @func
 def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Add what the solver found to the velocities of a tree."""
-    bound = model.tree[tree].max_velocity
+    bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     delta = model.tree[tree].first_delta
     total = real(0.0)

@@ -157,27 +157,39 @@ def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, 
 
 
 @kernel
-def forward_kinematics_kernel(model: Model, state: State, tree: Int32):
+def forward_kinematics_kernel(model: Model, state: State, tree: Int32, first_world: Int32):
     """Bring the link poses of one tree up to date with its coordinates."""
-    forward_kinematics(model, state, state.link_pose, wp.tid(), tree)
+    forward_kinematics(model, state, state.link_pose, first_world + wp.tid(), tree)
+
+
+@func
+def update_link_poses(
+    settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Bring the link poses of a tree up to date; if some shape is to look ahead, keep them as they were."""
+    if settings.looks_ahead != 0:
+        base = model.tree[tree].first_link
+        for link in range(base, base + model.tree[tree].link_count):
+            scratch.link_pose[world, link] = state.link_pose[world, link]
+    forward_kinematics(model, state, state.link_pose, world, tree)
 
 
 @kernel
-def link_poses_kernel(settings: Settings, model: Model, state: State):
+def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
     """Bring the link poses of all trees up to date with their coordinates."""
-    world = wp.tid()
+    world = first_world + wp.tid()
     for tree in range(settings.tree_count):
-        forward_kinematics(model, state, state.link_pose, world, tree)
+        update_link_poses(settings, model, state, scratch, world, tree)
 
 
 @kernel
-def link_twist_kernel(model: Model, state: State, scratch: Scratch, tree: Int32):
+def link_twist_kernel(model: Model, state: State, scratch: Scratch, tree: Int32, first_world: Int32):
     """Velocities of the links of one tree, in world axes, for its present coordinates.
 
     As in Bullet they are turned to world axes by `State.link_pose`, which after a step is that of
     the start of its last substep.
     """
-    world = wp.tid()
+    world = first_world + wp.tid()
     forward_kinematics(model, state, scratch.link_pose, world, tree)
     motion_subspaces(model, scratch.link_pose, scratch, world, tree)
     link_velocities(model, state, scratch, world, tree)

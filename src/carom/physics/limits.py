@@ -44,13 +44,13 @@ def limit_rows(
     tree = model.constraint[constraint].tree
     position = state.position[world, model.link[link].first_position]
     velocity = state.dof_velocity[world, dof]
-    bound = model.constraint[constraint].max_impulse
+    bound = model.constraint_max_impulse[world, constraint]
     effective_mass = dof_effective_mass(model, scratch, world, tree, dof)
-    below = model.constraint[constraint].lower - position
+    below = model.constraint_lower[world, constraint] - position
     if below >= 0.0:
         change = limit_change(settings, below) - velocity
         row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, 0.0, bound)
-    above = position - model.constraint[constraint].upper
+    above = position - model.constraint_upper[world, constraint]
     if above >= 0.0:
         change = -limit_change(settings, above) - velocity
         row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, 0.0)
@@ -96,11 +96,11 @@ def spherical_limit_rows(
     first = model.link[link].first_dof
     angles = swing_and_twist(joint_quaternion(model, state, world, link))
     ranges = Vector3(
-        model.constraint[constraint].lower,
-        model.constraint[constraint].upper,
-        model.constraint[constraint].twist,
+        model.constraint_lower[world, constraint],
+        model.constraint_upper[world, constraint],
+        model.constraint_twist[world, constraint],
     )
-    bound = model.constraint[constraint].max_impulse
+    bound = model.constraint_max_impulse[world, constraint]
     effective_mass = axis_effective_masses(model, scratch, world, model.constraint[constraint].tree, link)
     for axis in range(3):
         excess = real(0.0)

@@ -77,6 +77,21 @@ class EngineParameters:
         """Number of substeps, at least one."""
         return max(1, self.substeps)
 
+    def substeps_due(self, unspent_time: float) -> tuple[int, float]:
+        """Substeps of the next step, and the time that they leave to the one after it [s].
+
+        Like Bullet's clock it counts as many as fit the time that has passed, which rounding can make
+        one fewer, then one more, than asked for; never more.
+
+        Args:
+            unspent_time: What the steps before have left [s].
+        """
+        if self.substeps <= 1:
+            return 1, 0.0
+        unspent_time += self.time_step
+        count = int(unspent_time / self.substep_time)
+        return min(count, self.substeps), unspent_time - count * self.substep_time
+
     @property
     def substep_time(self) -> float:
         """Duration of one substep [s]."""

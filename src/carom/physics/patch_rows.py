@@ -86,7 +86,7 @@ def write_row_numbers(
     change = friction_change(settings, total, terms.drift, direction)
     if row == 0:
         inverse_mass += terms.softness
-        change = normal_change(settings, shapes, terms, total)
+        change = normal_change(settings, shapes, terms, world, total)
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)

@@ -1,22 +1,20 @@
-"""A state that is not finite never leaves the step it arose in.
+"""A state that is not finite never leaves the step it arose in, nor does one for which room was short.
 
-Each step keeps the coordinates it started from. If a velocity comes out as NaN or infinite, all
-trees of that world go back to them and `State.fault_tree` tells which tree was at fault. The same
-happens when contacts or rows do not fit into their arrays; then the step is done again with larger ones.
+Each step keeps what it started from. If a velocity comes out as NaN or infinite, or contacts or rows do not
+fit into their arrays, the world goes back there, and its entries of `State.status_entry` tell why. In the
+second case the step is done again with longer arrays.
 """
 
 import warp as wp
 
 from carom.model.real import Int32, func, real
+from carom.model.status import STATUS, WELL
 from carom.model.structs import Model, Scratch, State
-
-# Value of `State.fault_tree` when contacts or rows did not fit into their arrays.
-OVERFLOW = -1
 
 
 @func
 def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Remember the coordinates of a tree at the start of the step."""
+    """Remember the coordinates of a tree at the start of the step, and whether it slept."""
     q = model.tree[tree].first_position
     while q < model.tree[tree].first_position + model.tree[tree].position_count:
         scratch.position_start[world, q] = state.position[world, q]
@@ -26,6 +24,9 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         scratch.dof[world, dof].start_velocity = state.dof_velocity[world, dof]
         scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
         dof += 1
+    scratch.tree[world, tree].start_activity = state.tree_activity[world, tree]
+    scratch.tree[world, tree].start_tired = state.tree_tired[world, tree]
+    scratch.tree[world, tree].start_idle_time = state.tree_idle_time[world, tree]
 
 
 @func
@@ -40,10 +41,13 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         state.dof_velocity[world, dof] = scratch.dof[world, dof].start_velocity
         state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
         dof += 1
+    state.tree_activity[world, tree] = scratch.tree[world, tree].start_activity
+    state.tree_tired[world, tree] = scratch.tree[world, tree].start_tired
+    state.tree_idle_time[world, tree] = scratch.tree[world, tree].start_idle_time
 
 
 @func
 def report_fault(state: State, world: Int32, tree: Int32, sum_of_velocities: real):
     """Note the first tree whose velocities are not finite."""
-    if not wp.isfinite(sum_of_velocities) and state.fault_tree[world, 0] == 0:
-        state.fault_tree[world, 0] = tree + 1
+    if not wp.isfinite(sum_of_velocities) and state.status_entry[world, STATUS] == WELL:
+        state.status_entry[world, STATUS] = tree + 1

@@ -53,8 +53,8 @@ def move_single_body(
     """Velocities of a body after the substep if there were no constraints; as `step.free_motion`."""
     forward_kinematics(model, state, state.link_pose, world, tree)
     link = model.tree[tree].first_link
-    moments = model.link[link].inertia
-    mass = model.link[link].mass
+    moments = model.link_inertia[world, link]
+    mass = model.link_mass[world, link]
     inverse_mass = inverse_or_off(mass)
     rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
     inverse_inertia = turned_inertia(
@@ -65,12 +65,12 @@ def move_single_body(
     omega = base_omega(model, state, world, tree)
     velocity = base_velocity(model, state, world, tree)
     spin = turned_inertia(rotation, moments) * omega
-    force = external_force(state, settings, mass, world, link)
+    force = external_force(model, state, mass, world, link)
     torque = external_torque(state, world, link) - wp.cross(omega, spin)
-    linear_damping = model.tree[tree].linear_damping
+    linear_damping = model.tree_linear_damping[world, tree]
     if linear_damping != 0.0:
         force -= velocity * (mass * damping_rate(linear_damping, wp.length(velocity)))
-    angular_damping = model.tree[tree].angular_damping
+    angular_damping = model.tree_angular_damping[world, tree]
     if angular_damping != 0.0:
         torque -= spin * damping_rate(angular_damping, wp.length(omega))
 

@@ -16,7 +16,7 @@ from carom.model.contact_structs import Contacts, Couplings, Pairs, Shapes, User
 from carom.model.real import Int32, func, kernel, real
 from carom.model.structs import Model, Settings, State
 from carom.physics.activity import link_moves, squared_motion
-from carom.physics.islands import unite
+from carom.physics.islands import unite, unite_tied
 
 # Time without motion after which a tree may fall asleep [s].
 TIRED_AFTER = real(2.0)
@@ -116,12 +116,13 @@ def settle_kernel(
     users: UserConstraints,
     couplings: Couplings,
     touching: Int32,
+    first_world: Int32,
 ):
     """Before a substep: islands without anyone active fall asleep, others stir.
 
     `touching` is 0 where there is no collision detection, so that nobody has neighbours.
     """
-    world = wp.tid()
+    world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = tree
         couplings.tree_touches[world, tree] = 0
@@ -131,8 +132,7 @@ def settle_kernel(
             pair = contacts.contact_shapes[world, contact]
             if link_moves(model, pair[2]) and link_moves(model, pair[3]):
                 unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
-    for user in range(settings.user_count):
-        unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
+    unite_tied(settings, model, state, users, world)
     # From here on `tree_touches` of a root says that someone of its island is active.
     for tree in range(settings.tree_count):
         if state.tree_activity[world, tree] == ACTIVE and has_moving_shapes(model, shapes, tree):
@@ -166,9 +166,9 @@ def watch(model: Model, settings: Settings, state: State, world: Int32, tree: In
 
 
 @kernel
-def watch_kernel(settings: Settings, model: Model, state: State):
+def watch_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
     """After a substep: see who moves, who has grown tired and who is awake again."""
-    world = wp.tid()
+    world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         watch(model, settings, state, world, tree)
         if state.tree_tired[world, tree] == 0:

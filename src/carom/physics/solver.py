@@ -9,12 +9,12 @@ from carom.collision.extremes import greater
 from carom.model.codes import USER
 from carom.model.contact_structs import Contacts, Couplings, Shapes, UserConstraints
 from carom.model.real import Index4, Int32, Vector3, func, real
+from carom.model.status import OVERFLOW, STATUS
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.calm import CALM_PRECISION, CALM_SWEEPS, NOT_CALM, SOLVED, UNSOLVED
 from carom.physics.conjugate import go_on, remember_impulses
 from carom.physics.couplings import has_room
 from carom.physics.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
-from carom.physics.quarantine import OVERFLOW
 from carom.physics.sweeps import calm_sweep, contact_sweep, visit_sweep
 from carom.physics.units import keep_unit_impulses, write_units
 from carom.physics.user_constraints import add_user_rows, keep_user_impulses
@@ -48,6 +48,9 @@ def island_rows(
             row = joint_constraint_rows(model, settings, state, scratch, world, constraint, row)
         else:
             user = model.constraint[constraint].link
+            if users.user_enabled[world, user] == 0:
+                constraint = couplings.constraint_next[world, constraint]
+                continue
             if has_room(model, couplings, place, users.user_tree_a[user], users.user_tree_b[user]):
                 first = place[0]
                 place = add_user_rows(settings, model, state, scratch, users, couplings, world, user, place)
@@ -110,7 +113,7 @@ def sweep_island(
     square = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
-    if visits > 0 or units[0] > 0:
+    if (visits > 0 or units[0] > 0) and most > 0:
         searching = Int32(1)
     while searching == 1:
         if calm == 1:
@@ -148,7 +151,8 @@ def solve_island(
     made = island_rows(model, settings, state, scratch, users, couplings, world, root)
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
-    calm = wp.min(couplings.tree_calm[world, root], 1)
+    # Without any sweep there are no impulses, those of the last step included.
+    calm = wp.min(wp.min(couplings.tree_calm[world, root], 1), settings.iterations)
     outcome = Int32(NOT_CALM)
     units = Index4(0, 0, 0, 0)
     found = Vector3(0.0, 0.0, 0.0)
@@ -162,7 +166,7 @@ def solve_island(
                 Index4(made[1], made[2], 0, 0), share,
             )  # fmt: skip
         if visits < 0 or units[0] < 0:
-            state.fault_tree[world, 0] = OVERFLOW
+            state.status_entry[world, STATUS] = OVERFLOW
             return
         found = sweep_island(settings, scratch, couplings, world, visits, units, calm)
         if calm == 1:
@@ -174,16 +178,16 @@ def solve_island(
                 trying = Int32(1)
     keep_row_results(model, settings, state, scratch, world, root, made[0], Int32(found[1]), found[0])
     keep_unit_impulses(contacts, couplings, world, units[0], outcome)
-    keep_constraint_impulses(model, users, couplings, world, root)
+    keep_constraint_impulses(model, state, users, couplings, world, root)
 
 
 @func
 def keep_constraint_impulses(
-    model: Model, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
+    model: Model, state: State, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
 ):
     """Report the impulses of an island's user constraints."""
     constraint = couplings.tree_first_constraint[world, root]
     while constraint >= 0:
         if model.constraint[constraint].kind == USER:
-            keep_user_impulses(users, couplings, world, model.constraint[constraint].link)
+            keep_user_impulses(state, users, couplings, world, model.constraint[constraint].link)
         constraint = couplings.constraint_next[world, constraint]

@@ -10,7 +10,7 @@ from carom.model.real import Int32, kernel
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.coupled_step import solve_islands
 from carom.physics.islands import build_islands, may_be_pushed
-from carom.physics.step import begin_step, constrained_motion, end_step, free_motion
+from carom.physics.step import constrained_motion, free_motion
 
 
 @kernel
@@ -18,26 +18,28 @@ def islands_kernel(
     settings: Settings,
     model: Model,
     state: State,
-    scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
     couplings: Couplings,
-    begins: Int32,
+    first_world: Int32,
 ):
-    """Begin a step, if `begins` is not 0, and group trees into islands."""
-    world = wp.tid()
-    if begins != 0:
-        begin_step(settings, model, state, scratch, world)
+    """Group trees into islands."""
+    world = first_world + wp.tid()
     build_islands(settings, model, state, shapes, contacts, users, couplings, world)
 
 
 @kernel
 def free_motion_kernel(
-    settings: Settings, model: Model, state: State, scratch: Scratch, couplings: Couplings
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    first_world: Int32,
 ):
     """Velocities after a substep if there were no constraints."""
-    world = wp.tid()
+    world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         free_motion(
             model, settings, state, scratch, world, tree, may_be_pushed(model, couplings, world, tree)
@@ -54,14 +56,14 @@ def constraints_kernel(
     contacts: Contacts,
     users: UserConstraints,
     couplings: Couplings,
+    first_world: Int32,
 ):
     """Changes of velocity that motors, limits, user constraints and contacts ask for."""
-    solve_islands(model, settings, state, scratch, shapes, contacts, users, couplings, wp.tid())
+    world = first_world + wp.tid()
+    solve_islands(model, settings, state, scratch, shapes, contacts, users, couplings, world)
 
 
 @kernel
-def motion_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, ends: Int32):
-    """New velocities and positions; the end of a step if `ends` is not 0."""
-    world = wp.tid()
-    constrained_motion(settings, model, state, scratch, world)
-    end_step(settings, model, state, scratch, world, ends)
+def motion_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
+    """New velocities and positions."""
+    constrained_motion(settings, model, state, scratch, first_world + wp.tid())

@@ -3,7 +3,9 @@
 import warp as wp
 
 from carom.model.codes import FREE_MOTION
-from carom.model.real import Int32, Vector6, func, kernel
+from carom.model.contact_structs import Pairs
+from carom.model.real import Int32, func, kernel
+from carom.model.status import STATUS, WELL
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.activity import has_stirred, is_asleep, stop
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
@@ -21,18 +23,9 @@ from carom.physics.joint_solver import (
 )
 from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
-from carom.physics.motors import explicit_pd, joint_damping
-from carom.physics.quarantine import keep_start, return_to_start
+from carom.physics.motors import explicit_pd
 from carom.physics.single_body import is_single_body, move_single_body
-
-
-@func
-def begin_step(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
-    """Keep the start of the step, and let joint friction act for all of it."""
-    state.fault_tree[world, 0] = 0
-    for tree in range(settings.tree_count):
-        keep_start(model, state, scratch, world, tree)
-        joint_damping(model, state, world, tree)
+from carom.physics.step_ends import begin_step, end_step
 
 
 @func
@@ -87,44 +80,38 @@ def constrained_motion(settings: Settings, model: Model, state: State, scratch: 
         if is_asleep(state, world, tree):
             stop(model, state, world, tree)
             continue
-        if model.tree[tree].sensor_count > 0:
-            constraint_feedback(model, settings, state, scratch, world, tree)
-        apply_delta_velocities(model, state, scratch, world, tree)
-        integrate_positions(model, state, world, tree, settings.time_step)
+        move_on(settings, model, state, scratch, world, tree)
 
 
 @func
-def end_step(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, complete: Int32):
-    """Go back to the start if something went wrong; forces last until a step is complete."""
-    fault = state.fault_tree[world, 0]
-    for tree in range(settings.tree_count):
-        if fault != 0:
-            return_to_start(model, state, scratch, world, tree)
-        if fault > 0 or (fault == 0 and complete != 0):
-            clear_forces(model, state, world, tree)
-
-
-@func
-def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
-    """Applied forces and torques last for one step."""
-    base = model.tree[tree].first_link
-    for link in range(base, base + model.tree[tree].link_count):
-        state.link_wrench[world, link] = Vector6()
-    first = model.tree[tree].first_dof
-    for dof in range(first, first + model.tree[tree].dof_count):
-        state.dof_torque[world, dof] = 0.0
+def move_on(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `constrained_motion`, for one tree that is awake."""
+    if model.tree[tree].sensor_count > 0:
+        constraint_feedback(model, settings, state, scratch, world, tree)
+    apply_delta_velocities(model, state, scratch, world, tree)
+    integrate_positions(model, state, world, tree, settings.time_step)
 
 
 @kernel
-def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, substeps: Int32):
+def step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    substeps: Int32,
+    first_world: Int32,
+):
     """Advance each world by one step of `substeps` substeps."""
-    world = wp.tid()
-    begin_step(settings, model, state, scratch, world)
+    world = first_world + wp.tid()
+    begin_step(settings, model, state, scratch, pairs, world, 1)
     for _substep in range(substeps):
-        for tree in range(settings.tree_count):
-            pushed = is_constrained(model, state, world, model.tree[tree].batch)
-            free_motion(model, settings, state, scratch, world, tree, pushed)
-        for tree in range(settings.tree_count):
-            solve_joints(model, settings, state, scratch, world, tree)
-        constrained_motion(settings, model, state, scratch, world)
-    end_step(settings, model, state, scratch, world, 1)
+        if state.status_entry[world, STATUS] == WELL:
+            for tree in range(settings.tree_count):
+                pushed = is_constrained(model, state, world, model.tree[tree].batch)
+                free_motion(model, settings, state, scratch, world, tree, pushed)
+            for tree in range(settings.tree_count):
+                solve_joints(model, settings, state, scratch, world, tree)
+            constrained_motion(settings, model, state, scratch, world)
+    if state.status_entry[world, STATUS] == WELL:
+        end_step(settings, model, state, world)

@@ -16,7 +16,7 @@ from carom.physics.patch_writing import keep_patch_impulses, write_patch
 def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
     """Whether a contact has rolling or spinning friction."""
     pair = contacts.contact_shapes[world, contact]
-    friction = contact_friction(shapes, pair[2], pair[3])
+    friction = contact_friction(shapes, world, pair[2], pair[3])
     return friction[1] > 0.0 or friction[2] > 0.0
 
 

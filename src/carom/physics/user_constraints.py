@@ -227,8 +227,11 @@ def add_user_rows(
 
 
 @func
-def keep_user_impulses(users: UserConstraints, couplings: Couplings, world: Int32, user: Int32):
+def keep_user_impulses(state: State, users: UserConstraints, couplings: Couplings, world: Int32, user: Int32):
     """Report the impulses of a user constraint's rows."""
     first = couplings.user_first_row[world, user]
     for i in range(user_row_count(users.user_kind[user])):
-        couplings.user_impulse[world, user][i] = couplings.coupling_terms[world, first + i][ROW_IMPULSE]
+        impulse = real(0.0)
+        if users.user_enabled[world, user] != 0:
+            impulse = couplings.coupling_terms[world, first + i][ROW_IMPULSE]
+        state.user_impulse[world, user][i] = impulse

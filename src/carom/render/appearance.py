@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
@@ -200,6 +201,21 @@ def appearance_of(world: World) -> Appearance:
         appearance.textures.clear()
     _appearances[world] = (ref(world.arrays), appearance)
     return appearance
+
+
+def copy_appearance(world: World, other: World) -> None:
+    """Give a copy of a world, whose bodies have the same numbers, the looks of the first."""
+    if world not in _appearances:
+        return
+    appearance = appearance_of(world)
+    copied = appearance_of(other)
+    copied.textures = deepcopy(appearance.textures)
+    copied.light = appearance.light
+    for number, body in world.bodies.items():
+        if appearance.knows(body):
+            copied._looks[other.bodies[number]] = [
+                [replace(look) for look in looks] for looks in appearance._of(body)
+            ]
 
 
 _appearances: WeakKeyDictionary[World, tuple[ref, Appearance]] = WeakKeyDictionary()

@@ -186,14 +186,17 @@ class PageServer:
             await asyncio.sleep(due - loop.time())
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
-        host = request.headers.get("Host")
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        cookies = "; ".join(request.headers.get_all("Cookie"))
+        host = hosts[0] if len(hosts) == 1 else None
+        # Several of what may be there once are none of them.
+        if len(origins) > 1 or not self.access.may_read(request.path, host, cookies):
+            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
-            if self.access.may_connect(request.path, host, request.headers.get("Origin")):
+            if self.access.may_connect(request.path, host, origins[0] if origins else None):
                 return None
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
-        if not self.access.may_read(request.path, host, request.headers.get("Cookie")):
-            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         file = _files().get(path)
         if file is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "There is no such file.\n")

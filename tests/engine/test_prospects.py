@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pybullet as p
-from carom.prospects import can_touch
 from pybullet._clients import client_of
 
 KINDS = ("bare", "scenery", "loose", "folding")
@@ -42,6 +41,6 @@ def test_bodies_can_touch_unless_all_of_them_are_scenery(
         if filtered and len(solid) > 1:
             p.setCollisionFilterPair(solid[0], solid[-1], -1, -1, 1)
         several = len(solid) > 1 and ("loose" in kinds or filtered)
-        assert can_touch(client_of(client).world) == (several or "folding" in kinds)
+        assert client_of(client).world.engine.can_touch == (several or "folding" in kinds)
     finally:
         p.disconnect(client)

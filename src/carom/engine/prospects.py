@@ -2,38 +2,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from carom.engine.touch_arrays import TouchArrays
+from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
-if TYPE_CHECKING:
-    from carom.world import World
 
-
-def can_touch(world: World) -> bool:
+def can_touch(arrays: WorldArrays, touch: TouchArrays) -> bool:
     """Whether two shapes could ever touch: of two bodies that are not both scenery, or of one body.
 
     Scenery are bodies with shapes on their fixed base alone, in the group of fixed bases.
     """
-    shapes, model = world.touch.shapes.table.numpy, world.arrays.model.numpy
-    solid = np.flatnonzero(shapes["link_shape_count"][: world.arrays.used["link"]])
+    shapes, model = touch.shapes.table.numpy, arrays.model.numpy
+    solid = np.flatnonzero(shapes["link_shape_count"][: arrays.used["link"]])
     if shapes["link_self_collision"][solid].any():
         return True
-    first_links = model["tree_first_link"][: world.arrays.used["tree"]]
+    first_links = model["tree_first_link"][: arrays.used["tree"]]
     trees = np.searchsorted(first_links, solid, side="right") - 1
     if (trees[1:] == trees[:-1]).all():
         return False
-    if world.touch.shapes.filters.all:
+    if touch.shapes.filters.all:
         return True
     is_fixed_base = (model["tree_fixed"][trees] != 0) & (first_links[trees] == solid)
     groups, masks = shapes["link_group"][solid], shapes["link_mask"][solid]
     return not (is_fixed_base & (groups == FIXED_GROUP) & (masks == FIXED_MASK)).all()
 
 
-def can_sleep(world: World) -> bool:
+def can_sleep(arrays: WorldArrays) -> bool:
     """Whether a body may fall asleep, or has to be woken up."""
-    arrays = world.arrays
     model, state, count = arrays.model.numpy, arrays.state.numpy, arrays.used["tree"]
-    return bool(model["tree_can_sleep"][:count].any() or state["tree_activity"][0, :count].any())
+    return bool(model["tree_can_sleep"][:count].any() or state["tree_activity"][:, :count].any())

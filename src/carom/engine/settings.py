@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.engine.touch_arrays import TouchArrays
 from carom.model.builder import WorldArrays
 from carom.model.structs import Settings
 from carom.physics.parameters import EngineParameters
-from carom.touch_arrays import TouchArrays
 
 
 class EngineSettings:
-    """`Settings` of a world: its parameters, and how much of its arrays is in use.
+    """`Settings`: the parameters of worlds, and how much of their arrays is in use.
 
     Attributes:
         struct: What kernels are given: always the same struct, whose fields change.
@@ -20,9 +20,13 @@ class EngineSettings:
     def __init__(self) -> None:
         self.struct: Any = Settings()
         self._written: dict[str, Any] = {}
+        self._gravity = (0.0, 0.0, 0.0)
 
     def update(self, parameters: EngineParameters, arrays: WorldArrays, touch: TouchArrays) -> bool:
-        """Bring the struct up to date; true if anything has changed."""
+        """Bring the struct up to date, and the gravity of all worlds; true if the struct has changed."""
+        if parameters.gravity != self._gravity:
+            arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
+            self._gravity = parameters.gravity
         changed = False
         for name, value in _values(parameters, arrays, touch).items():
             # Writing a field of a struct takes a hundred times as long as comparing.
@@ -37,7 +41,6 @@ def _values(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArray
     substep_time = parameters.substep_time
     return {
         "time_step": substep_time,
-        "gravity": parameters.gravity,
         "iterations": parameters.solver_iterations,
         "inner_iterations": parameters.noncontact_inner_iterations,
         "residual_threshold": parameters.solver_residual_threshold,
@@ -58,5 +61,6 @@ def _values(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArray
         "cone_friction": int(parameters.cone_friction),
         "shape_count": touch.shapes.shape_count,
         "filter_count": touch.shapes.filter_count,
+        "looks_ahead": int(touch.shapes.looks_ahead),
         "filter_both": int(parameters.collision_filter_mode == 0),
     }

@@ -1,0 +1,313 @@
+"""The tables of any number of worlds, and the launches that step them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
+from carom.engine.program import Plan, Program, detection_program, step_program
+from carom.engine.prospects import can_sleep, can_touch
+from carom.engine.settings import EngineSettings
+from carom.engine.threads import Threads
+from carom.engine.touch_arrays import TouchArrays
+from carom.engine.workspace import Workspace
+from carom.model.builder import WorldArrays
+from carom.model.launch import KernelStructs, Launch
+from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
+from carom.physics.parameters import EngineParameters
+
+ProgramMaker = Callable[[KernelStructs, str, Plan], Program]
+
+DEVICE = "cpu"
+MOST_STEPS = 64
+"""Steps that can be asked for at once."""
+# Chunks of worlds for each thread: enough for uneven ones to even out.
+_CHUNKS_PER_THREAD = 16
+_NONE = np.zeros(0, dtype=np.int64)
+# Contacts of many worlds take memory in each: their arrays become longer by so much at a time.
+_GROWTH_OF_MANY = 1.25
+
+
+class Engine:
+    """Performs steps.
+
+    A step of a world is a function of the model, its state and parameters and a workspace, and no Python
+    runs between the launches of one. Arrays are as long as they are while worlds are stepped. What did not
+    fit is counted per world, and read once at the end: the worlds concerned are where their steps began,
+    all arrays grow, and these worlds are stepped again.
+
+    Attributes:
+        arrays: Model and state of all bodies.
+        touch: Shapes, contacts and user constraints.
+        status: What became of the last step of each world, (worlds, columns); see `model.status`.
+        due: Substeps of each of the steps that are asked for at once.
+        changes: How often launches have had to be renewed.
+        growths: How often arrays have been replaced by longer ones because something did not fit.
+        run_prepared: A step of one substep of all worlds, once `prepare` has been called, at the least cost.
+            Afterwards `recover` has to be called if the status of a world is not `WELL`.
+
+    Args:
+        arrays: Model and state.
+        touch: Shapes, contacts and user constraints.
+        threads: How many threads share the worlds.
+    """
+
+    def __init__(self, arrays: WorldArrays, touch: TouchArrays, threads: int = 1) -> None:
+        self.arrays = arrays
+        self.touch = touch
+        self.status: np.ndarray = arrays.state.numpy["status_entry"]
+        self._first_status = memoryview(self.status[0])
+        self._settings = EngineSettings()
+        self._workspaces = [Workspace() for _ in range(threads)]
+        self._all_worlds = np.arange(arrays.world_count, dtype=np.int32)
+        self._worlds = self._all_worlds.copy()
+        self.due = np.ones(MOST_STEPS, dtype=np.int32)
+        self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
+        self._threads = Threads(threads)
+        self._interpreters: list[Stepper] = self._make_interpreters(self.status, self.due)
+        # With no substep due, contacts are found and nothing moves.
+        self._detectors: list[Stepper] = self._make_interpreters(self.status, np.zeros(1, dtype=np.int32))
+        self._steppers = self._interpreters
+        self._make_program: ProgramMaker = step_program
+        self.run_prepared: Callable[[], None] = self._steppers[0].run
+        # What an interpreter would do when the one launch of a step goes wrong that is run without one.
+        self._abandon: list[Launch] = []
+        self._plan: Plan | None = None
+        self._watched = False
+        self.growths = 0
+        self.changes = 0
+        self._detection_ready = False
+
+    @property
+    def workspace(self) -> Workspace:
+        """That of the first thread, which questions about a world use as well."""
+        return self._workspaces[0]
+
+    @property
+    def can_touch(self) -> bool:
+        """Whether two shapes could ever touch."""
+        return can_touch(self.arrays, self.touch) if self._plan is None else self._plan.touching
+
+    def changed(self) -> None:
+        """Renew the launches before the next step: arrays have moved, or what can happen has changed."""
+        self._plan = None
+        self._detection_ready = False
+        self.changes += 1
+
+    # Structs
+
+    def structs(self) -> KernelStructs:
+        """Structs over the present arrays, by the name kernels give them, for one thread."""
+        return self._bind([self.workspace])[0]
+
+    def update_settings(self, parameters: EngineParameters) -> None:
+        """Bring the settings that kernels get up to date, those of launches that are there as well."""
+        if self._settings.update(parameters, self.arrays, self.touch):
+            for workspace in self._workspaces:
+                workspace.structs.changed("settings")
+
+    def _bind(self, workspaces: Sequence[Workspace]) -> list[KernelStructs]:
+        self.touch.reserve()
+        for workspace in workspaces:
+            workspace.fit(self.arrays, self.touch)
+        shared: dict[str, Any] = {
+            "settings": self._settings.struct,
+            **self.arrays.structs(DEVICE),
+            **self.touch.structs(DEVICE),
+        }
+        return [workspace.bind(shared, DEVICE) for workspace in workspaces]
+
+    # Steps
+
+    def prepare(self, *, watched: bool = False) -> None:
+        """Make the launches of a step for the bodies and constraints there are.
+
+        Args:
+            watched: Somebody wants to know of every substep.
+        """
+        self._watched = watched
+        plan = self._find_plan()
+        self.load(self._steppers, lambda structs: self._make_program(structs, DEVICE, plan))
+        self.run_prepared = self._steppers[0].run
+        self._abandon = []
+        whole = self._steppers[0].program.whole
+        if whole is not None and len(self._all_worlds) == 1:
+            self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
+
+    def step_by(self, make_program: ProgramMaker, steppers: list[Stepper] | None = None) -> None:
+        """Step by other programs, and by other means than the usual, from now on."""
+        self._make_program = make_program
+        self._steppers = self._interpreters if steppers is None else steppers
+        self.changed()
+
+    def _find_plan(self) -> Plan:
+        """What steps have to look for now."""
+        touching, sleeping = can_touch(self.arrays, self.touch), can_sleep(self.arrays)
+        if not touching:
+            self.touch.forget_contacts()
+        coupled = touching or sleeping or self._watched or self.touch.user_count > 0
+        self._plan = Plan(touching, sleeping, coupled)
+        return self._plan
+
+    def step(self, due: Sequence[int], worlds: np.ndarray | None = None) -> None:
+        """Perform steps of some worlds.
+
+        Args:
+            due: Substeps of each step, `MOST_STEPS` at most.
+            worlds: Numbers of the worlds, shape (n,); None for all.
+        """
+        if self._plan is None:
+            self.prepare(watched=self._watched)
+        self.due[: len(due)] = due
+        self.run(self._steppers, worlds, step_count=len(due))
+        self.recover(step_count=len(due))
+        self.due[: len(due)] = 1
+
+    def substep(self, due: int, substep: int) -> bool:
+        """Perform one substep of a step of all worlds; the first begins it, the last ends it.
+
+        Returns:
+            False if something did not fit: the worlds are where the step began, and it has to begin again.
+        """
+        self.due[0] = due
+        self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
+        self.due[0] = 1
+        short = self._short_of_room()
+        if len(short):
+            self._grow(short)
+            self.prepare(watched=self._watched)
+        return not len(short)
+
+    def recover(self, **scalars: int) -> None:
+        """Step the worlds again in which something did not fit, with more room, until it does."""
+        if self._first_status[STATUS] > WELL:
+            for launch in self._abandon:
+                launch()
+        while len(short := self._short_of_room()):
+            self._grow(short)
+            self.prepare(watched=self._watched)
+            self.run(self._steppers, short, resumed=1, **scalars)
+
+    def detect(self) -> None:
+        """Find all contacts for the present coordinates of all worlds, without a step."""
+        self._detect()
+        while len(short := self._short_of_room()):
+            self._grow(short)
+            self._detect(short)
+
+    def _detect(self, worlds: np.ndarray | None = None) -> None:
+        if not self._detection_ready:
+            self.load(self._detectors, partial(detection_program, device=DEVICE))
+            self._detection_ready = True
+        self.run(self._detectors, worlds)
+
+    def _short_of_room(self) -> np.ndarray:
+        """The worlds in which something did not fit."""
+        if len(self.status) == 1 and self._first_status[STATUS] >= WELL:
+            return _NONE
+        return np.flatnonzero(self.status[:, STATUS] == OVERFLOW)
+
+    def _grow(self, short: np.ndarray) -> None:
+        """Make room for what did not fit in some worlds."""
+        pairs, contacts = self.status[short, PAIRS_WANTED], self.status[short, CONTACTS_WANTED]
+        growth = 2.0 if self.arrays.world_count == 1 else _GROWTH_OF_MANY
+        self.touch.contacts.reserve({"contact": int(contacts.max())}, growth)
+        for workspace in self._workspaces:
+            workspace.grow(int(pairs.max()), rows=bool(((pairs == 0) & (contacts == 0)).any()))
+        self.growths += 1
+        self.changed()
+
+    def _make_interpreters(self, status: np.ndarray, due: np.ndarray) -> list[Stepper]:
+        return [Interpreter(status, self._worlds, due, self._counter) for _ in self._workspaces]
+
+    # Whatever else is to be done in all worlds
+
+    def task(self, make_launches: Callable[[KernelStructs], list[Launch]]) -> Task:
+        """Something that is done in all worlds whenever it is called.
+
+        Args:
+            make_launches: Makes its launches over the structs of a thread, again after arrays have moved.
+                Each has an argument `first_world`.
+        """
+        interpreters = self._make_interpreters(np.zeros_like(self.status), np.zeros(1, dtype=np.int32))
+        return Task(self, make_launches, interpreters)
+
+    def spread(self, table: str, field: str) -> None:
+        """Give each world a value of its own of a parameter, so far the one that all share.
+
+        Args:
+            table: "model", "shapes" or "users".
+            field: The field in it.
+        """
+        tables = {"model": self.arrays.model, "shapes": self.touch.shapes.table, "users": self.touch.users}
+        if tables[table].spread(field, self.arrays.world_count):
+            self.changed()
+
+    def steps_done(self, worlds: np.ndarray) -> np.ndarray:
+        """How many of the steps asked for last some worlds have done."""
+        return self.status[worlds, STEPS_DONE]
+
+    def sleep_changed(self) -> None:
+        """Let steps look for sleepers again, if somebody has put a world with some back."""
+        if self._plan is not None and not self._plan.sleeping and can_sleep(self.arrays):
+            self.changed()
+
+    def load(self, interpreters: list[Stepper], program: Callable[[KernelStructs], Program]) -> None:
+        """Give a program to the interpreter of each thread, over the structs of that."""
+        for interpreter, structs in zip(interpreters, self._bind(self._workspaces), strict=True):
+            interpreter.load(program(structs))
+
+    def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
+        """Run programs on some worlds, None for all; afterwards they are ready to run as `run_prepared`."""
+        if worlds is None and not scalars and len(interpreters) == 1:
+            interpreters[0].run()
+            return
+        worlds = self._all_worlds if worlds is None else worlds
+        count, whole = len(worlds), len(self._all_worlds)
+        self._worlds[:count] = worlds
+        if self._counter is not None:
+            self._counter[0] = 0
+            scalars["chunk"] = max(1, count // (len(interpreters) * _CHUNKS_PER_THREAD))
+        for interpreter in interpreters:
+            interpreter.ask(world_count=count, **scalars)
+        try:
+            self._threads.run([interpreter.run for interpreter in interpreters])
+        finally:
+            self._worlds[:] = self._all_worlds
+            for interpreter in interpreters:
+                interpreter.ask(
+                    world_count=whole, step_count=1, resumed=0, first_substep=0, end_substep=ALL_SUBSTEPS
+                )
+
+
+class Task:
+    """Something that is done in all worlds whenever it is called; see `Engine.task`."""
+
+    def __init__(
+        self,
+        engine: Engine,
+        make_launches: Callable[[KernelStructs], list[Launch]],
+        interpreters: list[Stepper],
+    ) -> None:
+        self._engine = engine
+        self._make_launches = make_launches
+        self._interpreters = interpreters
+        self._made_at = -1
+
+    def renew(self) -> None:
+        """Make the launches again before the next call."""
+        self._made_at = -1
+
+    def __call__(self) -> None:
+        """Do it."""
+        if self._made_at != self._engine.changes:
+            self._engine.load(self._interpreters, self._program)
+            self._made_at = self._engine.changes
+        self._engine.run(self._interpreters)
+
+    def _program(self, structs: KernelStructs) -> Program:
+        return Program(begin=[], detection=self._make_launches(structs), motion=[], end=[], abandon=[])

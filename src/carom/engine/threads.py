@@ -1,0 +1,37 @@
+"""Threads that run native functions side by side."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+
+class Threads:
+    """Runs functions that release the interpreter's lock, each in a thread of its own.
+
+    Args:
+        count: How many functions there will be.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._pool: ThreadPoolExecutor | None = None
+        self._process = os.getpid()
+
+    def run(self, functions: Sequence[Callable[[], None]]) -> None:
+        """Run all of them, one in this thread, and return when the last has ended."""
+        first, *others = functions
+        if not others:
+            first()
+            return
+        if self._pool is None or self._process != os.getpid():
+            # The threads of a process do not come along when it forks.
+            self._pool = ThreadPoolExecutor(self._count - 1, "carom-worlds")
+            self._process = os.getpid()
+        started = [self._pool.submit(function) for function in others]
+        try:
+            first()
+        finally:
+            for thread in started:
+                thread.result()

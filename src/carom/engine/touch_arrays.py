@@ -1,0 +1,77 @@
+"""The arrays of everything bodies do to each other: shapes, contacts, constraints between them."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+
+from carom.collision.manifold import THERE
+from carom.model.arrays import ArrayTable
+from carom.model.builder import WorldArrays
+from carom.model.contact_structs import Contacts, UserConstraints
+from carom.model.shape_arrays import ShapeArrays
+
+# Room for contacts in each of many worlds, before any have been found.
+_LEAST_CONTACTS = 4
+
+
+class TouchArrays:
+    """Shapes, contacts and user constraints."""
+
+    def __init__(self, arrays: WorldArrays) -> None:
+        self._arrays = arrays
+        self.shapes: ShapeArrays = ShapeArrays()
+        self.contacts: ArrayTable = ArrayTable(Contacts, arrays.world_count)
+        self.users: ArrayTable = ArrayTable(UserConstraints)
+        self.user_count = 0
+
+    def repeated(self, arrays: WorldArrays) -> TouchArrays:
+        """What bodies do to each other in the worlds of some arrays, in all of them as in the first."""
+        other = TouchArrays(arrays)
+        other.shapes = deepcopy(self.shapes)
+        other.contacts = self.contacts.copy(
+            arrays.world_count, {"contact": max(_LEAST_CONTACTS, self.contact_count), "count": 1}
+        )
+        other.users = self.users.copy()
+        other.user_count = self.user_count
+        return other
+
+    @property
+    def contact_count(self) -> int:
+        """Number of contacts now, in the first world."""
+        return int(self.contacts.numpy["count_contacts"][0, THERE])
+
+    def forget_contacts(self) -> None:
+        """Drop all contacts; the rows of their shapes are about to move."""
+        self.contacts.numpy["count_contacts"][:] = 0
+
+    def distrust_contacts(self, worlds: np.ndarray | None = None) -> None:
+        """Let no contact start from its last impulses: somebody has put a body elsewhere.
+
+        So what follows depends on where everything is put, and not on what was there before.
+
+        Args:
+            worlds: In which worlds; None where there is one.
+        """
+        if worlds is not None:
+            self.contacts.numpy["contact_impulse"][worlds, :, 3] = 0.0
+            return
+        count = self.contact_count
+        if count > 0:
+            self.contacts.numpy["contact_impulse"][0, :count, 3] = 0.0
+
+    def reserve(self) -> None:
+        """Bring arrays that go with others to the length of those."""
+        self.shapes.reserve({"link": self._arrays.model.capacity["link"]})
+        self.users.reserve({"user": self.user_count})
+        self._arrays.state.reserve({"user": self.user_count})
+
+    def structs(self, device: str) -> dict[str, Any]:
+        """Warp structs over the present arrays, by the name kernels give them."""
+        return {
+            "shapes": self.shapes.struct(device),
+            "contacts": self.contacts.struct(device),
+            "users": self.users.struct(device),
+        }

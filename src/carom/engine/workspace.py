@@ -1,0 +1,72 @@
+"""What stepping a world needs besides that world."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from carom.collision.capacity import scratch_capacity
+from carom.engine.touch_arrays import TouchArrays
+from carom.model.arrays import ArrayTable
+from carom.model.builder import WorldArrays
+from carom.model.contact_structs import COUPLING_ENTRY_VIEWS, Couplings, Pairs
+from carom.model.launch import KernelStructs
+from carom.model.structs import ENTRY_VIEWS, Scratch
+from carom.physics.couplings import ROWS_PER_PAIR
+
+
+class Workspace:
+    """Room for the intermediate results of one world's step, whichever world it is: one for each thread.
+
+    Nothing in it lasts from one step to the next. Where worlds are stepped side by side, each has its own.
+
+    Attributes:
+        scratch: Of single trees.
+        pairs: Of collision detection.
+        couplings: Of the solver.
+        structs: Structs over these and all other arrays, by the name kernels give them.
+
+    Args:
+        world_count: Number of worlds that have rows of their own; 1 if one at a time is stepped.
+    """
+
+    def __init__(self, world_count: int = 1) -> None:
+        self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
+        self.pairs: ArrayTable = ArrayTable(Pairs, world_count)
+        self.couplings: ArrayTable = ArrayTable(Couplings, world_count, COUPLING_ENTRY_VIEWS)
+        self.structs: KernelStructs = KernelStructs()
+
+    def fit(self, arrays: WorldArrays, touch: TouchArrays) -> None:
+        """Bring arrays that go with others to the length of those."""
+        contacts, users = touch.contacts.capacity["contact"], touch.users.capacity["user"]
+        self.scratch.reserve(arrays.used)
+        self.pairs.reserve(scratch_capacity(touch.shapes.shape_count, contacts))
+        self.couplings.reserve(
+            {
+                "tree": arrays.model.capacity["tree"],
+                "contact": contacts,
+                "unit": contacts,
+                "run": contacts,
+                "patch": contacts // 2,
+                "constraint": arrays.model.capacity["constraint"],
+                "visit": self.scratch.capacity["row"] + ROWS_PER_PAIR * users,
+                "user": users,
+            }
+        )
+
+    def grow(self, pairs: int, *, rows: bool) -> None:
+        """Make room for so many pairs of shapes, and if asked for twice as many rows over two trees."""
+        self.pairs.reserve({"pair": pairs})
+        if rows:
+            capacity = self.couplings.capacity
+            self.couplings.reserve({axis: 2 * capacity[axis] for axis in ("coupling", "jacobian", "run")})
+
+    def bind(self, shared: Mapping[str, Any], device: str) -> KernelStructs:
+        """Structs over the present arrays, and over those that all workspaces share."""
+        self.structs.update(
+            shared,
+            scratch=self.scratch.struct(device),
+            pairs=self.pairs.struct(device),
+            couplings=self.couplings.struct(device),
+        )
+        return self.structs

@@ -1,0 +1,79 @@
+"""Numbers for many worlds, refused where their shapes do not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from carom.checks import Array
+
+Mask = NDArray[np.bool_]
+
+
+def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bool = True) -> Array:
+    """`value` as doubles of a shape, one value standing for all worlds, or all joints.
+
+    Args:
+        value: What a user gave.
+        shape: The shape wanted, worlds first.
+        name: What messages call it.
+        finite: Whether infinities are refused; NaN always is.
+
+    Raises:
+        ValueError: It does not broadcast to that shape, or something in it is not finite.
+    """
+    array = np.asarray(value, dtype=np.float64)
+    good = np.isfinite(array).all() if finite else not np.isnan(array).any()
+    if not good:
+        raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, and is not everywhere")
+    try:
+        return np.broadcast_to(array, shape)
+    except ValueError:
+        raise ValueError(
+            f"{name} has shape {array.shape}; it must have shape {shape}, or one that broadcasts to it"
+        ) from None
+
+
+def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
+    """The worlds that are meant, as numbers.
+
+    Args:
+        where: A mask (count,), numbers of worlds, or None for all.
+        count: How many worlds there are.
+
+    Raises:
+        ValueError: A mask has another length.
+        IndexError: There is no such world.
+    """
+    if where is None:
+        return np.arange(count)
+    chosen = np.atleast_1d(np.asarray(where))
+    if chosen.dtype == np.bool_:
+        if chosen.shape != (count,):
+            raise ValueError(f"where has shape {chosen.shape}; as a mask it must have shape ({count},)")
+        return np.flatnonzero(chosen)
+    if chosen.size == 0:
+        return np.zeros(0, dtype=np.int64)
+    if not np.issubdtype(chosen.dtype, np.integer):
+        raise ValueError(f"where must be a mask or numbers of worlds, not {chosen.dtype}")
+    if chosen.ndim != 1 or chosen.min() < 0 or chosen.max() >= count:
+        raise IndexError(f"where names worlds that do not exist: there are worlds 0 to {count - 1}")
+    return chosen.astype(np.int64)
+
+
+def choose(what: str, names: Sequence[str], key: int | str) -> int:
+    """The index of a joint or a link by index or name.
+
+    Raises:
+        KeyError: Nothing has that name.
+        IndexError: There is no such index.
+    """
+    if isinstance(key, str):
+        if key not in names:
+            raise KeyError(f"no {what} is called {key!r}; there are {', '.join(names)}")
+        return names.index(key)
+    if not 0 <= key < len(names):
+        raise IndexError(f"{what} {key} is out of range: indices are 0 to {len(names) - 1}")
+    return key

@@ -1,0 +1,103 @@
+"""Parameters of a body that differ from world to world, for domain randomisation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.body import Body
+from carom.dynamics_changes import shape_inertia
+from carom.engine.engine import Engine
+from carom.model.body_spec import BASE
+from carom.model.codes import ConstraintKind
+from carom.worlds.checks import broadcast
+
+# Fields of the tables by what users call them.
+OF_SURFACE = {
+    "lateral_friction": "link_lateral_friction",
+    "rolling_friction": "link_rolling_friction",
+    "spinning_friction": "link_spinning_friction",
+    "restitution": "link_restitution",
+    "contact_stiffness": "link_stiffness",
+    "contact_damping": "link_contact_damping",
+}
+OF_BODY = {
+    "linear_damping": "tree_linear_damping",
+    "angular_damping": "tree_angular_damping",
+    "max_joint_velocity": "tree_max_velocity",
+}
+_LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
+_ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, "joint_damping", *_LIMITS)
+_NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping")
+
+
+def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str, ArrayLike]) -> None:
+    """See `BodyBatch.change_dynamics`; nothing changes if something does not fit."""
+    count = engine.arrays.world_count
+    unknown = [name for name in changes if name not in _ALL]
+    if unknown:
+        raise TypeError(f"there is no parameter {unknown[0]!r} that can differ; there are {', '.join(_ALL)}")
+    values = {
+        name: broadcast(
+            value, (count, 3) if name == "inertia" else (count,), name, finite=name not in _LIMITS
+        )
+        for name, value in changes.items()
+    }
+    for name in _NOT_NEGATIVE:
+        if name in values and (values[name] < 0.0).any():
+            raise ValueError(f"{name} must not be negative")
+    writes = list(_writes(engine, body, link, values))
+    for table, field, rows, numbers in writes:
+        engine.spread(table, field)
+        array = (engine.touch.shapes.table if table == "shapes" else engine.arrays.model).numpy[field]
+        array[:, rows] = numbers
+
+
+def _writes(
+    engine: Engine, body: Body, link: int, values: Mapping[str, np.ndarray]
+) -> Iterator[tuple[str, str, int | slice, np.ndarray]]:
+    """What to write where: table, field, rows, numbers with the worlds in front."""
+    row, tree = body.first_link + 1 + link, body.rows.tree
+    for name, numbers in values.items():
+        if name in OF_SURFACE:
+            yield "shapes", OF_SURFACE[name], row, numbers
+        elif name in OF_BODY:
+            yield "model", OF_BODY[name], tree, numbers
+        elif name == "mass":
+            if link == BASE and body.fixed_base:
+                raise ValueError("the base is fixed: it has no mass in any world")
+            if not numbers.all():
+                raise ValueError("mass must be greater than 0: a link is free in all worlds or in none")
+            yield "model", "link_mass", row, numbers
+            if "inertia" not in values:
+                yield "model", "link_inertia", row, np.array([shape_inertia(body, link, m) for m in numbers])
+        elif name == "inertia":
+            yield "model", "link_inertia", row, numbers
+        elif name == "joint_damping":
+            _require_joint(link, name)
+            first = body.velocity_index[link]
+            dofs = slice(first, first + body.velocity_count[link])
+            yield "model", "dof_damping", dofs, numbers[:, None]
+        else:
+            _require_joint(link, name)
+            yield "model", _LIMITS[name], _limit_row(engine, body, link), numbers
+
+
+def _require_joint(link: int, name: str) -> None:
+    if link == BASE:
+        raise ValueError(f"the base has no joint, and no {name}")
+
+
+def _limit_row(engine: Engine, body: Body, joint: int) -> int:
+    """Row of a joint's limit among the constraints."""
+    model, used = engine.arrays.model.numpy, engine.arrays.used["constraint"]
+    is_limit = model["constraint_kind"][:used] == ConstraintKind.LIMIT
+    rows = np.flatnonzero(is_limit & (model["constraint_link"][:used] == body.first_link + 1 + joint))
+    if not len(rows):
+        name = body.spec.links[joint].joint_name
+        raise ValueError(
+            f"joint {name!r} has no limits: give it some in the world that these are copies of, before"
+        )
+    return int(rows[0])

@@ -1,0 +1,64 @@
+"""Camera images of many worlds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.engine.engine import Engine
+from carom.world import World
+
+if TYPE_CHECKING:
+    from carom.camera import Camera
+
+
+class Images(NamedTuple):
+    """What a camera saw in each world; row 0 is the top.
+
+    Attributes:
+        colour: (n, height, width, 3) uint8 red, green and blue.
+        depth: (n, height, width) float32 distance along the optical axis [m]; infinite for nothing.
+        body_ids: (n, height, width) int32 ids of bodies; -1 where there is nothing.
+        link_indices: (n, height, width) int32 links of those bodies; -1 is the base, and nothing.
+    """
+
+    colour: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    body_ids: NDArray[np.int32]
+    link_indices: NDArray[np.int32]
+
+
+def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray) -> Images:
+    """Images of some worlds, taken one after the other in a scene that is put into the state of each.
+
+    A camera that is mounted on a link of the world that these are copies of goes with that link in each.
+    """
+    mounted = camera.link
+    if mounted is not None:
+        own = scene.bodies[mounted.body.id].links[mounted.index]
+        camera.mount(own)
+    try:
+        images = []
+        for world in worlds:
+            positions = engine.arrays.state.numpy["position"][world]
+            scene.arrays.state.numpy["position"][0, : len(positions)] = positions
+            images.append(camera.capture(scene))
+    finally:
+        camera.mount(mounted)
+    height, width = camera.height, camera.width
+    size = (0, height, width)
+    if not images:
+        return Images(
+            np.zeros((*size, 3), np.uint8),
+            np.zeros(size, np.float32),
+            np.zeros(size, np.int32),
+            np.zeros(size, np.int32),
+        )
+    return Images(
+        np.stack([image.colour for image in images]),
+        np.stack([image.depth for image in images]),
+        np.stack([image.body_ids for image in images]),
+        np.stack([image.link_indices for image in images]),
+    )

@@ -1,0 +1,82 @@
+"""One of many worlds as a `World`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.engine.engine import Engine
+from carom.model.arrays import ArrayTable
+from carom.model.body_spec import BASE
+from carom.model.codes import ConstraintKind
+from carom.world import World
+from carom.worlds.dynamics import OF_BODY, OF_SURFACE
+
+
+def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_time: float) -> World:
+    """A copy of a scene with the state and the parameters of one of the worlds of an engine."""
+    world = scene.copy()
+    world.time, world.unspent_time = float(time), float(unspent_time)
+    contacts = engine.touch.contacts
+    world.touch.contacts.reserve(contacts.capacity)
+    _copy_row(engine.arrays.state, world.arrays.state, number)
+    _copy_row(contacts, world.touch.contacts, number)
+    _take_parameters(world, engine, number)
+    world.scene_changed()
+    return world
+
+
+def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:
+    for name, array in source.numpy.items():
+        target.numpy[name][0, : array.shape[1]] = array[number]
+
+
+def _take_parameters(world: World, engine: Engine, number: int) -> None:
+    """Bring what a world knows of its bodies to what is in the arrays, where worlds differ."""
+    model, shapes = engine.arrays.model, engine.touch.shapes.table
+    x, y, z = _row(model, "gravity_vector", number)[0].tolist()
+    world.parameters.gravity = (x, y, z)
+    for body in world.bodies.values():
+        tree = body.rows.tree
+        damping = {name: float(_row(model, field, number)[tree]) for name, field in OF_BODY.items()}
+        body.change_dynamics(BASE, **damping)
+        for link in range(BASE, body.joint_count):
+            row, dynamics = body.first_link + 1 + link, body.dynamics(link)
+            for name, field in OF_SURFACE.items():
+                setattr(dynamics, name, float(_row(shapes, field, number)[row]))
+            if link >= 0 or not body.fixed_base:
+                dynamics.mass = float(_row(model, "link_mass", number)[row])
+                ix, iy, iz = _row(model, "link_inertia", number)[row].tolist()
+                dynamics.inertia = (ix, iy, iz)
+            if link >= 0 and body.velocity_count[link]:
+                dof = body.velocity_index[link]
+                dynamics.joint_damping = float(_row(model, "dof_damping", number)[dof])
+            body.set_dynamics(link, dynamics)
+    _take_limits(world, engine, number)
+    for user, row in world.user_constraints.rows.items():
+        constraint = world.user_constraints.get(user)
+        if constraint is not None:
+            constraint.enabled = bool(_row(engine.touch.users, "user_enabled", number)[row])
+
+
+def _take_limits(world: World, engine: Engine, number: int) -> None:
+    model = engine.arrays.model
+    kinds, links = model.numpy["constraint_kind"], model.numpy["constraint_link"]
+    lower, upper = _row(model, "constraint_lower", number), _row(model, "constraint_upper", number)
+    rows = {
+        int(links[row]): row
+        for row in range(engine.arrays.used["constraint"])
+        if kinds[row] == ConstraintKind.LIMIT
+    }
+    for constraint in world.constraints.all:
+        if constraint.kind != ConstraintKind.LIMIT:
+            continue
+        row = rows[constraint.body.first_link + 1 + constraint.joint]
+        constraint.lower, constraint.upper = float(lower[row]), float(upper[row])
+        dynamics = constraint.body.dynamics(constraint.joint)
+        dynamics.joint_lower_limit, dynamics.joint_upper_limit = constraint.lower, constraint.upper
+
+
+def _row(table: ArrayTable, field: str, number: int) -> np.ndarray:
+    """The rows of a world; all share those of the first where they do not differ."""
+    array = table.numpy[field]
+    return array[number if len(array) > 1 else 0]

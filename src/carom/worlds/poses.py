@@ -1,0 +1,40 @@
+"""Where the links of a body are in each world, and how they move, for the present coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.engine.engine import DEVICE, Engine
+from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
+
+
+class PoseFinder:
+    """Brings link poses and velocities of one tree up to date in all worlds.
+
+    Args:
+        engine: The worlds.
+        tree: The tree.
+    """
+
+    def __init__(self, engine: Engine, tree: int) -> None:
+        self._state = engine.arrays.state.numpy
+        scalars = {"tree": tree, "first_world": 0}
+        self._place = engine.task(
+            lambda structs: [structs.launch(forward_kinematics_kernel, DEVICE, **scalars)]
+        )
+        self._move = engine.task(
+            lambda structs: [
+                structs.launch(kernel, DEVICE, **scalars)
+                for kernel in (forward_kinematics_kernel, link_twist_kernel)
+            ]
+        )
+
+    def poses(self) -> np.ndarray:
+        """`State.link_pose`, (worlds, links of all bodies, 7), true for the links of the tree."""
+        self._place()
+        return self._state["link_pose"]
+
+    def velocities(self) -> np.ndarray:
+        """`State.link_twist`, (worlds, links of all bodies, 6), true for the links of the tree."""
+        self._move()
+        return self._state["link_twist"]

@@ -1,0 +1,91 @@
+"""Rays in many worlds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from carom.checks import Array, finite
+from carom.collision.places import places_struct
+from carom.collision.ray_packets import Rays
+from carom.collision.rays import prepare_rays_kernel, rays_kernel
+from carom.engine.engine import DEVICE, Engine
+from carom.model.arrays import ArrayTable
+from carom.model.launch import KernelStructs, Launch
+from carom.model.real import NUMPY_REAL
+from carom.physics.kinematics import link_poses_kernel
+
+
+class RayHits(NamedTuple):
+    """What rays hit in each world.
+
+    Attributes:
+        bodies: Numbers of the bodies, -1 for nothing, (count, n).
+        links: Their links, -1 for the base and for nothing, (count, n).
+        fractions: Where along the rays, 0 at the start, 1 at the end and for nothing, (count, n).
+        positions: Points in world axes [m], (count, n, 3).
+        normals: Unit normals there, (count, n, 3).
+    """
+
+    bodies: NDArray[np.int32]
+    links: NDArray[np.int32]
+    fractions: Array
+    positions: Array
+    normals: Array
+
+
+class RayCaster:
+    """Casts rays in all worlds at once.
+
+    Args:
+        engine: The worlds.
+        places: Body and link that each row of the link arrays stands for.
+    """
+
+    def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:
+        self._count = engine.arrays.world_count
+        self._engine = engine
+        self._places = places_struct(places, DEVICE)
+        self._rays = ArrayTable(Rays)
+        self._asked: tuple[int, int] = (0, -1)
+        self._cast = engine.task(self._launches)
+
+    def __call__(self, starts: ArrayLike, ends: ArrayLike, mask: int) -> RayHits:
+        """Cast rays; see `Worlds.rays`."""
+        starts, ends = self._points(starts, "starts"), self._points(ends, "ends")
+        if starts.shape[1] != ends.shape[1]:
+            raise ValueError(f"there are {starts.shape[1]} starts and {ends.shape[1]} ends")
+        number = starts.shape[1]
+        total = self._count * number
+        if self._rays.reserve({"ray": total}) or (number, mask) != self._asked:
+            self._asked = number, mask
+            self._cast.renew()
+        rays = self._rays.numpy
+        rays["ray_start"][:total], rays["ray_end"][:total] = starts.reshape(-1, 3), ends.reshape(-1, 3)
+        self._cast()
+        names = ("body", "link", "fraction", "position", "normal")
+        found = (rays[f"ray_{name}"][:total].copy() for name in names)
+        return RayHits(*(array.reshape(self._count, number, *array.shape[1:]) for array in found))
+
+    def _launches(self, structs: KernelStructs) -> list[Launch]:
+        structs.update(places=self._places, rays=self._rays.struct(DEVICE))
+        number, mask = self._asked
+        return [
+            structs.launch(link_poses_kernel, DEVICE, first_world=0),
+            structs.launch(prepare_rays_kernel, DEVICE, first_world=0),
+            structs.launch(
+                rays_kernel, DEVICE, first_world=0, count=number, threads=1, mask=mask, hit_number=0,
+                separation=float(NUMPY_REAL(0.0)),
+            ),
+        ]  # fmt: skip
+
+    def _points(self, points: ArrayLike, name: str) -> Array:
+        array = finite(points, name)
+        if array.ndim == 2 and array.shape[1] == 3:
+            return np.broadcast_to(array, (self._count, *array.shape))
+        if array.ndim == 3 and array.shape[::2] == (self._count, 3):
+            return array
+        raise ValueError(f"{name} has shape {array.shape}; it must be (n, 3) or ({self._count}, n, 3)")

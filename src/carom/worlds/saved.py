@@ -1,0 +1,94 @@
+"""States of worlds to come back to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom.checks import Array
+from carom.collision.manifold import THERE
+from carom.engine.engine import Engine
+from carom.model.arrays import ArrayTable
+
+_STATUS = "status_entry"
+_CONTACT = "contact_"
+
+
+@dataclass(frozen=True, slots=True)
+class SavedWorlds:
+    """States of some worlds; get them from `Worlds.save`.
+
+    Attributes:
+        worlds: Which worlds they are states of, shape (n,).
+        times: Simulated time of each [s], shape (n,).
+        unspent_times: Part of it that no substep has covered yet [s], shape (n,).
+        state: Fields of `State`, the worlds in front.
+        contacts: Fields of `Contacts`, likewise; as many rows as the world with most contacts has.
+    """
+
+    worlds: np.ndarray
+    times: Array
+    unspent_times: Array
+    state: dict[str, np.ndarray]
+    contacts: dict[str, np.ndarray]
+
+    @classmethod
+    def take(cls, engine: Engine, worlds: np.ndarray, times: Array, unspent_times: Array) -> SavedWorlds:
+        """The present states of some worlds."""
+        counts = engine.touch.contacts.numpy["count_contacts"][worlds, THERE]
+        most = int(counts.max(initial=0))
+        state = {name: array[worlds] for name, array in _fields(engine.arrays.state)}
+        contacts = {
+            name: array[worlds, :most] if name.startswith(_CONTACT) else array[worlds]
+            for name, array in _fields(engine.touch.contacts)
+        }
+        return cls(worlds.copy(), times.copy(), unspent_times.copy(), state, contacts)
+
+    def __len__(self) -> int:
+        return len(self.worlds)
+
+    def rows_for(self, worlds: np.ndarray, count: int) -> np.ndarray:
+        """Which of the states each of some worlds gets.
+
+        Raises:
+            ValueError: There are not as many as are needed.
+        """
+        if len(self) == 1:
+            return np.zeros(len(worlds), dtype=np.int64)
+        if len(self) == count:
+            return worlds
+        if len(self) != len(worlds):
+            raise ValueError(
+                f"these are states of {len(self)} worlds; {len(worlds)} are to be restored: give as many, "
+                f"or one, or states of all {count} worlds"
+            )
+        return np.arange(len(worlds))
+
+    def put_back(self, engine: Engine, worlds: np.ndarray, rows: np.ndarray) -> None:
+        """Give worlds the states of some rows.
+
+        Raises:
+            ValueError: They are states of other bodies; nothing has changed.
+        """
+        fields = dict(_fields(engine.arrays.state))
+        if {name: array.shape[1:] for name, array in fields.items()} != {
+            name: array.shape[1:] for name, array in self.state.items()
+        }:
+            raise ValueError("these are states of worlds with other bodies")
+        most = int(self.contacts["count_contacts"][rows, THERE].max(initial=0))
+        if engine.touch.contacts.reserve({"contact": most}):
+            engine.changed()
+        for name, array in fields.items():
+            array[worlds] = self.state[name][rows]
+        engine.status[worlds] = 0
+        for name, array in _fields(engine.touch.contacts):
+            if name.startswith(_CONTACT):
+                array[worlds, :most] = self.contacts[name][rows, :most]
+            else:
+                array[worlds] = self.contacts[name][rows]
+        engine.sleep_changed()
+
+
+def _fields(table: ArrayTable) -> list[tuple[str, np.ndarray]]:
+    return [(name, array) for name, array in table.numpy.items() if name != _STATUS]
