@@ -245,7 +245,7 @@ def test_camera_presets_numbers_and_following(page: Page, arm: int):
     page.page.locator("#bodies summary").click()
     page.page.locator(f"#bodies-list button[data-body='{cube}']").click()
     page.page.locator("#follow").check()
-    page.page.wait_for_timeout(300)
+    page.until("app.camera.followed !== null")
     before = page.page.evaluate("app.camera.target")
     p.resetBasePositionAndOrientation(cube, [0.5, 1, 0.5], [0, 0, 0, 1])
     page.until(f"Math.abs(app.camera.target[0] - {before[0]} - 0.5) < 1e-4")
