@@ -41,7 +41,7 @@ class Scale:
         return torch.as_tensor(np.clip(scaled, -10.0, 10.0), dtype=torch.float32)
 
 
-def layer(inputs, outputs, gain=np.sqrt(2.0)):
+def layer(inputs, outputs, gain=1.414):
     made = nn.Linear(inputs, outputs)
     nn.init.orthogonal_(made.weight, gain)
     nn.init.zeros_(made.bias)

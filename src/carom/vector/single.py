@@ -24,10 +24,10 @@ class SingleEnv(gymnasium.Env[np.ndarray, Any]):
         options: Its arguments besides `num_envs` and `autoreset_mode`.
     """
 
-    metadata = {"render_modes": ["rgb_array"]}  # noqa: RUF012  # as Gymnasium has it
-
     def __init__(self, make: Any, **options: Any) -> None:
         self.many: WorldsEnv = make(num_envs=1, autoreset_mode=AutoresetMode.DISABLED, threads=1, **options)
+        pace = self.many.steps * self.many.worlds.time_step
+        self.metadata = {"render_modes": ["rgb_array"], "render_fps": round(1.0 / pace)}
         self.observation_space = self.many.single_observation_space
         self.action_space = self.many.single_action_space
         self.render_mode = self.many.render_mode
@@ -36,7 +36,9 @@ class SingleEnv(gymnasium.Env[np.ndarray, Any]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begin an episode."""
-        observations, infos = self.many.reset(seed=seed)
+        super().reset(seed=seed)
+        self.many.random.generators[0] = self.np_random
+        observations, infos = self.many.reset()
         return observations[0], _own(infos)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:

@@ -26,7 +26,7 @@ class StableBaselinesEnv(VecEnv):
         env: The environment it shows.
 
     Args:
-        env: An environment whose `autoreset_mode` is `SAME_STEP`, or what `gymnasium.make_vec` returns for it.
+        env: An environment whose `autoreset_mode` is `SAME_STEP`, from its class or `gymnasium.make_vec`.
 
     Raises:
         ValueError: It begins episodes at another time.
