@@ -85,6 +85,7 @@ MAY_IMPORT = {
         "pybullet_data",
         "pybullet_utils",
         # Environments many at once.
+        *MODEL,
         "carom.checks",
         "carom.camera",
         "carom.vector",

@@ -69,6 +69,7 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
 _VECTORS = {
     "CartPoleBulletEnv-v1": "cartpole:CartPoleVectorEnv",
     "CartPoleContinuousBulletEnv-v0": "cartpole:CartPoleContinuousVectorEnv",
+    "KukaBulletEnv-v0": "kuka:KukaVectorEnv",
     "InvertedPendulumBulletEnv-v0": "pendula:InvertedPendulumVectorEnv",
     "InvertedPendulumSwingupBulletEnv-v0": "pendula:InvertedPendulumSwingupVectorEnv",
     "InvertedDoublePendulumBulletEnv-v0": "pendula:InvertedDoublePendulumVectorEnv",

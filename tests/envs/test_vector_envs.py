@@ -95,3 +95,29 @@ def test_those_that_can_be_made_many_at_once_are_registered():
     assert set(LENGTHS) <= set(pybullet_envs._VECTORS)
     for name in pybullet_envs._VECTORS:
         assert gymnasium.spec(name).vector_entry_point
+
+
+@pytest.mark.parametrize("options", [{}, {"isDiscrete": True, "actionRepeat": 3}], ids=["numbers", "choices"])
+def test_each_kuka_is_the_single_one_with_its_seed(options: dict[str, Any]):
+    """Their episodes end in a thousand steps of grasping and lifting."""
+    many: Any = gymnasium.make_vec("KukaBulletEnv-v0", num_envs=2, **options)
+    singles: list[Any] = [gymnasium.make("KukaBulletEnv-v0", **options) for _ in range(2)]
+    expected: list[Any] = [(single.reset(seed=SEED + k)[0],) for k, single in enumerate(singles)]
+    same(many.reset(seed=SEED)[0], [told[0] for told in expected], "the beginning")
+    begun = 0
+    for step in range(999):
+        actions = [action_of(many.single_action_space, world, step) for world in range(2)]
+        observations, rewards, terminations, _, _ = many.step(np.array(actions))
+        for world, single in enumerate(singles):
+            if len(expected[world]) > 1 and expected[world][2]:
+                expected[world] = (single.reset()[0], 0.0, False)
+                begun += 1
+            else:
+                expected[world] = single.step(actions[world])
+        same(observations, [told[0] for told in expected], step)
+        same(rewards, [told[1] for told in expected], step)
+        assert terminations.tolist() == [told[2] for told in expected], step
+        if begun == 2:
+            break
+    assert begun == 2
+    many.close()
