@@ -14,6 +14,7 @@
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
 #   make watching     what it costs to be watched, in a browser; needs Chromium
 #   make clients      other people's tests and scripts on PyBullet and on Carom; needs git and GitHub
+#   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
@@ -32,7 +33,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench clients growth watching clean
+.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench clients growth watching gpu-report clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -129,6 +130,9 @@ CLIENT_SOURCES ?= .clients/sources
 clients: .clients/carom/clients .clients/oracle/clients
 	$(PYTHON) -m tests.clients.run --carom .clients/carom/bin/python --oracle .clients/oracle/bin/python \
 		--work .clients --sources $(CLIENT_SOURCES) $(CLIENTS)
+
+gpu-report: $(VENV)/dev
+	PYTHONPATH=. $(RUN) -m tools.gpu.report
 
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak

@@ -37,14 +37,15 @@ MAY_IMPORT = {
         "carom.version",
     },
     "carom.worlds": {*ENGINE, "carom.checks", "carom.world", "carom.camera"},
-    "carom.vector": {"carom.checks", "carom.world", "carom.worlds", "carom.camera"},
+    "carom.vector": {"carom.checks", "carom.world", "carom.worlds", "carom.camera", "pybullet_data"},
     "carom.algorithms": {*ENGINE, "carom.world"},
     "carom.render": {*ENGINE, "carom.saved", "carom.world"},
-    "carom.viewer": {*ENGINE, "carom.world", "carom.render"},
+    "carom.viewer": {*ENGINE, "carom.checks", "carom.world", "carom.render"},
     "carom.camera": {*DESCRIPTION, "carom.checks", "carom.world", "carom.render"},
     "carom.video": {"carom.checks"},
     "carom.recorder": {"carom.checks", "carom.world", "carom.camera", "carom.video"},
     "carom.warmup": {*ENGINE, "carom.algorithms", "carom.render"},
+    "carom.record": {"carom.world", "carom.viewer"},
     "carom": {
         "carom.world",
         "carom.worlds",
@@ -56,6 +57,7 @@ MAY_IMPORT = {
     "carom.cli": {
         *MODEL,
         "carom.serve",
+        "carom.record",
         "carom.world",
         "carom.viewer",
         "carom.version",
@@ -79,11 +81,13 @@ MAY_IMPORT = {
     "pybullet_data": set(),
     "eglRenderer": set(),
     # The URDF editor writes files of its own.
-    "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
+    "pybullet_utils": {"pybullet", "pybullet_data", *DESCRIPTION, "carom.formats"},
+    "pybullet_robots": {"pybullet", "pybullet_data", "pybullet_utils"},
     "pybullet_envs": {
         "pybullet",
         "pybullet_data",
         "pybullet_utils",
+        "pybullet_robots",
         # Environments many at once.
         *MODEL,
         "carom.checks",
@@ -92,6 +96,7 @@ MAY_IMPORT = {
         "carom.world",
         "carom.worlds",
     },
+    "pybullet_examples": {"pybullet_utils"},
 }
 
 

@@ -69,6 +69,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     view.set_defaults(command=_view)
 
+    record = commands.add_parser("record", help="run a script and write a page that replays its world")
+    record.add_argument("script", type=Path, help="Python script, unchanged")
+    record.add_argument("output", type=Path, help="HTML file to write")
+    record.add_argument("arguments", nargs=argparse.REMAINDER, help="arguments of the script")
+    record.add_argument("--seconds", type=_positive, help="end the script after so much simulated time")
+    record.add_argument("--fps", type=_positive, default=60.0, help="frames for each second (default 60)")
+    record.set_defaults(command=_record)
+
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
     convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
     convert.add_argument("output", type=Path, help="URDF file to write")
@@ -134,6 +142,19 @@ def _view(options: argparse.Namespace) -> None:
         pass
     finally:
         view.viewer.close()
+
+
+def _record(options: argparse.Namespace) -> None:
+    from carom.record import Take, record
+
+    take = Take(options.script, options.output, options.arguments, options.seconds, options.fps)
+    if not take.script.is_file():
+        raise FileNotFoundError(f"{take.script}: no such script")
+    files = record(take)
+    for file in files:
+        print(f"Wrote {file}")
+    if not files:
+        print(f"{take.script} made no world, so there is nothing to replay.", file=sys.stderr)
 
 
 def _convert(options: argparse.Namespace) -> None:

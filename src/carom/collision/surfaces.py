@@ -47,7 +47,7 @@ def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
 def region_around(
     shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, surface: Int32, reach: real
 ) -> Region:
-    """The region of a surface that is within reach of a shape."""
+    """The region of a surface that is within reach of the bounds of a shape."""
     to_surface = wp.transpose(pairs.shape_frame[world, surface])
     turn = to_surface * pairs.shape_frame[world, shape]
     center = turn * local_center(shapes, shape) + to_surface * (
@@ -112,10 +112,21 @@ def triangle_normal(core: Core) -> Vector3:
 
 @func
 def touch_surface(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real, around: real
 ) -> Int32:
-    """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number."""
-    region = region_around(shapes, pairs, world, a, b, reach)
+    """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
+
+    Args:
+        shapes: All shapes.
+        pairs: Room for candidates, and the poses of the shapes.
+        world: The world.
+        a: Row of the convex shape.
+        b: Row of the surface.
+        core: Core of a.
+        reach: Largest distance of a contact [m].
+        around: Triangles within this distance of the bounds of a are looked at [m].
+    """
+    region = region_around(shapes, pairs, world, a, b, around)
     radius = surface_radius(shapes, core, b)
     thickness = 2.0 * radius + SAME_PLANE
     count = Int32(0)

@@ -18,6 +18,8 @@ from typing import Any, cast
 import numpy as np
 import warp as wp
 
+from carom.model.zeros import zeros
+
 _FIRST_CAPACITY = 16
 _KEPT = "_carom_memory"
 
@@ -101,7 +103,7 @@ class ArrayTable:
         shape: tuple[int, ...] = (capacity,)
         if field.per_world:
             shape = (self._world_counts[name], *shape)
-        return np.zeros((*shape, *field.shape), dtype=field.scalar)
+        return zeros((*shape, *field.shape), field.scalar)
 
     def _replace(self, name: str, array: np.ndarray) -> None:
         self._memory[name] = array
@@ -126,10 +128,15 @@ class ArrayTable:
             memory = self._bytes[name] = memoryview(array).cast("B")
         return memory
 
-    def reserve(self, needed: Mapping[str, int]) -> bool:
-        """Make room for `needed` rows on each axis; true if arrays were replaced."""
+    def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
+        """Make room for `needed` rows on each axis; true if arrays were replaced.
+
+        Args:
+            needed: Rows by axis.
+            growth: An axis that grows becomes at least so many times as long.
+        """
         grown = {
-            axis: max(count, 2 * self.capacity[axis])
+            axis: max(count, int(growth * self.capacity[axis]))
             for axis, count in needed.items()
             if axis in self.capacity and count > self.capacity[axis]
         }
@@ -183,7 +190,7 @@ class ArrayTable:
             if field.per_world:
                 other._world_counts[name] = world_count or len(array)
                 array = array[:, :count]
-                array = array.copy() if world_count is None else np.repeat(array[:1], world_count, axis=0)
+                array = array.copy() if world_count is None else _repeated(array[0], world_count)
             else:
                 array = array[:count].copy()
             other._replace(name, array)
@@ -233,6 +240,14 @@ class ArrayTable:
         """Set every entry to zero."""
         for array in self.numpy.values():
             array.fill(0)
+
+
+def _repeated(rows: np.ndarray, count: int) -> np.ndarray:
+    """The same rows so many times. Memory that holds nothing but zeros is not touched, and takes no room."""
+    array = zeros((count, *rows.shape), rows.dtype)
+    if rows.dtype.names is not None or rows.any():
+        array[:] = rows
+    return array
 
 
 def _shown(memory: np.ndarray, field: Field, device: str) -> Any:

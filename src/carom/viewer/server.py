@@ -20,6 +20,8 @@ from websockets.http11 import Request, Response
 from carom.viewer.access import host_allowed, origin_allowed
 from carom.viewer.board import Board
 from carom.viewer.messages import MAX_INCOMING_BYTES, received
+from carom.viewer.page_files import page_files
+from carom.viewer.replay_page import replay_page
 
 _log = logging.getLogger("carom")
 # Of the library: browsers that turn away in the middle of a request are no news.
@@ -28,7 +30,6 @@ _quiet.setLevel(logging.CRITICAL)
 
 PREFERRED_PORT = 8400
 _FRAMES_PER_SECOND = 60
-_PAGE = Path(__file__).with_name("page")
 _KINDS = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -46,12 +47,9 @@ _POLICY = (
 @cache
 def _files() -> dict[str, tuple[str, bytes]]:
     """Kind and content of everything the server gives out, by path."""
-    files = {
-        f"/{path.name}": (_KINDS[path.suffix], path.read_bytes())
-        for path in sorted(_PAGE.iterdir())
-        if path.suffix in _KINDS
-    }
-    return {**files, "/": files["/index.html"]}
+    files = {f"/{name}": (_KINDS[Path(name).suffix], content) for name, content in page_files().items()}
+    replay = (_KINDS[".html"], replay_page().encode())
+    return {**files, "/": files["/index.html"], "/replay.html": replay}
 
 
 class _Page:
@@ -189,12 +187,13 @@ class PageServer:
             await asyncio.sleep(due - loop.time())
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
-        host = request.headers.get("Host")
-        if not host_allowed(self.host, host):
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        host = hosts[0] if len(hosts) == 1 else None
+        if len(origins) > 1 or not host_allowed(self.host, host):
             return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
-            if not origin_allowed(host, request.headers.get("Origin")):
+            if not origin_allowed(host, origins[0] if origins else None):
                 return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
             return None
         file = _files().get(path)

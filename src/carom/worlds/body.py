@@ -326,21 +326,21 @@ class BodyBatch:
         self._poses.update(world_numbers(where, self._count))
 
     def apply_forces(
-        self, link: int | str, forces: ArrayLike, at: ArrayLike | None = None, torques: ArrayLike = 0.0
+        self, link: int | str, forces: ArrayLike, points: ArrayLike | None = None, torques: ArrayLike = 0.0
     ) -> None:
         """Push a link during the next step, in addition to what else pushes it.
 
         Args:
             link: The link by index (-1 is the base) or name.
             forces: [N] in world axes, (count, 3) or what broadcasts to it.
-            at: Where in world axes [m], likewise; None for the centre of mass.
+            points: Where they act, in world axes [m], likewise; None for the centre of mass.
             torques: [N m] in world axes, likewise.
         """
         (row,) = self.link_rows(link)
         force = broadcast(forces, (self._count, 3), "forces")
         torque = broadcast(torques, (self._count, 3), "torques")
-        if at is not None:
-            lever = broadcast(at, (self._count, 3), "at") - self._poses.poses()[:, row, :3]
+        if points is not None:
+            lever = broadcast(points, (self._count, 3), "points") - self._poses.poses()[:, row, :3]
             torque = torque + np.cross(lever, force)
         wrench = self._state["link_wrench"][:, row]
         wrench[:, :3] += force

@@ -1,0 +1,216 @@
+"""Parameters that differ from world to world: each world is the one that has them alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from tests.physics.contact_scenes import add_box, add_floor, earth
+from tests.worlds.same_bits import assert_same_bits
+
+import pybullet_data
+from carom import Body, World, Worlds
+from carom.model.codes import UserConstraintKind
+
+COUNT, STEPS = 4, 60
+# What has an effect only where the other body has it as well.
+_OF_PAIRS = ("restitution", "spinning_friction", "contact_damping")
+VALUES = np.array([0.2, 0.5, 1.0, 1.7])
+
+
+def panda_world() -> tuple[World, Body]:
+    world = earth()
+    panda = world.load_urdf(f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf", fixed_base=True)
+    panda.joints.set_velocity_targets(0.3, max_forces=20.0)
+    return world, panda
+
+
+def box_world() -> tuple[World, Body]:
+    world = earth()
+    add_floor(world)
+    box = add_box(world, (0.0, 0.0, 0.12))
+    box.set_base_velocity((1.0, 0.3, -0.5), (0.2, 0.1, 3.0))
+    return world, box
+
+
+def assert_each_is_alone(scene: World, worlds: Worlds, change: Callable[[World, float], None]) -> list[World]:
+    worlds.step(STEPS)
+    alone = []
+    for number, value in enumerate(VALUES.tolist()):
+        lone = scene.copy()
+        change(lone, value)
+        lone.step(STEPS)
+        assert_same_bits(worlds, number, lone)
+        alone.append(lone)
+    return alone
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "mass",
+        "lateral_friction",
+        "restitution",
+        "rolling_friction",
+        "spinning_friction",
+        "linear_damping",
+        "angular_damping",
+        "contact_stiffness",
+        "contact_damping",
+    ],
+)
+def test_a_sliding_box(name: str) -> None:
+    scene, box = box_world()
+    worlds = Worlds(scene, COUNT, threads=2)
+    scale = 1e4 if name == "contact_stiffness" else 1.0
+    worlds[box].change_dynamics(-1, **{name: scale * VALUES})
+
+    def change(world: World, value: float) -> None:
+        world.bodies[box.id].change_dynamics(-1, **{name: scale * value})
+
+    alone = assert_each_is_alone(scene, worlds, change)
+    ends = {tuple(world.position[-7:]) for world in alone}
+    # Something else than the box itself has to have them, too.
+    assert name in _OF_PAIRS or len(ends) > 1
+
+
+@pytest.mark.parametrize("link", [2, "panda_link3", "panda_hand"])
+@pytest.mark.parametrize("name", ["mass", "joint_damping", "max_joint_velocity"])
+def test_an_arm(name: str, link: int | str) -> None:
+    scene, panda = panda_world()
+    worlds = Worlds(scene, COUNT, threads=2)
+    worlds[panda].change_dynamics(link, **{name: VALUES})
+    index = panda.links[link].index
+
+    def change(world: World, value: float) -> None:
+        world.bodies[panda.id].change_dynamics(index, **{name: value})
+
+    assert_each_is_alone(scene, worlds, change)
+
+
+def test_limits_of_a_joint() -> None:
+    scene, panda = panda_world()
+    worlds = Worlds(scene, COUNT, threads=2)
+    upper = 0.02 * VALUES
+    worlds[panda].change_dynamics(0, joint_lower_limit=-0.1, joint_upper_limit=upper)
+
+    def change(world: World, value: float) -> None:
+        body = world.bodies[panda.id]
+        body.change_dynamics(0, joint_lower_limit=-0.1, joint_upper_limit=0.02 * value)
+
+    assert_each_is_alone(scene, worlds, change)
+    assert (worlds[panda].joint_positions[:, 0] < upper + 1e-3).all()
+
+
+def test_gravity() -> None:
+    scene, _ = box_world()
+    worlds = Worlds(scene, COUNT)
+    directions = np.stack([VALUES, 0 * VALUES, -9.81 * VALUES], axis=1)
+    worlds.gravity = directions
+    np.testing.assert_array_equal(worlds.gravity, directions)
+
+    def change(world: World, value: float) -> None:
+        world.gravity = (value, 0.0, -9.81 * value)
+
+    assert_each_is_alone(scene, worlds, change)
+
+
+def tied_world() -> tuple[World, int]:
+    scene, box = box_world()
+    other = add_box(scene, (0.5, 0.0, 0.12))
+    tie = scene.tie(UserConstraintKind.POINT_TO_POINT, box, -1, other, -1)
+    tie.parent_frame = type(tie.parent_frame)((0.25, 0.0, 0.0))
+    tie.child_frame = type(tie.child_frame)((-0.25, 0.0, 0.0))
+    scene.scene_changed()
+    return scene, tie.id
+
+
+def test_constraints_that_hold_in_some_worlds() -> None:
+    scene, tie = tied_world()
+    worlds = Worlds(scene, COUNT, threads=2)
+    holds = np.array([True, False, True, False])
+    worlds.enable_constraint(tie, holds)
+
+    def change(world: World, value: float) -> None:
+        constraint = world.user_constraints.get(tie)
+        assert constraint is not None
+        constraint.enabled = bool(holds[VALUES.tolist().index(value)])
+        world.scene_changed()
+
+    alone = assert_each_is_alone(scene, worlds, change)
+    assert (alone[0].position != alone[1].position).any()
+    np.testing.assert_array_equal(alone[0].position, alone[2].position)
+
+
+def test_one_of_them_goes_on_alone_with_its_own_parameters() -> None:
+    scene, tie = tied_world()
+    worlds = Worlds(scene, COUNT, threads=2)
+    box = next(iter(scene.bodies.values()))
+    batch = worlds[list(scene.bodies)[1]]
+    worlds.gravity = np.stack([VALUES, 0 * VALUES, -9.81 * VALUES], axis=1)
+    batch.change_dynamics(-1, mass=VALUES, lateral_friction=VALUES, linear_damping=0.1 * VALUES)
+    worlds.enable_constraint(tie, VALUES > 0.6)
+    worlds.step(20)
+    lone = [worlds.extract(number) for number in range(COUNT)]
+    worlds.step(40)
+    for number, world in enumerate(lone):
+        world.step(40)
+        assert_same_bits(worlds, number, world)
+        body = world.bodies[batch.rows.tree]
+        assert body.dynamics(-1).mass == VALUES[number]
+        assert body.dynamics(-1).lateral_friction == VALUES[number]
+        assert world.gravity[0] == VALUES[number]
+    assert box.dynamics(-1).mass == 0.0
+
+
+def test_an_arm_with_limits_goes_on_alone() -> None:
+    scene, panda = panda_world()
+    worlds = Worlds(scene, COUNT)
+    worlds[panda].change_dynamics(0, joint_upper_limit=0.02 * VALUES, joint_damping=VALUES)
+    worlds.step(20)
+    lone = [worlds.extract(number) for number in range(COUNT)]
+    worlds.step(40)
+    for number, world in enumerate(lone):
+        world.step(40)
+        assert_same_bits(worlds, number, world)
+        assert world.bodies[panda.id].joints[0].limits[1] == 0.02 * VALUES[number]
+
+
+@pytest.mark.parametrize(
+    ("link", "changes", "error", "words"),
+    [
+        (-1, {"mass": -1.0}, ValueError, "mass must not be negative"),
+        (-1, {"mass": [1.0, 0.0, 1.0, 1.0]}, ValueError, "greater than 0"),
+        (-1, {"mass": [1.0, 2.0]}, ValueError, r"mass has shape \(2,\); it must have shape \(4,\)"),
+        (-1, {"lateral_friction": np.nan}, ValueError, "lateral_friction must be finite"),
+        (-1, {"colour": 1.0}, TypeError, "no parameter 'colour' that can differ"),
+        (-1, {"joint_damping": 1.0}, ValueError, "the base has no joint"),
+        ("wheel", {"mass": 1.0}, KeyError, "no link is called 'wheel'"),
+        (3, {"mass": 1.0}, IndexError, "link 3 is out of range"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(
+    link: int | str, changes: dict[str, object], error: type[Exception], words: str
+) -> None:
+    scene, box = box_world()
+    worlds = Worlds(scene, COUNT)
+    with pytest.raises(error, match=words):
+        worlds[box].change_dynamics(link, **changes)
+    assert_each_is_alone(scene, worlds, lambda world, value: None)
+
+
+def test_a_joint_without_limits_gets_none_world_by_world() -> None:
+    world = earth()
+    robot = world.load_urdf(f"{pybullet_data.getDataPath()}/r2d2.urdf")
+    wheel = next(joint.index for joint in robot.joints if joint.name == "right_front_wheel_joint")
+    with pytest.raises(
+        ValueError, match="'right_front_wheel_joint' has no limits: give it some in the world"
+    ):
+        Worlds(world, 2)[robot].change_dynamics(wheel, joint_upper_limit=1.0)
+
+
+def test_fixed_bases_have_no_mass() -> None:
+    scene, panda = panda_world()
+    with pytest.raises(ValueError, match="the base is fixed"):
+        Worlds(scene, 2)[panda].change_dynamics(-1, mass=1.0)
