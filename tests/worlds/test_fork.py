@@ -15,10 +15,12 @@ from carom.description import Box
 from carom.description.link import Collision
 from carom.model.body_spec import BodySpec, LinkSpec
 
-warnings.simplefilter("ignore", DeprecationWarning)  # that forking with threads is dangerous is what is tested
+# That forking with threads is dangerous is what is tested.
+warnings.simplefilter("ignore", DeprecationWarning)
 world = World()
 world.gravity = (0.0, 0.0, -9.81)
-box = LinkSpec(name="box", mass=1.0, inertia=(1.0, 1.0, 1.0), collisions=(Collision(Box((1.0, 1.0, 1.0))),))
+shape = Collision(Box((1.0, 1.0, 1.0)))
+box = LinkSpec(name="box", mass=1.0, inertia=(1.0, 1.0, 1.0), collisions=(shape,))
 body = world.load(BodySpec("box", box))
 worlds = Worlds(world, 8, threads=2)
 worlds.step(5)
