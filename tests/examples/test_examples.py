@@ -200,3 +200,22 @@ def test_every_example_is_tested():
     tested = Path(__file__).read_text(encoding="utf-8")
     for script in EXAMPLES.glob("[!_]*.py"):
         assert f'example("{script.stem}")' in tested
+
+
+def test_a_thousand_arms_come_to_their_targets_and_one_of_them_goes_on_alone(example):
+    record = example("thousand_arms").main(count=12, duration=0.75)
+    assert record["error"].max() < 0.02
+    assert np.count_nonzero(record["away"] == 0.0) == 6
+    assert record["same"]
+
+
+def test_cubes_slide_as_far_as_their_friction_lets_them(example):
+    record = example("domain_randomisation").main(count=50)
+    assert np.allclose(record["distance"], record["expected"], rtol=0.1)
+    assert np.allclose(record["weight"], record["bears"], rtol=1e-3)
+
+
+def test_an_environment_of_ones_own_can_be_solved(example):
+    record = example("own_vector_env").main(count=5)
+    assert record["return"].min() > 120.0
+    assert record["off"].max() < 0.01
