@@ -15,6 +15,7 @@
 #   make watching     what it costs to be watched, in a browser; needs Chromium
 #   make clients      other people's tests and scripts on PyBullet and on Carom; needs git and GitHub
 #   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
+#   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
@@ -33,7 +34,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench clients growth watching gpu-report clean
+.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak fuzz bench clients growth watching gpu-report clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -115,6 +116,7 @@ types: $(VENV)/dev
 
 record: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.conformance.record
+	env -u PYTHONPATH .oracle/bin/python -m tests.first_contacts.record
 
 surface: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.surface.record
@@ -124,6 +126,7 @@ conformance: oracle $(VENV)/dev
 
 report: $(VENV)/dev
 	$(RUN) -m tests.conformance.report
+	$(RUN) -m tests.first_contacts.compare
 
 CLIENT_SOURCES ?= .clients/sources
 
@@ -133,6 +136,10 @@ clients: .clients/carom/clients .clients/oracle/clients
 
 gpu-report: $(VENV)/dev
 	PYTHONPATH=. $(RUN) -m tools.gpu.report
+
+fuzz: $(VENV)/dev
+	$(RUN) -m tests.fuzz.api --operations 1000000
+	$(RUN) -m tests.fuzz.files --cases 100000
 
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak

@@ -196,7 +196,7 @@ def test_bodies_of_a_file_are_added_to_a_world_that_has_some(tmp_path: Path) -> 
                 getattr(world, view)[getattr(old, first) :][:count],
                 getattr(other, view)[getattr(new, first) :][:count],
             )
-    assert [tie.parent.id for tie in other.user_constraints.all] == [2, 4]
+    assert [tie.parent.id for tie in other.user_constraints.all] == [2, 4, 3]
     other.step(5)
 
 

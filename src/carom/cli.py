@@ -52,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="print the joint and link tables of a robot file")
     info.add_argument("file", type=Path, help="URDF file; one that pybullet_data ships is found by its name")
     info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
-    info.add_argument("--fixed-base", action="store_true", help="nail the base to the world")
+    info.add_argument("--fixed-base", action="store_true", help="hold the base where it is")
     info.add_argument(
         "--inertia-from-file", action="store_true", help="use <inertia>, not the collision shapes"
     )
@@ -131,11 +131,14 @@ def _info(options: argparse.Namespace) -> None:
 
 
 def _view(options: argparse.Namespace) -> None:
+    from carom.viewer.display import tunnel_command
     from carom.viewer.robot import RobotView
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
     print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    if tunnel := tunnel_command(view.viewer.address):
+        print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
     try:
         view.run()
     except KeyboardInterrupt:

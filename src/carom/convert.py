@@ -21,7 +21,7 @@ from carom.model.mjcf_inertia import set_mjcf_inertias
 def convert(source: Path, target: Path, model: str | None = None) -> None:
     """Writes a robot as URDF. Where the file puts it in the world is lost.
 
-    A robot that the file nails to the world gets a base without mass, which PyBullet and Carom do not
+    A robot that the file fixes to the world gets a base without mass, which PyBullet and Carom do not
     move. Links without moments of inertia, such as those of MJCF files, get those they have here, which are
     found from their collision shapes. Meshes are not copied.
 

@@ -330,6 +330,12 @@ class Joints(Named[Joint]):
         self._body = body
         self._movable = [joint for joint in self if joint.degrees_of_freedom]
 
+    def _repr_html_(self) -> str:
+        """A table of them, for notebooks."""
+        from carom.tables import joints_table
+
+        return joints_table(self, f"Joints of {self._body.name}")
+
     @property
     def movable(self) -> list[Joint]:
         """The joints that are not fixed: what the arrays are about."""

@@ -11,7 +11,11 @@ if TYPE_CHECKING:
 
 
 class Recordable:
-    """What a world can be recorded by."""
+    """How a world is recorded, and how it shows itself in notebooks."""
+
+    def _repr_html_(self) -> str:
+        tables = import_module("carom.tables")
+        return tables.world_table(self)
 
     def record(
         self,

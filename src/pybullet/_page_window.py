@@ -193,10 +193,11 @@ def open_window(client: Client, options: str) -> PageWindow:
         if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
             values[name] = value
     arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
-    if "host" in values:
-        arguments["host"] = values["host"]
+    arguments |= {name: values[name] for name in ("host", "token") if values.get(name)}
+    if "names" in values:
+        arguments["names"] = values["names"].split(",")
     try:
-        viewer = Viewer(client.world, client.lock, title=Path(sys.argv[0]).stem or "Carom", **arguments)
+        viewer = Viewer(client.world, client.lock, title=_title(), **arguments)
     except OSError as problem:
         fail("Cannot open the window:", f"{problem}.")
     client.window = window = PageWindow(viewer, client)
@@ -212,6 +213,13 @@ def open_window(client: Client, options: str) -> PageWindow:
         )
     viewer.open_browser()
     return window
+
+
+def _title() -> str:
+    """The name of the script."""
+    from carom.viewer.notebook import in_notebook
+
+    return "Carom" if in_notebook() else Path(sys.argv[0]).stem or "Carom"
 
 
 def _film(client: Client, file: str, fps: str) -> None:

@@ -19,20 +19,20 @@ DEVICE = "cpu"
 class SideBySide:
     """Worlds of the same bodies, as they are now, each with its parameters; they themselves stay as they are.
 
-    There is room for all pairs and contacts, and if it is `roomy` for all rows.
+    There is room for all pairs, and for as many contacts and rows as are asked for.
 
     Attributes:
         tables: Their arrays, by the names that kernels give them.
         coupled: Whether their bodies can touch, are tied together or can fall asleep.
     """
 
-    def __init__(self, worlds: Sequence[World], *, roomy: bool = True) -> None:
+    def __init__(self, worlds: Sequence[World], *, contacts: int = 256, rows: int = 512) -> None:
         for world in worlds:
             world.prepare()
         first = worlds[0]
         arrays = first.arrays.repeated(len(worlds))
         touch = first.touch.repeated(arrays)
-        touch.contacts.reserve({"contact": 256})
+        touch.contacts.reserve({"contact": contacts})
         touch.reserve()
         self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": touch.contacts}
         self._parameters: dict[str, ArrayTable] = {
@@ -49,8 +49,7 @@ class SideBySide:
         workspace = Workspace(len(worlds))
         workspace.fit(arrays, touch)
         workspace.pairs.reserve({"pair": 256})
-        if roomy:
-            workspace.couplings.reserve({"coupling": 512, "jacobian": 4096, "run": 4096})
+        workspace.couplings.reserve({"coupling": rows, "jacobian": 8 * rows, "run": 8 * rows})
         shared = {
             "settings": first.engine.structs()["settings"],
             **arrays.structs(DEVICE),

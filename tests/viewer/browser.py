@@ -34,12 +34,12 @@ _ARGUMENTS = [
 
 
 @contextmanager
-def chromium() -> Iterator:
-    """The browser; it is closed at the end."""
+def chromium(*arguments: str) -> Iterator:
+    """The browser, with more arguments of its command line; it is closed at the end."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=_ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=[*_ARGUMENTS, *arguments])
         yield browser
         browser.close()
 

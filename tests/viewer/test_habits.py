@@ -1,5 +1,8 @@
 """What users of PyBullet's window are used to: ESC, keys, pausing, and logging in over SSH."""
 
+import os
+import re
+import subprocess
 import sys
 import threading
 import time
@@ -7,7 +10,7 @@ from collections.abc import Callable
 
 import pytest
 from tests.patience import PATIENCE, until
-from tests.viewer.scripts import started
+from tests.viewer.scripts import ROOT
 from tests.viewer.watcher import Watcher
 
 import pybullet as p
@@ -176,11 +179,11 @@ def test_over_ssh_no_browser_opens_and_the_tunnel_is_told(monkeypatch: pytest.Mo
     assert tunnel_command("http://127.0.0.1:8400/") == "ssh -L 8400:localhost:8400 -p 2222 ada@192.0.2.7"
 
 
-def test_a_script_over_ssh_prints_the_tunnel(monkeypatch: pytest.MonkeyPatch):
-    for name, value in SSH.items():
-        monkeypatch.setenv(name, value)
+def test_a_script_over_ssh_prints_the_tunnel():
     code = "import pybullet as p; p.connect(p.GUI, options='--port=0'); p.disconnect()"
-    script, address = started("-c", code)
-    output, _ = script.communicate(timeout=PATIENCE)
-    port = address.rstrip("/").rpartition(":")[2]
-    assert f"ssh -L {port}:localhost:{port}" in output
+    environment = {**os.environ, **SSH, "CI": "1", "PYTHONPATH": str(ROOT / "src")}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    port = re.findall(r"http://127\.0\.0\.1:(\d+)/", done.stdout)[0]
+    assert f"ssh -L {port}:localhost:{port}" in done.stdout

@@ -180,17 +180,20 @@ def test_files_without_robots_are_refused(tmp_path: Path, capsys: pytest.Capture
     assert capsys.readouterr().err.startswith("carom: ")
 
 
-def test_a_world_of_the_modern_api_is_shown_and_cannot_be_pulled_at():
+def test_a_world_of_the_modern_api_is_shown_and_can_be_pulled_at():
     world = World()
     body = world.load_urdf(DATA / "cube_small.urdf", position=(0, 0, 1))
     viewer = Viewer(world, port=0)
     try:
         assert viewer.address in viewer._repr_html_()
         with Watcher(viewer.address) as page:
-            page.tell("grasp", body=body.id, link=-1, point=[0, 0, 0], target=[0, 0, 1])
             page.wait_for(lambda: len(page.poses))
-            world.step()
-            page.wait_for(lambda: page.frame["time"] > 0)
-        assert not world.user_constraints.rows
+            page.tell("grasp", body=body.id, link=-1, point=[0, 0, 0], target=[0.3, 0, 1])
+            assert until(lambda: world.user_constraints.rows)
+            world.step(60)
+            page.wait_for(lambda: page.frame["time"] > 0.2)
+            assert world.link_pose[0, 0] > 0.2
+            page.tell("let go")
+            assert until(lambda: not world.user_constraints.rows)
     finally:
         viewer.close()

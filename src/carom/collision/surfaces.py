@@ -54,7 +54,10 @@ def region_around(
         pairs.shape_position[world, shape] - pairs.shape_position[world, surface]
     )
     more = reach + shapes.shape_margin[surface]
-    extents = magnitudes(turn) * local_extents(shapes, shape) + Vector3(more, more, more)
+    extents = local_extents(shapes, shape)
+    if shapes.shape_kind[shape] != SPHERE:
+        extents = magnitudes(turn) * extents
+    extents += Vector3(more, more, more)
     return region_of(shapes, surface, center - extents, center + extents)
 
 

@@ -37,4 +37,5 @@ def drive(world: World, body_id: int, joint: int, target: float, *, place: bool)
         body.set_joint_state(joint, [target], [0.0])
     row = body.velocity_index[joint]
     force = body.link_spec(joint).effort or _FORCE
-    aim_at_position(world, slice(row, row + 1), target, 0.0, _GAIN, _VELOCITY_GAIN, force, _SPEED)
+    step = world.parameters.substep_time
+    aim_at_position(world.motor, slice(row, row + 1), step, target, 0.0, _GAIN, _VELOCITY_GAIN, force, _SPEED)

@@ -42,7 +42,7 @@ def contacts(world: World) -> Columns:
     if count == 0 or links.max(initial=-1) >= len(places) or links.min(initial=0) < 0:
         return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     forces = table["contact_impulse"][0, :count] / world.parameters.substep_time
-    lateral = world.touch.shapes.table.numpy["link_lateral_friction"]
+    lateral = world.touch.shapes.table.numpy["link_lateral_friction"][0]
     coefficient = np.minimum(lateral[links[:, 0]] * lateral[links[:, 1]], _GREATEST_FRICTION)
     directions = (table["contact_direction1"][0, :count], table["contact_direction2"][0, :count])
     friction = sum(forces[:, 1 + i, None] * directions[i] for i in range(2))

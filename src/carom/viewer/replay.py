@@ -11,6 +11,7 @@ from carom.checks import positive
 from carom.viewer.board import Board, boards
 from carom.viewer.details import Details, Wish
 from carom.viewer.messages import decoded
+from carom.viewer.notebook import replay_frame
 from carom.viewer.recording import Recording
 from carom.viewer.replay_page import replay_of
 from carom.viewer.scene_feed import SceneFeed
@@ -134,13 +135,19 @@ class ReplayRecorder:
         self._details.want(_PAGE, Wish())
         if self._recording.frame_count == 0 or self._last != float(self._world.time):
             self.shoot()
-        page = replay_of(self._recording.packed(title=self._title, **self._facts))
-        self._path.write_text(page, encoding="utf-8")
+        self._path.write_text(self._page(), encoding="utf-8")
 
     @property
     def frame_count(self) -> int:
         """How many frames have been recorded."""
         return self._recording.frame_count
+
+    def _repr_html_(self) -> str:
+        """What has been recorded so far, for notebooks: it needs no connection."""
+        return replay_frame(self._page())
+
+    def _page(self) -> str:
+        return replay_of(self._recording.packed(title=self._title, **self._facts))
 
     def _take_news(self) -> None:
         """Takes in what is new on the boards."""

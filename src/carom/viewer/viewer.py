@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from math import inf, isfinite
 from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
+from carom.viewer.access import Access
 from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
 from carom.viewer.chores import Chores
@@ -20,10 +21,12 @@ from carom.viewer.drawings import Drawings
 from carom.viewer.drives import drive
 from carom.viewer.gate import Gate
 from carom.viewer.hands import Hands
+from carom.viewer.items import Slider
 from carom.viewer.keys import Keyboard, key_code
 from carom.viewer.leaving import ESCAPE, Leaving
 from carom.viewer.moments import Moments
 from carom.viewer.mouse import Mouse
+from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
 from carom.viewer.rays import Rays
@@ -51,11 +54,15 @@ class Viewer:
         lock: Held by whoever steps the world, or adds and removes bodies, and asks `held` before each step.
             Without one the viewer guards the steps itself, by an observer of the world; `Viewer.lock` has
             to be held while bodies come and go.
-        host: Address to listen on; this machine alone unless told otherwise.
+        host: Address to listen on; this machine alone unless told otherwise. On any other, pages need a
+            token, which is part of `address`.
         port: Port to listen on; None for the usual one or, where that is taken, any.
         title: Of the page.
         width: Of the image in pixels, until a page tells what it has room for.
         height: Of the image.
+        token: What pages have to know that are not on this machine, or come through a proxy; random by
+            default.
+        names: Names by which a proxy asks for the page.
 
     Raises:
         OSError: The address cannot be listened on.
@@ -88,6 +95,8 @@ class Viewer:
         title: str = "Carom",
         width: int = 1024,
         height: int = 768,
+        token: str | None = None,
+        names: Iterable[str] = (),
     ) -> None:
         self.is_open: bool = True
         self.held: bool = True
@@ -146,7 +155,9 @@ class Viewer:
         else:
             self._turnstile = None
         boards[world] = self._board
-        self._server = PageServer(host, port, self._board, self._frame, self._receive, self._page_gone)
+        named = frozenset(name.lower() for name in names)
+        access = Access(host, names=named) if token is None else Access(host, token, named)
+        self._server = PageServer(access, port, self._board, self._frame, self._receive, self._page_gone)
 
     @property
     def address(self) -> str:
@@ -235,7 +246,7 @@ class Viewer:
             self.on_hold(held)
 
     def plot(self, name: str, value: float) -> None:
-        """Offers a value of the script to the plots of pages, under a name; call it again when it changes.
+        """Plots a value of the script on all pages, under a name; call it again when it changes.
 
         Raises:
             ValueError: It is no finite number.
@@ -244,6 +255,18 @@ class Viewer:
         if not isfinite(number):
             raise ValueError(f"plot {name!r} is given {value!r}; it has to be a finite number")
         self._values[str(name)] = number
+
+    def slider(self, name: str, lower: float, upper: float, start: float) -> Slider:
+        """Adds a slider to the panel; its `value` is where the user has put it.
+
+        Raises:
+            ValueError: A number is not finite, or the bounds are no interval with the start in it.
+        """
+        if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
+            raise ValueError(f"slider {name!r} goes from {lower} to {upper} and starts at {start}")
+        slider = Slider(name, float(lower), float(upper), float(start))
+        self.controls.add(max(self.controls.sliders, default=-1) + 1, slider)
+        return slider
 
     @property
     def rays(self) -> Rays:
@@ -259,7 +282,13 @@ class Viewer:
             self._pictures.wait(self._server.page_numbers, _DRAWING_PATIENCE)
 
     def open_browser(self) -> None:
-        """Opens the page where the user has a display, unless one of the last run is still open."""
+        """Shows the page: below the cell of a notebook, or in the browser, if there is a display.
+
+        A page of the last run that is still open is left to show this one.
+        """
+        if in_notebook():
+            show(self._repr_html_())
+            return
         if not has_display():
             return
 
@@ -273,7 +302,7 @@ class Viewer:
 
     def _repr_html_(self) -> str:
         """The page, for notebooks."""
-        return f'<iframe src="{self.address}" style="width:100%;height:520px;border:0"></iframe>'
+        return frame(self._server.port, self._server.access.token)
 
     def close(self) -> None:
         """Ends it: pages say that the simulation is over."""

@@ -161,9 +161,7 @@ export class App {
     if (this.plots.plotted.size === 0 && !header.values) return;
     const readings = new Readings();
     readings.take(header, payload);
-    const values = this.plots.valueNames.size;
     this.plots.take(header, payload, readings);
-    if (this.plots.valueNames.size !== values) this.plots.offer();
   }
 
   showFrame(header, payload) {

@@ -103,8 +103,16 @@ export class Plots {
 
   /** Takes over what a frame tells. */
   take(header, payload, readings) {
-    for (const name of Object.keys(header.values ?? {})) this.valueNames.add(name);
+    for (const name of Object.keys(header.values ?? {})) this.takeName(name);
     for (const plot of this.plotted.values()) this.sample(plot, header, payload, readings);
+  }
+
+  /** What a script plots is shown without being asked for. */
+  takeName(name) {
+    if (this.valueNames.has(name)) return;
+    this.valueNames.add(name);
+    this.offer();
+    this.add(this.sources.get(`value ${name}`));
   }
 
   sample({ source, root, charts, samples }, header, payload, readings) {

@@ -8,7 +8,7 @@ const DEGREES_PER_PIXEL = 0.3;
 const STEEPEST = 89.9;
 
 /** The sphere around what is looked at, as part of the distance that just shows it; and the least sphere [m]. */
-const FIT_MARGIN = 1.35;
+const FIT_MARGIN = 1.5;
 const LEAST_FIT = 0.15;
 /** Yaw and pitch. */
 export const PRESETS = {
