@@ -70,6 +70,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
 
 def _numbers(value: ArrayLike, name: str) -> Array:
     try:
-        return np.array(value, dtype=np.float64)
+        # PyTorch's tensors do not know how to make a copy for NumPy, and warn.
+        return np.asarray(value, dtype=np.float64).copy()
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be a number or an array of numbers, not {value!r}") from None

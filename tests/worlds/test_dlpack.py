@@ -40,6 +40,7 @@ def test_a_tensor_shows_what_the_next_step_does(arms):
     assert np.array_equal(positions.numpy(), panda.joint_positions)
 
 
+@pytest.mark.filterwarnings("error")
 def test_what_a_network_gives_is_taken(arms):
     worlds, panda = arms
     panda.set_position_targets(torch.full((4, 9), 0.02, dtype=torch.float32), gains=0.5)
