@@ -12,7 +12,8 @@ FRICTION = 0.25
 SETTLING_STEPS = 60
 
 
-def _towers(side: int) -> Callable[[], None]:
+def tower_model(side: int) -> mujoco.MjModel:
+    """Towers of boxes on a plane, `side` boxes along each axis."""
     boxes = "".join(
         f'<body pos="{1.05 * EDGE * i} {1.05 * EDGE * j} {EDGE * (k + 0.5)}"><freejoint/>'
         f'<geom type="box" size="{EDGE / 2} {EDGE / 2} {EDGE / 2}" mass="1" friction="{FRICTION}"/></body>'
@@ -20,10 +21,14 @@ def _towers(side: int) -> Callable[[], None]:
         for j in range(side)
         for k in range(side)
     )
-    model = mujoco.MjModel.from_xml_string(
+    return mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="{1 / 240}" gravity="0 0 -9.81"/><worldbody>'
         f'<geom type="plane" size="50 50 1" friction="{FRICTION}"/>{boxes}</worldbody></mujoco>'
     )
+
+
+def _towers(side: int) -> Callable[[], None]:
+    model = tower_model(side)
     data = mujoco.MjData(model)
     for _ in range(SETTLING_STEPS):
         mujoco.mj_step(model, data)

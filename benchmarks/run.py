@@ -102,12 +102,12 @@ def table(engines: list[Engine], medians: Medians) -> str:
     )
 
 
-def put_between_marks(page: Path, figures: str) -> None:
+def put_between_marks(page: Path, figures: str, marks: tuple[str, str] = MARKS) -> None:
     """Replace what stands between the two marks of a page."""
-    before, opening, rest = page.read_text(encoding="utf-8").partition(MARKS[0])
-    _, closing, after = rest.partition(MARKS[1])
+    before, opening, rest = page.read_text(encoding="utf-8").partition(marks[0])
+    _, closing, after = rest.partition(marks[1])
     if not opening or not closing:
-        raise SystemExit(f"{page} has no {MARKS[0]} ... {MARKS[1]}")
+        raise SystemExit(f"{page} has no {marks[0]} ... {marks[1]}")
     page.write_text(f"{before}{opening}\n\n{figures}\n\n{closing}{after}", encoding="utf-8")
 
 

@@ -299,3 +299,22 @@ def test_memory_views_show_the_arrays():
             array.reshape(-1)[-1] = 0.0
         world.motor_memory[8 * body.first_velocity + MOTOR_MAX_IMPULSE] = 2.0
         assert world.motor[body.first_velocity, MOTOR_MAX_IMPULSE] == 2.0
+
+
+def test_a_copy_goes_on_as_the_original_does_and_is_a_world_of_its_own():
+    world = heavy_world()
+    for seed, spec in enumerate(SPECS):
+        add(world, spec, seed)
+    world.step(5)
+    other = world.copy()
+    world.step(10)
+    other.step(10)
+    for number, body in world.bodies.items():
+        assert_same_motion(body, other.bodies[number])
+    before = world.position.copy()
+    other.remove(0)
+    other.gravity = (0.0, 0.0, 3.0)
+    other.step(5)
+    np.testing.assert_array_equal(world.position, before)
+    assert 0 in world.bodies
+    assert world.gravity[2] != 3.0

@@ -46,14 +46,14 @@ class StagedStepper(Stepper):
 
     def load(self, program: Program) -> None:
         """Perform another program from now on."""
-        self._program = program
+        self.program = program
 
     def ask(self, **asked: int) -> None:
         """Set scalars as those of `Interpreter`."""
         self._asked.update(asked)
 
     def _run(self) -> None:
-        program, due = self._program, self._engine.due[0]
+        program, due = self.program, self._engine.due[0]
         rounds = max(1, due)
         first, end = self._asked["first_substep"], self._asked["end_substep"]
         well = first > 0 or self._perform(program.begin)
@@ -101,7 +101,7 @@ class Profile:
 
 def staged_program(structs: KernelStructs, device: str, plan: Plan) -> Program:
     """The launches of a step as `step_program` gives them, in stages."""
-    program = step_program(structs, device, plan)
+    program = step_program(structs, device, plan._replace(coupled=True))
     detection = [structs.launch(kernel, device, first_world=0) for kernel in _DETECTION.values()]
     stages = [structs.launch(kernel, device, first_world=0) for kernel in _MOTION.values()]
     motion = [*program.motion[:-2], *stages, program.motion[-1]] if plan.sleeping else stages

@@ -11,6 +11,7 @@ from typing import overload
 import numpy as np
 
 from carom.body import Body
+from carom.checks import vector
 from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
@@ -30,6 +31,7 @@ from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kerne
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.present_poses import PresentPoses
 from carom.queries import Queries
+from carom.recordable import Recordable
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
 from carom.solver_report import solver_report
 from carom.state_views import VIEWS, StateViews
@@ -51,7 +53,7 @@ class Derived:
     link_columns: tuple[list[int], list[int]] | None = None
 
 
-class World(DescriptionLoading, StateViews):
+class World(DescriptionLoading, Recordable, StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
@@ -157,8 +159,8 @@ class World(DescriptionLoading, StateViews):
 
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
         """Add a body at rest."""
-        px, py, pz = position
-        qx, qy, qz, qw = orientation
+        px, py, pz = vector(position, 3, "position").tolist()
+        qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
         pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
         rows = self.arrays.append(spec, pose)
         body_id = self.free_ids.pop() if self.free_ids else self.next_id
@@ -328,7 +330,7 @@ class World(DescriptionLoading, StateViews):
 
     @gravity.setter
     def gravity(self, value: Sequence[float]) -> None:
-        x, y, z = (float(component) for component in value)
+        x, y, z = vector(value, 3, "gravity").tolist()
         self.parameters.gravity = (x, y, z)
         self.apply_parameters()
 

@@ -113,6 +113,7 @@ class SavedTie:
     gear_auxiliary_link: int
     relative_position_target: float
     erp: float
+    enabled: bool = True
 
 
 @dataclass(slots=True)

@@ -64,8 +64,10 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
     except (KeyError, TypeError, ValueError):
         client = client_of(physicsClientId)
     if client.window.held:
-        client.window.wait_for_turn()
+        goes_on = client.window.wait_for_turn()
         client = client_of(physicsClientId)
+        if not goes_on:
+            return ()
     with client.lock:
         try:
             client.world.step()

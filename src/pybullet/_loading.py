@@ -91,7 +91,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         basePosition: Position of the link frame of the base [m]; its centre of mass may be elsewhere.
         baseOrientation: Orientation of that frame (x, y, z, w).
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
-        useFixedBase: 1 to nail the base to the world.
+        useFixedBase: 1 for a base that does not move.
         flags: `URDF_*`, added up.
         globalScaling: Factor on all lengths; 1 when not greater than 0.
         physicsClientId: The connection.

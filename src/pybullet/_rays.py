@@ -60,14 +60,16 @@ def rayTest(
         >>> body == cube, link, round(position[2], 3)
         (True, -1, 0.05)
     """
-    world = client_of(physicsClientId).world
+    client = client_of(physicsClientId)
     start = vector3(rayFromPosition, _BAD_ITEM, "rayFromPosition")
     end = vector3(rayToPosition, _BAD_ITEM, "rayToPosition")
     mask, number = (
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    return (world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0)),)
+    hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
+    client.window.show_rays((start,), (end,), (hit,))
+    return (hit,)
 
 
 @exported
@@ -131,9 +133,11 @@ def rayTestBatch(
         rotation = np.array(rotation_matrix(frame.orientation))
         starts = starts @ rotation.T + frame.position
         ends = ends @ rotation.T + frame.position
-    return client.world.queries().cast_rays(
+    hits = client.world.queries().cast_rays(
         starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
     )
+    client.window.show_rays(starts, ends, hits)
+    return hits
 
 
 def _points(values: Any, name: str) -> np.ndarray:

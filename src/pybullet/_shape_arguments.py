@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Pose, Sphere
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
+from carom.formats.shipped import advice
 from pybullet._arguments import MAX_MAGNITUDE, moderate, real, sequence
 from pybullet._constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
 from pybullet._errors import fail
@@ -99,9 +100,11 @@ def scale_of(values: Any, problem: str) -> Vector3:
 
 def find_file(client: Client, name: str, problem: str) -> Path:
     """A file named by a script; raises `pybullet.error` if there is none."""
-    path = client.search().find(name)
+    search = client.search()
+    path = search.find(name)
     if path is None:
-        fail(problem, f"There is no file {name!r}.")
+        hint = advice(Path(name), search.places)
+        fail(problem, f"There is no file {name!r}{hint}{'' if hint.endswith('?') else '.'}")
     return path
 
 

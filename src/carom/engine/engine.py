@@ -17,7 +17,7 @@ from carom.engine.touch_arrays import TouchArrays
 from carom.engine.workspace import Workspace
 from carom.model.builder import WorldArrays
 from carom.model.launch import KernelStructs, Launch
-from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE
+from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.physics.parameters import EngineParameters
 
 ProgramMaker = Callable[[KernelStructs, str, Plan], Program]
@@ -27,6 +27,7 @@ MOST_STEPS = 64
 """Steps that can be asked for at once."""
 # Chunks of worlds for each thread: enough for uneven ones to even out.
 _CHUNKS_PER_THREAD = 16
+_NONE = np.zeros(0, dtype=np.int64)
 # Contacts of many worlds take memory in each: their arrays become longer by so much at a time.
 _GROWTH_OF_MANY = 1.25
 
@@ -59,6 +60,7 @@ class Engine:
         self.arrays = arrays
         self.touch = touch
         self.status: np.ndarray = arrays.state.numpy["status_entry"]
+        self._first_status = memoryview(self.status[0])
         self._settings = EngineSettings()
         self._workspaces = [Workspace() for _ in range(threads)]
         self._all_worlds = np.arange(arrays.world_count, dtype=np.int32)
@@ -67,10 +69,13 @@ class Engine:
         self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
         self._threads = Threads(threads)
         self._interpreters: list[Stepper] = self._make_interpreters(self.status, self.due)
-        self._detectors: list[Stepper] = self._make_interpreters(self.status, self.due)
+        # With no substep due, contacts are found and nothing moves.
+        self._detectors: list[Stepper] = self._make_interpreters(self.status, np.zeros(1, dtype=np.int32))
         self._steppers = self._interpreters
         self._make_program: ProgramMaker = step_program
         self.run_prepared: Callable[[], None] = self._steppers[0].run
+        # What an interpreter would do when the one launch of a step goes wrong that is run without one.
+        self._abandon: list[Launch] = []
         self._plan: Plan | None = None
         self._watched = False
         self.growths = 0
@@ -85,7 +90,7 @@ class Engine:
     @property
     def can_touch(self) -> bool:
         """Whether two shapes could ever touch."""
-        return can_touch(self.arrays, self.touch)
+        return can_touch(self.arrays, self.touch) if self._plan is None else self._plan.touching
 
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or what can happen has changed."""
@@ -127,6 +132,11 @@ class Engine:
         self._watched = watched
         plan = self._find_plan()
         self.load(self._steppers, lambda structs: self._make_program(structs, DEVICE, plan))
+        self.run_prepared = self._steppers[0].run
+        self._abandon = []
+        whole = self._steppers[0].program.whole
+        if whole is not None and len(self._all_worlds) == 1:
+            self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
 
     def step_by(self, make_program: ProgramMaker, steppers: list[Stepper] | None = None) -> None:
         """Step by other programs, and by other means than the usual, from now on."""
@@ -136,7 +146,7 @@ class Engine:
 
     def _find_plan(self) -> Plan:
         """What steps have to look for now."""
-        touching, sleeping = self.can_touch, can_sleep(self.arrays)
+        touching, sleeping = can_touch(self.arrays, self.touch), can_sleep(self.arrays)
         if not touching:
             self.touch.forget_contacts()
         coupled = touching or sleeping or self._watched or self.touch.user_count > 0
@@ -166,7 +176,7 @@ class Engine:
         self.due[0] = due
         self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
         self.due[0] = 1
-        short = np.flatnonzero(self.status[:, STATUS] == OVERFLOW)
+        short = self._short_of_room()
         if len(short):
             self._grow(short)
             self.prepare(watched=self._watched)
@@ -174,24 +184,32 @@ class Engine:
 
     def recover(self, **scalars: int) -> None:
         """Step the worlds again in which something did not fit, with more room, until it does."""
-        while len(short := np.flatnonzero(self.status[:, STATUS] == OVERFLOW)):
+        if self._first_status[STATUS] > WELL:
+            for launch in self._abandon:
+                launch()
+        while len(short := self._short_of_room()):
             self._grow(short)
             self.prepare(watched=self._watched)
             self.run(self._steppers, short, resumed=1, **scalars)
 
     def detect(self) -> None:
         """Find all contacts for the present coordinates of all worlds, without a step."""
-        self.due[0] = 0
-        short = self._all_worlds
-        while len(short):
-            if not self._detection_ready:
-                self.load(self._detectors, partial(detection_program, device=DEVICE))
-                self._detection_ready = True
-            self.run(self._detectors, short)
-            short = np.flatnonzero(self.status[:, STATUS] == OVERFLOW)
-            if len(short):
-                self._grow(short)
-        self.due[0] = 1
+        self._detect()
+        while len(short := self._short_of_room()):
+            self._grow(short)
+            self._detect(short)
+
+    def _detect(self, worlds: np.ndarray | None = None) -> None:
+        if not self._detection_ready:
+            self.load(self._detectors, partial(detection_program, device=DEVICE))
+            self._detection_ready = True
+        self.run(self._detectors, worlds)
+
+    def _short_of_room(self) -> np.ndarray:
+        """The worlds in which something did not fit."""
+        if len(self.status) == 1 and self._first_status[STATUS] >= WELL:
+            return _NONE
+        return np.flatnonzero(self.status[:, STATUS] == OVERFLOW)
 
     def _grow(self, short: np.ndarray) -> None:
         """Make room for what did not fit in some worlds."""
@@ -245,6 +263,9 @@ class Engine:
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
         """Run programs on some worlds, None for all; afterwards they are ready to run as `run_prepared`."""
+        if worlds is None and not scalars and len(interpreters) == 1:
+            interpreters[0].run()
+            return
         worlds = self._all_worlds if worlds is None else worlds
         count, whole = len(worlds), len(self._all_worlds)
         self._worlds[:count] = worlds
@@ -281,12 +302,12 @@ class Task:
         """Make the launches again before the next call."""
         self._made_at = -1
 
-    def __call__(self) -> None:
-        """Do it."""
+    def __call__(self, worlds: np.ndarray | None = None) -> None:
+        """Do it in some worlds, by their numbers; None for all."""
         if self._made_at != self._engine.changes:
             self._engine.load(self._interpreters, self._program)
             self._made_at = self._engine.changes
-        self._engine.run(self._interpreters)
+        self._engine.run(self._interpreters, worlds)
 
     def _program(self, structs: KernelStructs) -> Program:
         return Program(begin=[], detection=self._make_launches(structs), motion=[], end=[], abandon=[])

@@ -22,8 +22,9 @@ from carom.model.status import STEPS_DONE
 # Numbers of a program before its launches: address of the first world's status, bytes from one status to
 # the next, and the ends of the five parts.
 _HEADER = 7
-# Numbers of a launch: addresses of the function, the bounds, the arguments, and of the world among these.
-_PER_LAUNCH = 4
+# Numbers of a launch: addresses of the function, the bounds, the arguments, and among these of the world and
+# of the number of substeps, 0 if it has none.
+_PER_LAUNCH = 5
 if TYPE_CHECKING:
     Numbers = Any
     Indices = Any
@@ -37,10 +38,12 @@ _MOST_LAUNCHES = 32
 _PERFORM = f"""
     typedef void (*Function)(void*, void*);
     const long long* launches = program.data + {_HEADER};
-    auto perform = [&](long long from, long long to, int world, const int* status) {{
+    auto perform = [&](long long from, long long to, int world, int substeps, const int* status) {{
         for (long long i = from; i < to; ++i) {{
             const long long* launch = launches + {_PER_LAUNCH} * i;
             *(int*)launch[3] = world;
+            if (launch[4])
+                *(int*)launch[4] = substeps;
             ((Function)launch[0])((void*)launch[1], (void*)launch[2]);
             if (status && *status)
                 return false;
@@ -63,15 +66,15 @@ _PERFORM = f"""
             if (resumed == 0)
                 status[{STEPS_DONE}] = 0;
             for (int step = status[{STEPS_DONE}]; step < step_count; ++step) {{
-                const int rounds = due.data[step] > 0 ? due.data[step] : 1;
-                const long long round_end = due.data[step] > 0 ? motion_end : detection_end;
-                bool well = first_substep > 0 || perform(0, begin_end, world, status);
+                const int substeps = due.data[step], rounds = substeps > 0 ? substeps : 1;
+                const long long round_end = substeps > 0 ? motion_end : detection_end;
+                bool well = first_substep > 0 || perform(0, begin_end, world, substeps, status);
                 for (int k = first_substep; well && k < end_substep && k < rounds; ++k)
-                    well = perform(begin_end, round_end, world, status);
+                    well = perform(begin_end, round_end, world, substeps, status);
                 if (well && end_substep >= rounds)
-                    well = perform(motion_end, end_end, world, status);
+                    well = perform(motion_end, end_end, world, substeps, status);
                 if (!well) {{
-                    perform(end_end, abandon_end, world, nullptr);
+                    perform(end_end, abandon_end, world, substeps, nullptr);
                     break;
                 }}
                 status[{STEPS_DONE}] = step + 1;
@@ -149,9 +152,11 @@ class Stepper(Protocol):
 
     Attributes:
         run: Performs what has been asked for.
+        program: What was loaded last.
     """
 
     run: Callable[[], None]
+    program: Program
 
     def load(self, program: Program) -> None:
         """Perform another program from now on."""
@@ -177,7 +182,7 @@ class Interpreter(Stepper):
     ) -> None:
         self._status = status
         self._numbers = np.zeros(_HEADER + _PER_LAUNCH * _MOST_LAUNCHES, dtype=np.int64)
-        self._program: Program | None = None
+        self.program = Program([], [], [], [], [])
         shared = counter is not None
         arrays = [
             wp.array(numbers, dtype=kind, device="cpu", copy=False)
@@ -206,9 +211,9 @@ class Interpreter(Stepper):
         numbers: list[int] = [self._status.ctypes.data, self._status.strides[0], *ends.tolist()]
         for part in program:
             for launch in part:
-                numbers.extend(launch.addresses("first_world"))
+                numbers.extend(launch.addresses("first_world", "substeps"))
         self._numbers[: len(numbers)] = numbers
-        self._program = program
+        self.program = program
 
     def ask(self, **asked: int) -> None:  # noqa: D102
         for name, value in asked.items():

@@ -31,7 +31,7 @@ class Program(NamedTuple):
     """The launches of a step of one world, in the order in which they run.
 
     Attributes:
-        begin: At its beginning.
+        begin: At its beginning; all of a step of bodies that have nothing to do with each other.
         detection: In each substep: collision detection.
         motion: After that.
         end: At its end.
@@ -44,11 +44,20 @@ class Program(NamedTuple):
     end: list[Launch]
     abandon: list[Launch]
 
+    @property
+    def whole(self) -> Launch | None:
+        """The one launch that a step of one substep consists of, if it does."""
+        return None if self.detection or self.motion or self.end else self.begin[0]
+
 
 def step_program(structs: KernelStructs, device: str, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""
+    abandon = [_launch(structs, device, abandon_step_kernel)]
+    if not plan.coupled:
+        whole = _launch(structs, device, step_kernel, substeps=1)
+        return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
     detection = [_launch(structs, device, kernel) for kernel in (link_poses_kernel, collide_kernel)]
-    motion = [_launch(structs, device, coupled_step_kernel if plan.coupled else step_kernel)]
+    motion = [_launch(structs, device, coupled_step_kernel)]
     if plan.sleeping:
         settle = _launch(structs, device, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, device, watch_kernel)]
@@ -57,7 +66,7 @@ def step_program(structs: KernelStructs, device: str, plan: Plan) -> Program:
         detection=detection if plan.touching else [],
         motion=motion,
         end=[_launch(structs, device, end_step_kernel)],
-        abandon=[_launch(structs, device, abandon_step_kernel)],
+        abandon=abandon,
     )
 
 

@@ -81,21 +81,25 @@ class Launch:
         else:
             setattr(self._packed, f"p{index}", struct.__ctype__())
 
-    def addresses(self, scalar: str) -> tuple[int, int, int, int]:
+    def addresses(self, *scalars: str) -> list[int]:
         """What another native function needs to run the kernel on the CPU, as long as this launch is kept.
 
         Args:
-            scalar: Name of the scalar argument that it will change.
+            *scalars: Names of the scalar arguments that it will change.
 
         Returns:
-            Addresses of the function, of its two arguments, and of that scalar.
+            Addresses of the function, of its two arguments, and of these scalars; 0 where there is no such
+            argument.
         """
         if self._entry_point is None:
             raise ValueError("a launch on a GPU has no addresses")
         entry: Any = ctypes.cast(self._entry_point, ctypes.c_void_p).value
         packed = ctypes.addressof(self._packed)
-        field = getattr(type(self._packed), f"p{argument_indices(self.kernel)[scalar]}")
-        return entry, ctypes.addressof(self._command.params[0]), packed, packed + field.offset
+        indices, fields = argument_indices(self.kernel), type(self._packed)
+        places = [
+            packed + getattr(fields, f"p{indices[name]}").offset if name in indices else 0 for name in scalars
+        ]
+        return [entry, ctypes.addressof(self._command.params[0]), packed, *places]
 
     @property
     def function(self) -> Callable[[], None]:

@@ -1,9 +1,11 @@
-"""One substep of worlds whose bodies neither touch nor are tied together."""
+"""One step of worlds whose bodies neither touch nor are tied together, in one kernel launch."""
 
 import warp as wp
 
 from carom.model.codes import FREE_MOTION
+from carom.model.contact_structs import Pairs
 from carom.model.real import Int32, func, kernel
+from carom.model.status import STATUS, WELL
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.activity import has_stirred, is_asleep, stop
 from carom.physics.dynamics import generalized_forces, link_bias_forces, link_inertias, update_velocities
@@ -23,6 +25,7 @@ from carom.physics.kinematics import forward_kinematics, motion_subspaces
 from carom.physics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.physics.motors import explicit_pd
 from carom.physics.single_body import is_single_body, move_single_body
+from carom.physics.step_ends import begin_step, end_step
 
 
 @func
@@ -77,19 +80,38 @@ def constrained_motion(settings: Settings, model: Model, state: State, scratch: 
         if is_asleep(state, world, tree):
             stop(model, state, world, tree)
             continue
-        if model.tree[tree].sensor_count > 0:
-            constraint_feedback(model, settings, state, scratch, world, tree)
-        apply_delta_velocities(model, state, scratch, world, tree)
-        integrate_positions(model, state, world, tree, settings.time_step)
+        move_on(settings, model, state, scratch, world, tree)
+
+
+@func
+def move_on(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `constrained_motion`, for one tree that is awake."""
+    if model.tree[tree].sensor_count > 0:
+        constraint_feedback(model, settings, state, scratch, world, tree)
+    apply_delta_velocities(model, state, scratch, world, tree)
+    integrate_positions(model, state, world, tree, settings.time_step)
 
 
 @kernel
-def step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
-    """Advance each world by one substep."""
+def step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    substeps: Int32,
+    first_world: Int32,
+):
+    """Advance each world by one step of `substeps` substeps."""
     world = first_world + wp.tid()
-    for tree in range(settings.tree_count):
-        pushed = is_constrained(model, state, world, model.tree[tree].batch)
-        free_motion(model, settings, state, scratch, world, tree, pushed)
-    for tree in range(settings.tree_count):
-        solve_joints(model, settings, state, scratch, world, tree)
-    constrained_motion(settings, model, state, scratch, world)
+    begin_step(settings, model, state, scratch, pairs, world, 1)
+    for _substep in range(substeps):
+        if state.status_entry[world, STATUS] == WELL:
+            for tree in range(settings.tree_count):
+                pushed = is_constrained(model, state, world, model.tree[tree].batch)
+                free_motion(model, settings, state, scratch, world, tree, pushed)
+            for tree in range(settings.tree_count):
+                solve_joints(model, settings, state, scratch, world, tree)
+            constrained_motion(settings, model, state, scratch, world)
+    if state.status_entry[world, STATUS] == WELL:
+        end_step(settings, model, state, world)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum
 from functools import cache
 from math import isnan
@@ -121,13 +121,14 @@ class Reader:
         return self.record(hint, data, where)
 
     def record(self, cls: type[T], data: Any, where: str) -> T:
-        """A dataclass."""
+        """A dataclass; a field that has a default may be missing, as in files of earlier versions."""
         if not isinstance(data, dict) or data.get(_CLASS) != cls.__name__:
             raise self.fail(where, f"is no {cls.__name__}")
         hints = _hints(cls)
-        if data.keys() - {_CLASS} != hints.keys():
+        given = data.keys() - {_CLASS}
+        if not _required(cls) <= given <= hints.keys():
             raise self.fail(where, f"does not have the fields of a {cls.__name__}")
-        return cls(**{name: self.read(hint, data[name], f"{where}.{name}") for name, hint in hints.items()})
+        return cls(**{name: self.read(hints[name], data[name], f"{where}.{name}") for name in given})
 
     def array(
         self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
@@ -238,6 +239,12 @@ _CONTAINERS: dict[Any, Callable[[Reader, tuple[Any, ...], Any, str], Any]] = {
     tuple: Reader._tuple,
     dict: Reader._dict,
 }
+
+
+@cache
+def _required(cls: Any) -> frozenset[str]:
+    """Fields of a dataclass without a default."""
+    return frozenset(field.name for field in fields(cls) if field.default is MISSING)
 
 
 @cache

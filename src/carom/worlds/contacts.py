@@ -74,3 +74,26 @@ def summarise_contacts(
     least = distance[worlds, lowest]
     deepest = np.where(np.isfinite(least)[:, None], point, np.nan)
     return ContactSummary(touching, chosen.sum(axis=1), forces, least, deepest)
+
+
+def links_touching(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
+    """Which of some links have a contact point with some others in each world.
+
+    Args:
+        engine: The worlds.
+        first: Rows of links, which follow each other.
+        second: Rows of the others, likewise.
+
+    Returns:
+        (worlds, links) booleans.
+    """
+    contacts = engine.touch.contacts.numpy
+    counts = contacts["count_contacts"][:, THERE]
+    touching = np.zeros((len(counts), len(first)), dtype=bool)
+    worlds, points = np.nonzero(np.arange(counts.max(initial=0)) < counts[:, None])
+    sides = contacts["contact_shapes"][worlds, points, 2:4]
+    for own, other in (sides.T, sides.T[::-1]):
+        places = own - first[0]
+        chosen = (places >= 0) & (places < len(first)) & (other >= second[0]) & (other <= second[-1])
+        touching[worlds[chosen], places[chosen]] = True
+    return touching
