@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from carom.description import JointType, Pose
+from carom.description import JointType, Pose, Robot
 from carom.description.pose import Quaternion
 from carom.description.transform import (
     compose,
@@ -94,3 +95,12 @@ def dynamics_infos(body: BodySpec) -> list[list[Any]]:
         ]
         for link in (body.base, *body.links)
     ]
+
+
+def with_plain_capsules(robot: Robot) -> Robot:
+    """A robot whose capsules are capsules: URDF cannot say that they are PyBullet's swept spheres."""
+    links = tuple(
+        replace(link, collisions=tuple(replace(shape, ends_frame=None) for shape in link.collisions))
+        for link in robot.links
+    )
+    return replace(robot, links=links)

@@ -177,7 +177,7 @@ def test_no_radius_is_refused_and_no_height_is_none(kind: str, name: str, others
 @pytest.mark.parametrize("axes", [(2,), (0, 1, 2)])
 def test_boxes_that_are_refused(value: float, axes: tuple[int, ...]) -> None:
     extents = [value if axis in axes else 0.5 for axis in range(3)]
-    with pytest.raises(p.error, match=f"{NO_SHAPE} halfExtents"):
+    with pytest.raises(p.error, match=f"{NO_SHAPE} .*halfExtents"):
         p.createCollisionShape(p.GEOM_BOX, halfExtents=extents)
 
 
@@ -227,7 +227,7 @@ def test_bodies_are_not_put_at_infinity(z: float) -> None:
     assert p.getBasePositionAndOrientation(body) == ((0, 0, 1), (0, 0, 0, 1))
 
 
-@pytest.mark.parametrize("z", [1e18, 1e40, 1e160, 1e300])
+@pytest.mark.parametrize("z", [1e18, 1e30])
 def test_bodies_very_far_away_do_no_harm(z: float) -> None:
     shape = box()
     body, other = (p.createMultiBody(1, shape, basePosition=[x, 0, 1]) for x in (0, 1))
@@ -238,6 +238,14 @@ def test_bodies_very_far_away_do_no_harm(z: float) -> None:
     assert not p.getContactPoints(body)
     assert not p.getClosestPoints(body, other, 1.0)
     assert p.rayTest([1, 0, 5], [1, 0, -5])[0][0] == other
+
+
+@pytest.mark.parametrize("z", [1e31, 1e160, 1e300])
+def test_bodies_are_not_put_farther_away_than_numbers_reach(z: float) -> None:
+    body = p.createMultiBody(1, box())
+    with pytest.raises(p.error, match=r"it has to be from -1e\+30 to 1e\+30"):
+        p.resetBasePositionAndOrientation(body, [0, 0, z], [0, 0, 0, 1])
+    assert p.getBasePositionAndOrientation(body)[0] == (0, 0, 0)
 
 
 @pytest.mark.parametrize("mass", [nan, inf, -1])
