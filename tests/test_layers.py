@@ -37,6 +37,7 @@ MAY_IMPORT = {
         "carom.version",
     },
     "carom.worlds": {*ENGINE, "carom.checks", "carom.world", "carom.camera"},
+    "carom.vector": {"carom.checks", "carom.world", "carom.worlds", "carom.camera"},
     "carom.algorithms": {*ENGINE, "carom.world"},
     "carom.render": {*ENGINE, "carom.saved", "carom.world"},
     "carom.viewer": {*ENGINE, "carom.world", "carom.render"},
@@ -79,7 +80,17 @@ MAY_IMPORT = {
     "eglRenderer": set(),
     # The URDF editor writes files of its own.
     "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
-    "pybullet_envs": {"pybullet", "pybullet_data", "pybullet_utils"},
+    "pybullet_envs": {
+        "pybullet",
+        "pybullet_data",
+        "pybullet_utils",
+        # Environments many at once.
+        "carom.checks",
+        "carom.camera",
+        "carom.vector",
+        "carom.world",
+        "carom.worlds",
+    },
 }
 
 

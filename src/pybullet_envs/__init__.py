@@ -65,6 +65,22 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("HumanoidFlagrunHarderBulletEnv-v0", _FLAGRUN_HARDER, 1000, None),
 )
 
+# Those that can be made many at once: module and class in `pybullet_envs.vector`.
+_VECTORS = {
+    "CartPoleBulletEnv-v1": "cartpole:CartPoleVectorEnv",
+    "CartPoleContinuousBulletEnv-v0": "cartpole:CartPoleContinuousVectorEnv",
+    "InvertedPendulumBulletEnv-v0": "pendula:InvertedPendulumVectorEnv",
+    "InvertedPendulumSwingupBulletEnv-v0": "pendula:InvertedPendulumSwingupVectorEnv",
+    "InvertedDoublePendulumBulletEnv-v0": "pendula:InvertedDoublePendulumVectorEnv",
+    "ReacherBulletEnv-v0": "arms:ReacherVectorEnv",
+    "PusherBulletEnv-v0": "arms:PusherVectorEnv",
+    "HopperBulletEnv-v0": "walkers:HopperVectorEnv",
+    "Walker2DBulletEnv-v0": "walkers:Walker2DVectorEnv",
+    "HalfCheetahBulletEnv-v0": "walkers:HalfCheetahVectorEnv",
+    "AntBulletEnv-v0": "walkers:AntVectorEnv",
+    "HumanoidBulletEnv-v0": "walkers:HumanoidVectorEnv",
+}
+
 # Names that PyBullet has besides, so that asking for one says more than that nobody knows it.
 _DEEP_MIMIC = ("HumanoidDeepMimicBackflipBulletEnv-v1", "HumanoidDeepMimicWalkBulletEnv-v1")
 _NEEDS_MOTIONS = "it imitates recorded motions of people, which are not Carom's to pass on"
@@ -89,6 +105,7 @@ for _name, _place, _steps, _solved in _ENVIRONMENTS:
         gymnasium.register(
             _name,
             entry_point=f"pybullet_envs.{_place}",
+            vector_entry_point=f"pybullet_envs.vector.{_VECTORS[_name]}" if _name in _VECTORS else None,
             max_episode_steps=_steps,
             reward_threshold=_solved,
         )

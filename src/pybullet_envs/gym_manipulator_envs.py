@@ -13,9 +13,9 @@ from pybullet_envs.robot_manipulators import Pusher, Reacher, SevenJointArm, Str
 from pybullet_envs.scene_abstract import SingleRobotEmptyScene
 
 # PyBullet counts the upper arm's roll where the forearm's would be due; so trained policies expect it.
-_COUNTED = tuple("upper_arm_roll_joint" if n == "forearm_roll_joint" else n for n in SevenJointArm.ARM)
-_WORK, _STALL = 0.1, 0.01
-_INSIDE, _WELL_INSIDE = 0.1, 1.01
+COUNTED = tuple("upper_arm_roll_joint" if n == "forearm_roll_joint" else n for n in SevenJointArm.ARM)
+WORK, STALL = 0.1, 0.01
+INSIDE, WELL_INSIDE = 0.1, 1.01
 
 
 class _ArmEnv(MJCFBaseBulletEnv):
@@ -52,7 +52,7 @@ class ReacherBulletEnv(_ArmEnv):
         state = robot.calc_state()
         before, self.potential = self.potential, robot.calc_potential()
         rates = np.array((robot.theta_dot, robot.gamma_dot))
-        effort = _WORK * float(np.abs(given * rates).sum()) + _STALL * float(np.abs(given).sum())
+        effort = WORK * float(np.abs(given * rates).sum()) + STALL * float(np.abs(given).sum())
         stuck = 0.1 if abs(abs(robot.gamma) - 1.0) < 0.01 else 0.0
         self.rewards = [self.potential - before, -effort, -stuck]
         self.HUD(state, action, False)
@@ -73,11 +73,11 @@ class _SevenJointArmEnv(_ArmEnv):
         robot.apply_action(action)
         self.scene.global_step()
         state = robot.calc_state()
-        rates = np.array([robot.jdict[name].get_velocity() for name in _COUNTED])
-        effort = _WORK * float(np.abs(given) @ np.abs(rates)) + _STALL * float(given.sum())
+        rates = np.array([robot.jdict[name].get_velocity() for name in COUNTED])
+        effort = WORK * float(np.abs(given) @ np.abs(rates)) + STALL * float(given.sum())
         joints = robot.ordered_joints
-        inside = sum(abs(joint.current_relative_position()[0]) < _WELL_INSIDE for joint in joints)
-        self.rewards = [-effort, -_INSIDE * inside, self._success(float(np.square(given).sum()))]
+        inside = sum(abs(joint.current_relative_position()[0]) < WELL_INSIDE for joint in joints)
+        self.rewards = [-effort, -INSIDE * inside, self._success(float(np.square(given).sum()))]
         self.HUD(state, action, False)
         return state, sum(self.rewards), False, False, {}
 

@@ -27,7 +27,7 @@ class _CartEnv(MJCFBaseBulletEnv):
 class InvertedPendulumBulletEnv(_CartEnv):
     """A pole to keep upright; a point for each step that it stands. See `InvertedPendulum`."""
 
-    _fallen = 0.2
+    fallen = 0.2
     _robot = InvertedPendulum
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
@@ -40,7 +40,7 @@ class InvertedPendulumBulletEnv(_CartEnv):
         state = self.robot.calc_state()
         angle = self.robot.theta
         self.rewards = [cos(angle) if self.robot.swingup else 1.0]
-        done = not self.robot.swingup and abs(angle) > self._fallen
+        done = not self.robot.swingup and abs(angle) > self.fallen
         self.HUD(state, action, done)
         return state, sum(self.rewards), done, False, {}
 
@@ -58,7 +58,7 @@ class InvertedDoublePendulumBulletEnv(_CartEnv):
     """
 
     # From the centre of the upper pole to its tip, and how high the tip is to be [m].
-    _to_tip, _aim, _fallen = 0.3, 2.0, 1.0
+    to_tip, aim, fallen = 0.3, 2.0, 1.0
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(InvertedDoublePendulum(), render, render_mode)
@@ -68,8 +68,8 @@ class InvertedDoublePendulumBulletEnv(_CartEnv):
         self.robot.apply_action(action)
         self.scene.global_step()
         state = self.robot.calc_state()
-        tip = self.robot.pos_y + self._to_tip
-        self.rewards = [10.0, -0.01 * self.robot.pos_x**2 - (tip - self._aim) ** 2]
-        done = tip <= self._fallen
+        tip = self.robot.pos_y + self.to_tip
+        self.rewards = [10.0, -0.01 * self.robot.pos_x**2 - (tip - self.aim) ** 2]
+        done = tip <= self.fallen
         self.HUD(state, action, done)
         return state, sum(self.rewards), done, False, {}

@@ -11,8 +11,8 @@ from pybullet_envs.env_bases import checked
 from pybullet_envs.robot_bases import MJCFBasedRobot
 from pybullet_envs.robot_parts import BodyPart
 
-_TURN = 3.14
-_TORQUE = 0.05
+TURN = 3.14
+TORQUE = 0.05
 """Of an action of one [N m]."""
 
 
@@ -40,13 +40,13 @@ class Reacher(MJCFBasedRobot):
         self.fingertip, self.target = self.parts["fingertip"], self.parts["target"]
         self.central_joint, self.elbow_joint = self.jdict["joint0"], self.jdict["joint1"]
         for name in ("target_x", "target_y", "joint0", "joint1"):
-            reach = _TURN if name.startswith("joint") else self.TARG_LIMIT
+            reach = TURN if name.startswith("joint") else self.TARG_LIMIT
             self.jdict[name].reset_current_position(self.np_random.uniform(-reach, reach), 0)
 
     def apply_action(self, a: np.ndarray) -> None:
         """Turns both joints."""
         for joint, share in zip((self.central_joint, self.elbow_joint), checked(a), strict=True):
-            joint.set_motor_torque(_TORQUE * float(share))
+            joint.set_motor_torque(TORQUE * float(share))
 
     def calc_state(self) -> np.ndarray:
         """What is observed now."""
@@ -95,7 +95,7 @@ class SevenJointArm(MJCFBasedRobot):
 
     def _turn_arm(self) -> None:
         for joint in self.arm:
-            joint.reset_current_position(self.np_random.uniform(-_TURN, _TURN), 0)
+            joint.reset_current_position(self.np_random.uniform(-TURN, TURN), 0)
 
     def _anywhere(self, axes: int) -> np.ndarray:
         """A point within a square or a cube."""
@@ -118,7 +118,7 @@ class SevenJointArm(MJCFBasedRobot):
     def apply_action(self, a: np.ndarray) -> None:
         """Turns the joints."""
         for joint, share in zip(self.arm, checked(a), strict=True):
-            joint.set_motor_torque(_TORQUE * float(share))
+            joint.set_motor_torque(TORQUE * float(share))
 
     def calc_state(self) -> np.ndarray:
         """What is observed now."""

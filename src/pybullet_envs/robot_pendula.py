@@ -10,8 +10,11 @@ import numpy as np
 from pybullet_envs.env_bases import checked
 from pybullet_envs.robot_bases import MJCFBasedRobot
 
-_LARGEST_START = 0.1
+LARGEST_START = 0.1
 """Poles begin so far from upright at most [rad]."""
+
+HANGING = 3.1415
+"""Half a turn, to four digits as PyBullet has it [rad]."""
 
 
 class InvertedPendulum(MJCFBasedRobot):
@@ -25,7 +28,7 @@ class InvertedPendulum(MJCFBasedRobot):
     """
 
     swingup = False
-    _push = 100.0
+    push = 100.0
 
     def __init__(self) -> None:
         super().__init__("inverted_pendulum.xml", "cart", action_dim=1, obs_dim=5)
@@ -33,13 +36,12 @@ class InvertedPendulum(MJCFBasedRobot):
     def robot_specific_reset(self, bullet_client: Any) -> None:
         """Puts the pole near upright, or half a turn from there."""
         self.slider, self.j1 = self.jdict["slider"], self.jdict["hinge"]
-        offset = self.np_random.uniform(-_LARGEST_START, _LARGEST_START)
-        # As PyBullet has it: half a turn to four digits.
-        self.j1.reset_current_position(offset + (3.1415 if self.swingup else 0.0), 0)
+        offset = self.np_random.uniform(-LARGEST_START, LARGEST_START)
+        self.j1.reset_current_position(offset + (HANGING if self.swingup else 0.0), 0)
 
     def apply_action(self, a: np.ndarray) -> None:
         """Pushes the cart."""
-        self.slider.set_motor_torque(self._push * float(checked(a)[0]))
+        self.slider.set_motor_torque(self.push * float(checked(a)[0]))
 
     def calc_state(self) -> np.ndarray:
         """What is observed now."""
@@ -64,7 +66,7 @@ class InvertedDoublePendulum(MJCFBasedRobot):
         pos_y: How high it is [m].
     """
 
-    _push = 200.0
+    push = 200.0
 
     def __init__(self) -> None:
         super().__init__("inverted_double_pendulum.xml", "cart", action_dim=1, obs_dim=9)
@@ -73,13 +75,13 @@ class InvertedDoublePendulum(MJCFBasedRobot):
         """Puts both poles near upright."""
         self.pole2, self.slider = self.parts["pole2"], self.jdict["slider"]
         self.j1, self.j2 = self.jdict["hinge"], self.jdict["hinge2"]
-        offsets = self.np_random.uniform(-_LARGEST_START, _LARGEST_START, 2)
+        offsets = self.np_random.uniform(-LARGEST_START, LARGEST_START, 2)
         for joint, offset in zip((self.j1, self.j2), offsets, strict=True):
             joint.reset_current_position(float(offset), 0)
 
     def apply_action(self, a: np.ndarray) -> None:
         """Pushes the cart."""
-        self.slider.set_motor_torque(self._push * float(checked(a)[0]))
+        self.slider.set_motor_torque(self.push * float(checked(a)[0]))
 
     def calc_state(self) -> np.ndarray:
         """What is observed now."""

@@ -12,9 +12,9 @@ from pybullet_envs.env_bases import checked
 from pybullet_envs.robot_bases import MJCFBasedRobot
 from pybullet_envs.robot_parts import Joint
 
-_LARGEST_START = 0.1
-_NEAR_LIMIT = 0.99
-_LARGEST_OBSERVED = 5.0
+LARGEST_START = 0.1
+NEAR_LIMIT = 0.99
+LARGEST_OBSERVED = 5.0
 
 
 class WalkerBase(MJCFBasedRobot):
@@ -57,7 +57,7 @@ class WalkerBase(MJCFBasedRobot):
     def robot_specific_reset(self, bullet_client: Any) -> None:
         """Turns the joints a little."""
         for joint in self.ordered_joints:
-            joint.reset_current_position(self.np_random.uniform(-_LARGEST_START, _LARGEST_START), 0)
+            joint.reset_current_position(self.np_random.uniform(-LARGEST_START, LARGEST_START), 0)
         for name, torque in self.joint_power.items():
             self.jdict[name].power_coef = torque
         self.motors = self.ordered_joints
@@ -81,7 +81,7 @@ class WalkerBase(MJCFBasedRobot):
         """What is observed now."""
         joints = self.relative_joint_states().astype(np.float32)
         self.joint_speeds = joints[:, 1]
-        self.joints_at_limit = int(np.count_nonzero(np.abs(joints[:, 0]) > _NEAR_LIMIT))
+        self.joints_at_limit = int(np.count_nonzero(np.abs(joints[:, 0]) > NEAR_LIMIT))
         self._find_body()
         if self.initial_z is None:
             self.initial_z = self.body_xyz[2]
@@ -92,7 +92,7 @@ class WalkerBase(MJCFBasedRobot):
         height = self.body_xyz[2] - self.initial_z
         body = [height, sin(aside), cos(aside), 0.3 * ahead, 0.3 * across, 0.3 * vz, roll, pitch]
         whole = np.concatenate([body, joints.ravel(), self.feet_contact])
-        return np.clip(whole, -_LARGEST_OBSERVED, _LARGEST_OBSERVED).astype(np.float32)
+        return np.clip(whole, -LARGEST_OBSERVED, LARGEST_OBSERVED).astype(np.float32)
 
     def _find_body(self) -> None:
         """Where the body is, and the goal from there."""

@@ -302,12 +302,12 @@ class Task:
         """Make the launches again before the next call."""
         self._made_at = -1
 
-    def __call__(self) -> None:
-        """Do it."""
+    def __call__(self, worlds: np.ndarray | None = None) -> None:
+        """Do it in some worlds, by their numbers; None for all."""
         if self._made_at != self._engine.changes:
             self._engine.load(self._interpreters, self._program)
             self._made_at = self._engine.changes
-        self._engine.run(self._interpreters)
+        self._engine.run(self._interpreters, worlds)
 
     def _program(self, structs: KernelStructs) -> Program:
         return Program(begin=[], detection=self._make_launches(structs), motion=[], end=[], abandon=[])

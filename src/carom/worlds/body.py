@@ -88,6 +88,28 @@ class BodyBatch:
         """Least and greatest positions of the joints that move, (dofs,); infinite without a limit."""
         return self._body.joints.limits
 
+    def columns(self, joints: list[int | str] | None = None) -> slice | np.ndarray:
+        """Where some joints of one freedom are among the columns of `joint_velocities`.
+
+        They are there in `joint_positions` as well unless a spherical joint comes before them.
+
+        Args:
+            joints: Which joints, by index or name; None for all that move.
+
+        Returns:
+            A slice if they are next to each other, so that indexing gives a view.
+
+        Raises:
+            ValueError: A joint has more than one freedom, or none.
+        """
+        dofs, _ = self._chosen(joints)
+        if isinstance(dofs, slice):
+            return slice(0, dofs.stop - dofs.start)
+        columns = dofs - self._dofs.start
+        if len(columns) and (np.diff(columns) == 1).all():
+            return slice(int(columns[0]), int(columns[-1]) + 1)
+        return columns
+
     def enable_sensors(self, *joints: int | str) -> None:
         """Switch the force-torque sensors of joints on in all worlds; all joints if none is named."""
         chosen = joints or tuple(range(self._body.joint_count))
@@ -276,6 +298,32 @@ class BodyBatch:
         A copy (count, links, 6), in world axes, for the present coordinates.
         """
         return self._poses.velocities()[:, self._links].copy()
+
+    @property
+    def stepped_link_poses(self) -> Array:
+        """`link_poses` as `pybullet.getLinkState` has them after a step; a view (count, links, 7).
+
+        They are those at the start of the last substep. Asking for `link_poses` or `link_velocities` brings
+        them up to date in all worlds, and `update_link_poses` in some.
+        """
+        return self._state["link_pose"][:, self._links]
+
+    @property
+    def stepped_link_velocities(self) -> Array:
+        """`link_velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
+
+        They go with `stepped_link_poses` and the present velocities of the joints. The next call fills the
+        same array.
+        """
+        return self._poses.velocities_at_step()[:, self._links]
+
+    def update_link_poses(self, where: ArrayLike | None = None) -> None:
+        """Bring `stepped_link_poses` up to date with the coordinates.
+
+        Args:
+            where: In which worlds: a mask (count,) or their numbers; None for all.
+        """
+        self._poses.update(world_numbers(where, self._count))
 
     def apply_forces(
         self, link: int | str, forces: ArrayLike, points: ArrayLike | None = None, torques: ArrayLike = 0.0

@@ -74,3 +74,28 @@ def summarise_contacts(
     least = distance[worlds, lowest]
     deepest = np.where(np.isfinite(least)[:, None], point, np.nan)
     return ContactSummary(touching, chosen.sum(axis=1), forces, least, deepest)
+
+
+def links_touching(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
+    """Which of some links have a contact point with some others in each world.
+
+    Args:
+        engine: The worlds.
+        first: Rows of links, one after the other.
+        second: Rows of the others.
+
+    Returns:
+        (worlds, links) booleans.
+    """
+    contacts = engine.touch.contacts.numpy
+    counts = contacts["count_contacts"][:, THERE]
+    touching = np.zeros((len(counts), len(first)), dtype=bool)
+    most = int(counts.max(initial=0))
+    sides = contacts["contact_shapes"][:, :most, 2:4]
+    there = np.arange(most) < counts[:, None]
+    for own, other in ((0, 1), (1, 0)):
+        places = sides[..., own] - first[0]
+        chosen = there & (places >= 0) & (places < len(first)) & np.isin(sides[..., other], second)
+        worlds, points = np.nonzero(chosen)
+        touching[worlds, places[worlds, points]] = True
+    return touching

@@ -22,12 +22,22 @@ class PoseFinder:
         self._place = engine.task(
             lambda structs: [structs.launch(forward_kinematics_kernel, DEVICE, **scalars)]
         )
+        self._twist = engine.task(lambda structs: [structs.launch(link_twist_kernel, DEVICE, **scalars)])
         self._move = engine.task(
             lambda structs: [
                 structs.launch(kernel, DEVICE, **scalars)
                 for kernel in (forward_kinematics_kernel, link_twist_kernel)
             ]
         )
+
+    def update(self, worlds: np.ndarray) -> None:
+        """Bring `State.link_pose` of the tree up to date in some worlds."""
+        self._place(worlds)
+
+    def velocities_at_step(self) -> np.ndarray:
+        """`State.link_twist`, for the present velocities and the poses that are in `State.link_pose`."""
+        self._twist()
+        return self._state["link_twist"]
 
     def poses(self) -> np.ndarray:
         """`State.link_pose`, (worlds, links of all bodies, 7), true for the links of the tree."""

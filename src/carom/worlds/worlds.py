@@ -20,7 +20,7 @@ from carom.user_constraints import UserConstraint
 from carom.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.checks import Mask, broadcast, world_numbers
-from carom.worlds.contacts import ContactSummary, summarise_contacts
+from carom.worlds.contacts import ContactSummary, links_touching, summarise_contacts
 from carom.worlds.images import Images, take_images
 from carom.worlds.lone import lone_world
 from carom.worlds.memory import check_memory
@@ -108,18 +108,23 @@ class Worlds:
 
     # Time
 
-    def step(self, count: int = 1) -> None:
-        """Advance all worlds that are not halted by `count` time steps.
+    def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
+        """Advance the worlds that are not halted by `count` time steps.
 
         A world whose velocities come out as NaN or infinite is halted; a `SimulationWarning` names it.
+
+        Args:
+            count: How many steps.
+            where: Which worlds: a mask (count,) or their numbers; None for all.
         """
+        chosen = None if where is None else np.unique(world_numbers(where, self.count))
         while count > 0:
             steps = min(count, MOST_STEPS)
-            self._step(steps)
+            self._step(steps, chosen)
             count -= steps
 
-    def _step(self, steps: int) -> None:
-        running = np.flatnonzero(~self.halted)
+    def _step(self, steps: int, chosen: np.ndarray | None) -> None:
+        running = np.flatnonzero(~self.halted) if chosen is None else chosen[~self.halted[chosen]]
         if not len(running):
             return
         parameters = self._scene.parameters
@@ -270,6 +275,23 @@ class Worlds:
             None if second is None else second.link_rows(other_link),
             self._scene.parameters.substep_time,
         )
+
+    def links_touching(
+        self, body: Body | int, other: Body | int, other_link: int | str | None = None
+    ) -> Mask:
+        """Which links of a body have a contact point with another body, as the last step found it.
+
+        Points count that are still apart, as `ContactSummary.number` counts them.
+
+        Args:
+            body: The body.
+            other: The other body.
+            other_link: Link of the other body by index (-1 is the base) or name; None for any.
+
+        Returns:
+            (count, links + 1) booleans, the base first.
+        """
+        return links_touching(self._engine, self[body].link_rows(None), self[other].link_rows(other_link))
 
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """What rays hit in each world.

@@ -13,7 +13,8 @@ import pybullet
 import pybullet_data
 from pybullet_envs.env_bases import BulletEnv
 
-_CART, _POLE = 0, 1
+CART, POLE = 0, 1
+LARGEST_START = 0.05
 
 
 class CartPoleBulletEnv(BulletEnv):
@@ -57,33 +58,33 @@ class CartPoleBulletEnv(BulletEnv):
         super().reset(seed=seed)
         if self._connect():
             self._load()
-        angle, rate, position, velocity = self.np_random.uniform(-0.05, 0.05, 4)
-        self._p.resetJointState(self.cartpole, _POLE, angle, rate)
-        self._p.resetJointState(self.cartpole, _CART, position, velocity)
+        angle, rate, position, velocity = self.np_random.uniform(-LARGEST_START, LARGEST_START, 4)
+        self._p.resetJointState(self.cartpole, POLE, angle, rate)
+        self._p.resetJointState(self.cartpole, CART, position, velocity)
         return self._observe(), {}
 
     def _load(self) -> None:
         bullet = self._p
         self.cartpole = bullet.loadURDF(os.path.join(pybullet_data.getDataPath(), "cartpole.urdf"))
-        for link in (-1, _CART, _POLE):
+        for link in (-1, CART, POLE):
             bullet.changeDynamics(self.cartpole, link, linearDamping=0, angularDamping=0)
-        for joint in (_CART, _POLE):
+        for joint in (CART, POLE):
             bullet.setJointMotorControl2(self.cartpole, joint, pybullet.VELOCITY_CONTROL, force=0)
         bullet.setGravity(0, 0, -9.8)
         bullet.setTimeStep(self.time_step)
 
     def _observe(self) -> np.ndarray:
-        pole, cart = (self._p.getJointState(self.cartpole, joint)[:2] for joint in (_POLE, _CART))
+        pole, cart = (self._p.getJointState(self.cartpole, joint)[:2] for joint in (POLE, CART))
         return np.array([*pole, *cart], np.float32)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Pushes the cart for a step."""
         way = (1.0 if action == 1 else -1.0) if self._discrete else float(action[0]) / self.force_mag
         force = self.force_mag * way
-        self._p.setJointMotorControl2(self.cartpole, _CART, pybullet.TORQUE_CONTROL, force=force)
+        self._p.setJointMotorControl2(self.cartpole, CART, pybullet.TORQUE_CONTROL, force=force)
         self._p.stepSimulation()
-        angle = self._p.getJointState(self.cartpole, _POLE)[0]
-        position = self._p.getJointState(self.cartpole, _CART)[0]
+        angle = self._p.getJointState(self.cartpole, POLE)[0]
+        position = self._p.getJointState(self.cartpole, CART)[0]
         done = abs(position) > self.x_threshold or abs(angle) > self.theta_threshold_radians
         return self._observe(), 1.0, done, False, {}
 

@@ -1,0 +1,182 @@
+"""Tasks for a Panda: to reach a place, to push a cube there, to pick one up and hold it there."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+import pybullet_data
+from carom.camera import Camera
+from carom.checks import Array
+from carom.vector.single import SingleEnv
+from carom.vector.worlds_env import WorldsEnv
+from carom.world import World
+from carom.worlds.checks import Mask
+
+_TIME_STEP, _STEPS = 1.0 / 240.0, 12
+_GRAVITY = (0.0, 0.0, -9.81)
+_ARM, _FINGERS, _TIP = 7, 2, "panda_grasptarget"
+_HOME = np.array([0.0, 0.3, 0.0, -2.1, 0.0, 2.4, 0.785])
+_SPREAD = 0.1
+"""How far joints begin from there at most [rad]."""
+_FARTHEST_TURN = 0.05
+"""How far an action of one moves the target of a joint [rad]."""
+_OPEN = 0.04
+_NEAR = 0.05
+"""What counts as there [m]."""
+_HALF_CUBE = 0.025
+_STEADY_GAIN, _MAX_VELOCITY = 0.2, 2.0
+
+
+class PandaTask(WorldsEnv):
+    """What the tasks have in common.
+
+    Action: by how much the targets of the seven joints move, from -1 to 1, of 0.05 rad; where the task needs
+    fingers, how far they open, from -1 (closed) to 1.
+
+    Observation: positions and rates of the joints, opening of the fingers, place of the fingertips, of the
+    goal, the way from the one to the other, then what the task adds. Reward: below 0 as far as something is
+    away from where it is to be, and 1 more where it is there (`infos["success"]`).
+
+    A task lasts as long as its `max_episode_steps`.
+
+    Args:
+        num_envs: How many there are to be.
+        **options: As for `WorldsEnv`.
+    """
+
+    _has_cube = True
+    _uses_fingers = True
+    _lowest_goal: tuple[float, float, float]
+    _highest_goal: tuple[float, float, float]
+
+    def __init__(self, num_envs: int = 1, **options: Any) -> None:
+        world = World(time_step=_TIME_STEP)
+        world.gravity = _GRAVITY
+        assets = Path(pybullet_data.getDataPath())
+        world.load_urdf(assets / "plane.urdf")
+        panda = world.load_urdf(assets / "franka_panda" / "panda.urdf", fixed_base=True)
+        cube = world.load_urdf(assets / "cube_small.urdf") if self._has_cube else None
+        numbers = 2 * _ARM + 1 + 9 + (9 if self._has_cube else 0)
+        action = np.ones(_ARM + self._uses_fingers, np.float32)
+        endless = np.full(numbers, np.inf, np.float32)
+        options.setdefault(
+            "camera", Camera.with_field_of_view(320, 240, 50.0).look_at((1.3, -0.9, 0.9), (0.4, 0, 0.2))
+        )
+        super().__init__(
+            world,
+            num_envs,
+            gymnasium.spaces.Box(-endless, endless),
+            gymnasium.spaces.Box(-action, action),
+            steps=_STEPS,
+            **options,
+        )
+        self._panda = self.worlds[panda]
+        self._cube = None if cube is None else self.worlds[cube]
+        self._tip_row = self._panda.link_names.index(_TIP)
+        self._lower, self._upper = (limits[:_ARM] for limits in self._panda.limits)
+        self._wanted = np.zeros((num_envs, _ARM + _FINGERS))
+        self.goals = np.zeros((num_envs, 3))
+
+    def begin(self, worlds: np.ndarray) -> None:
+        """Put joints, the cube and the goal somewhere."""
+        turns = self.random.uniform(worlds, -_SPREAD, _SPREAD, _ARM)
+        pose = np.concatenate([_HOME + turns, np.full((len(worlds), _FINGERS), self._opening)], axis=1)
+        self._wanted[worlds] = self._panda.joint_positions[worlds] = pose
+        self.goals[worlds] = self.random.uniform(
+            worlds, np.array(self._lowest_goal), np.array(self._highest_goal)
+        )
+        if self._cube is not None:
+            places = self.random.uniform(worlds, np.array([0.4, -0.2]), np.array([0.6, 0.2]))
+            on_floor = np.column_stack([places, np.full(len(worlds), _HALF_CUBE)])
+            self._cube.set_base_poses(on_floor, where=worlds)
+
+    @property
+    def _opening(self) -> float:
+        return _OPEN if self._uses_fingers else 0.0
+
+    def act(self, actions: np.ndarray) -> None:
+        """Move the targets of the joints."""
+        held = np.clip(actions, -1.0, 1.0)
+        arm = self._wanted[:, :_ARM]
+        np.clip(arm + _FARTHEST_TURN * held[:, :_ARM], self._lower, self._upper, out=arm)
+        if self._uses_fingers:
+            self._wanted[:, _ARM:] = 0.5 * _OPEN * (held[:, _ARM:] + 1.0)
+        self._panda.set_position_targets(self._wanted, gains=_STEADY_GAIN, max_velocities=_MAX_VELOCITY)
+
+    def observe(self) -> np.ndarray:
+        """See the class."""
+        positions = self._panda.joint_positions
+        self._tips = self._panda.link_poses[:, self._tip_row, :3]
+        parts = [
+            positions[:, :_ARM],
+            self._panda.joint_velocities[:, :_ARM],
+            positions[:, _ARM:].sum(axis=1, keepdims=True),
+            self._tips,
+            self.goals,
+            self.goals - self._tips,
+        ]
+        if self._cube is not None:
+            self._places = self._cube.base_poses[:, :3]
+            parts += [self._places, self._places - self._tips, self.goals - self._places]
+        return np.concatenate(parts, axis=1, dtype=np.float32, casting="same_kind")
+
+    def reward(self, actions: np.ndarray) -> Array:
+        """See the class."""
+        away = np.linalg.norm(self.goals - self.moved(), axis=1)
+        self._success: Mask = away < _NEAR
+        reward = self._success - away
+        if self._cube is not None:
+            reward -= 0.5 * np.linalg.norm(self._places - self._tips, axis=1)
+        return reward
+
+    def infos(self) -> dict[str, Any]:
+        """Where the task is done."""
+        return {"success": self._success.copy()}
+
+    @abstractmethod
+    def moved(self) -> Array:
+        """Where what is to be at the goal is [m], (num_envs, 3)."""
+
+
+class PandaReach(PandaTask):
+    """The fingertips are to be at a place in the air."""
+
+    _has_cube = _uses_fingers = False
+    _lowest_goal, _highest_goal = (0.35, -0.25, 0.1), (0.65, 0.25, 0.5)
+
+    def moved(self) -> Array:
+        """The fingertips."""
+        return self._tips
+
+
+class PandaPush(PandaTask):
+    """A cube is to be at a place on the floor; the fingers stay closed."""
+
+    _uses_fingers = False
+    _lowest_goal, _highest_goal = (0.4, -0.25, _HALF_CUBE), (0.7, 0.25, _HALF_CUBE)
+
+    def moved(self) -> Array:
+        """The cube."""
+        return self._places
+
+
+class PandaPick(PandaTask):
+    """A cube is to be held at a place in the air."""
+
+    _lowest_goal, _highest_goal = (0.4, -0.2, 0.1), (0.6, 0.2, 0.3)
+
+    def moved(self) -> Array:
+        """The cube."""
+        return self._places
+
+
+single_PandaReach, single_PandaPush, single_PandaPick = (
+    partial(SingleEnv, task) for task in (PandaReach, PandaPush, PandaPick)
+)
+"""Single environments of each, for `gymnasium.make`."""

@@ -1,0 +1,59 @@
+"""A source of random numbers for each of many environments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from gymnasium.utils import seeding
+from numpy.typing import ArrayLike
+
+from carom.checks import Array
+
+
+class RandomSources:
+    """One generator for each environment, so that what one draws depends on its own seed alone.
+
+    Attributes:
+        generators: The generators.
+        seeds: What each was made from.
+
+    Args:
+        count: How many environments there are.
+    """
+
+    def __init__(self, count: int) -> None:
+        made = [seeding.np_random() for _ in range(count)]
+        self.generators: list[np.random.Generator] = [generator for generator, _ in made]
+        self.seeds: list[int] = [seed for _, seed in made]
+
+    def seed(self, seed: int | Sequence[int | None] | None, worlds: np.ndarray) -> None:
+        """Begin anew.
+
+        Args:
+            seed: Environment k gets `seed + k`, or the k-th of a list; None leaves it as it is.
+            worlds: The environments that begin anew; others stay as they are.
+
+        Raises:
+            ValueError: There are not as many seeds as environments.
+        """
+        if seed is None:
+            return
+        count = len(self.generators)
+        seeds = [seed + k for k in range(count)] if isinstance(seed, (int, np.integer)) else list(seed)
+        if len(seeds) != count:
+            raise ValueError(f"there are {len(seeds)} seeds for {count} environments")
+        for world in worlds.tolist():
+            own = seeds[world]
+            if own is not None:
+                self.generators[world], self.seeds[world] = seeding.np_random(int(own))
+
+    def draw(self, worlds: np.ndarray, sample: Callable[[np.random.Generator], ArrayLike]) -> Array:
+        """What `sample` returns for the generators of some environments, (n, ...)."""
+        return np.array([sample(self.generators[world]) for world in worlds.tolist()], dtype=np.float64)
+
+    def uniform(
+        self, worlds: np.ndarray, low: float | Array, high: float | Array, size: int | None = None
+    ) -> Array:
+        """Numbers between `low` and `high` from the generators of some environments, (n, size)."""
+        return self.draw(worlds, lambda generator: generator.uniform(low, high, size))

@@ -1,0 +1,103 @@
+"""The vector environment that Stable-Baselines3 trains on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+try:
+    from stable_baselines3.common.vec_env import VecEnv
+except ImportError as missing:
+    raise ImportError(
+        "carom.vector.stable_baselines needs Stable-Baselines3; install it with: pip install carom[train]",
+        name="stable_baselines3",
+    ) from missing
+
+from carom.vector.worlds_env import WorldsEnv
+
+
+class StableBaselinesEnv(VecEnv):
+    """A `WorldsEnv` as Stable-Baselines3 has vector environments.
+
+    Attributes:
+        env: The environment it shows.
+
+    Args:
+        env: An environment whose `autoreset_mode` is `SAME_STEP`, from its class or `gymnasium.make_vec`.
+
+    Raises:
+        ValueError: It begins episodes at another time.
+    """
+
+    def __init__(self, env: Any) -> None:
+        inner = env.unwrapped
+        if not isinstance(inner, WorldsEnv) or inner.autoreset_mode != AutoresetMode.SAME_STEP:
+            raise ValueError(
+                "Stable-Baselines3 trains on a WorldsEnv that begins episodes in the same step: "
+                "make it with autoreset_mode='SameStep'"
+            )
+        self.env = inner
+        self.render_mode = inner.render_mode
+        self._actions = np.zeros(0)
+        super().__init__(inner.num_envs, inner.single_observation_space, inner.single_action_space)
+
+    def reset(self) -> np.ndarray:  # type: ignore[override]
+        """Begin all episodes; seeds given by `seed` are used up."""
+        seeds: list[int | None] = list(self._seeds)
+        observations, _ = self.env.reset(seed=seeds)
+        self._reset_seeds()
+        self._reset_options()
+        return observations
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Keep the actions for `step_wait`."""
+        self._actions = actions
+
+    def step_wait(self) -> Any:
+        """Go on by a step: observations, rewards, which episodes are over, and a dictionary for each."""
+        observations, rewards, terminations, truncations, told = self.env.step(self._actions)
+        over = terminations | truncations
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        for world in np.flatnonzero(over):
+            infos[world]["terminal_observation"] = told["final_obs"][world]
+            infos[world]["TimeLimit.truncated"] = bool(truncations[world] and not terminations[world])
+        return observations, rewards.astype(np.float32), over, infos
+
+    def close(self) -> None:
+        """Close the environment."""
+        self.env.close()
+
+    def get_images(self) -> Sequence[np.ndarray | None]:
+        """What `render` shows of each."""
+        pictures = self.env.render()
+        return [None] * self.num_envs if pictures is None else list(pictures)
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        """An attribute of the environment, which all share."""
+        return [getattr(self.env, attr_name)] * len(list(self._chosen(indices)))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        """Set an attribute of the environment, for all."""
+        self._require_all(indices, attr_name)
+        setattr(self.env, attr_name, value)
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+    ) -> list[Any]:
+        """Call a method of the environment once, for all."""
+        self._require_all(indices, method_name)
+        return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * self.num_envs
+
+    def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
+        """No single environment is wrapped, since there is none."""
+        return [False] * len(list(self._chosen(indices)))
+
+    def _chosen(self, indices: Any) -> Iterable[int]:
+        return self._get_indices(indices)
+
+    def _require_all(self, indices: Any, name: str) -> None:
+        if len(list(self._chosen(indices))) != self.num_envs:
+            raise ValueError(f"{name} belongs to all environments at once; leave indices out")

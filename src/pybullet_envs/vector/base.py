@@ -1,0 +1,85 @@
+"""What the vector environments have in common: the scene of a single one, copied."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+from carom.camera import Camera
+from carom.vector.worlds_env import WorldsEnv
+from carom.world import World
+from pybullet._clients import client_of
+from pybullet_envs.env_bases import BulletEnv
+
+# As `BulletEnv.render` has them.
+_FIELD_OF_VIEW, _NEAR, _FAR = 60.0, 0.1, 100.0
+LARGEST_ACTION = 1.0
+
+
+class BulletVectorEnv(WorldsEnv):
+    """Copies of the world of a single environment.
+
+    Args:
+        single: A single environment; it is closed.
+        num_envs: How many there are to be.
+        max_episode_steps: After how many steps an episode is truncated; None for never.
+        autoreset_mode: When episodes that are over begin anew; see `carom.vector.WorldsEnv`.
+        threads: How many threads share the worlds; None for as many as there are processors.
+        render_mode: "rgb_array" or None.
+    """
+
+    def __init__(
+        self,
+        single: BulletEnv,
+        num_envs: int = 1,
+        *,
+        max_episode_steps: int | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        # What its seed changes each episode sets again.
+        single.reset(seed=0)
+        super().__init__(
+            world_of(single),
+            num_envs,
+            single.observation_space,  # type: ignore[arg-type]
+            single.action_space,
+            max_episode_steps=max_episode_steps,
+            autoreset_mode=autoreset_mode,
+            threads=threads,
+            render_mode=render_mode,
+            camera=_camera_of(single) if render_mode is not None else None,
+        )
+        self.take(single)
+        single.close()
+
+    @abstractmethod
+    def take(self, single: Any) -> None:
+        """Find what the environment needs to know in the single one."""
+
+
+def world_of(single: BulletEnv) -> World:
+    """The world of a single environment."""
+    return client_of(single._p._client).world
+
+
+def held(actions: np.ndarray) -> np.ndarray:
+    """Actions within -1 and 1."""
+    return np.clip(actions, -LARGEST_ACTION, LARGEST_ACTION)
+
+
+def _camera_of(single: BulletEnv) -> Camera:
+    """A camera that sees what `render` of the single environment shows at the beginning."""
+    width, height = single.picture_size
+    distance, yaw, pitch = single._camera
+    target = single._looked_at()
+    view = np.reshape(
+        single._p.computeViewMatrixFromYawPitchRoll(target, distance, yaw, pitch, 0.0, 2), (4, 4)
+    ).T
+    eye = -view[:3, :3].T @ view[:3, 3]
+    camera = Camera.with_field_of_view(width, height, _FIELD_OF_VIEW, near=_NEAR, far=_FAR)
+    return camera.look_at(eye, target)

@@ -1,0 +1,121 @@
+"""Poles on carts, many at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom.checks import Array
+from carom.worlds.checks import Mask
+from pybullet_envs.gym_pendulum_envs import (
+    InvertedDoublePendulumBulletEnv,
+    InvertedPendulumBulletEnv,
+    InvertedPendulumSwingupBulletEnv,
+)
+from pybullet_envs.robot_pendula import HANGING, LARGEST_START
+from pybullet_envs.vector.base import BulletVectorEnv, held
+from pybullet_envs.vector.parts import Joints, Part
+
+
+class _CartVectorEnv(BulletVectorEnv):
+    _single: Any
+
+    def __init__(self, num_envs: int = 1, **options: Any) -> None:
+        """Makes them; see `BulletVectorEnv`."""
+        super().__init__(self._single(), num_envs, **options)
+
+    def take(self, single: Any) -> None:
+        """Find cart and poles."""
+        robot = single.robot
+        self._push = robot.push
+        self._slider = Joints(self.worlds, robot.ordered_joints[:1])
+        self._hinges = Joints(self.worlds, robot.ordered_joints[1:])
+        self._fallen = single.fallen
+
+    def act(self, actions: np.ndarray) -> None:
+        """Pushes the carts."""
+        self._slider.push(self._push * held(actions))
+
+    def _observe(self, extra: int) -> np.ndarray:
+        """Cart and hinges, with room for `extra` numbers between them."""
+        count, first = self._hinges.count, 2 + extra
+        whole = np.empty((self.num_envs, first + 3 * count), np.float32)
+        whole[:, 0] = self._slider.positions()[:, 0]
+        whole[:, 1] = self._slider.velocities()[:, 0]
+        self._angles = self._hinges.positions().copy()
+        whole[:, first::3] = np.cos(self._angles)
+        whole[:, first + 1 :: 3] = np.sin(self._angles)
+        whole[:, first + 2 :: 3] = self._hinges.velocities()
+        return whole
+
+
+class InvertedPendulumVectorEnv(_CartVectorEnv):
+    """Poles to keep upright; see `pybullet_envs.gym_pendulum_envs.InvertedPendulumBulletEnv`."""
+
+    _single = InvertedPendulumBulletEnv
+    _offset = 0.0
+
+    def begin(self, worlds: np.ndarray) -> None:
+        """Puts the poles near upright, or half a turn from there."""
+        offsets = self.random.uniform(worlds, -LARGEST_START, LARGEST_START, 1)
+        self._hinges.put(worlds, offsets + self._offset)
+
+    def observe(self) -> np.ndarray:
+        """Position and velocity of the cart, cosine, sine and rate of the pole's angle."""
+        return self._observe(0)
+
+    def reward(self, actions: np.ndarray) -> Array:
+        """A point."""
+        return np.ones(self.num_envs)
+
+    def terminated(self) -> Mask:
+        """Where the pole has fallen."""
+        return np.abs(self._angles[:, 0]) > self._fallen
+
+
+class InvertedPendulumSwingupVectorEnv(InvertedPendulumVectorEnv):
+    """Poles that hang at first; each step rewards the cosine of their angle from upright."""
+
+    _single = InvertedPendulumSwingupBulletEnv
+    _offset = HANGING
+
+    def reward(self, actions: np.ndarray) -> Array:
+        """The cosine of the angle."""
+        return np.cos(self._angles[:, 0])
+
+    def terminated(self) -> Mask:
+        """Nowhere."""
+        return np.zeros(self.num_envs, dtype=bool)
+
+
+class InvertedDoublePendulumVectorEnv(_CartVectorEnv):
+    """Two poles, one on the other; see `pybullet_envs.gym_pendulum_envs.InvertedDoublePendulumBulletEnv`."""
+
+    _single = InvertedDoublePendulumBulletEnv
+
+    def take(self, single: Any) -> None:
+        """Find cart and poles."""
+        super().take(single)
+        self._pole = Part(self.worlds, single.robot.pole2)
+        self._to_tip, self._aim = single.to_tip, single.aim
+
+    def begin(self, worlds: np.ndarray) -> None:
+        """Puts both poles near upright."""
+        self._hinges.put(worlds, self.random.uniform(worlds, -LARGEST_START, LARGEST_START, 2))
+
+    def observe(self) -> np.ndarray:
+        """Cart, where the upper pole is, and both angles."""
+        whole = self._observe(1)
+        self._place = self._pole.poses()[:, :3]
+        whole[:, 2] = self._place[:, 0]
+        self._tip = self._place[:, 2] + self._to_tip
+        return whole
+
+    def reward(self, actions: np.ndarray) -> Array:
+        """10 less the squared distance of the tip from its highest place."""
+        return 10.0 + (-0.01 * self._place[:, 0] ** 2 - (self._tip - self._aim) ** 2)
+
+    def terminated(self) -> Mask:
+        """Where the tip is low."""
+        return self._tip <= self._fallen

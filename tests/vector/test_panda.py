@@ -1,0 +1,100 @@
+"""The Panda can do what its tasks ask for."""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import carom.vector  # noqa: F401  # registers the tasks
+from carom.vector.panda import PandaPick, PandaPush, PandaReach
+
+TASKS = ("carom/PandaReach-v0", "carom/PandaPush-v0", "carom/PandaPick-v0")
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_each_of_many_is_the_single_one_with_its_seed(name: str):
+    many: Any = gymnasium.make_vec(name, num_envs=3, max_episode_steps=12)
+    singles: list[Any] = [gymnasium.make(name, max_episode_steps=12) for _ in range(3)]
+    observations = [many.reset(seed=5)[0]]
+    alone = [[single.reset(seed=5 + k)[0] for k, single in enumerate(singles)]]
+    over = False
+    for step in range(30):
+        actions = np.array(
+            [np.sin(0.3 * step * (k + 1) + np.arange(many.action_space.shape[1])) for k in range(3)]
+        )
+        told = many.step(actions)
+        observations.append(told[0])
+        if over:
+            alone.append([single.reset()[0] for single in singles])
+            over = False
+            continue
+        expected = [single.step(action) for single, action in zip(singles, actions, strict=True)]
+        alone.append([e[0] for e in expected])
+        assert told[1].tolist() == [e[1] for e in expected]
+        assert told[4]["success"].tolist() == [e[4]["success"] for e in expected]
+        over = bool(told[3][0])
+    assert (np.array(observations) == np.array(alone)).all()
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_the_single_ones_are_as_gymnasium_wants_them(name: str):
+    env: Any = gymnasium.make(name, render_mode="rgb_array")
+    check_env(env.unwrapped)
+    assert env.unwrapped.render().shape == (240, 320, 3)
+
+
+def towards(env: Any, places: np.ndarray) -> np.ndarray:
+    """Actions that move the tips, pointing down, towards places, by Jacobians found by trying."""
+    panda, row = env._panda, env._tip_row
+    here, poses = panda.joint_positions.copy(), panda.link_poses[:, row]
+    slopes = np.empty((env.num_envs, 7, 7))
+    for joint in range(7):
+        panda.joint_positions[:, joint] += 1e-4
+        slopes[:, :, joint] = (panda.link_poses[:, row] - poses) / 1e-4
+        panda.joint_positions[:] = here
+    down = np.sign(poses[:, 3:4]) * (1.0, 0.0, 0.0, 0.0)
+    way = np.concatenate([places, down], axis=1) - poses
+    return np.clip(np.einsum("nij,nj->ni", np.linalg.pinv(slopes, rcond=1e-3), way) / 0.05, -1.0, 1.0)
+
+
+def test_the_tips_reach_the_goals():
+    env = PandaReach(4)
+    env.reset(seed=1)
+    for _ in range(60):
+        env.step(towards(env, env.goals))
+    _, rewards, _, _, infos = env.step(towards(env, env.goals))
+    assert infos["success"].all()
+    assert (rewards > 0.95).all()
+
+
+def test_a_pushed_cube_moves_and_one_left_alone_does_not():
+    env = PandaPush(2)
+    env.reset(seed=2)
+    start = env._places.copy()
+    behind = start - np.array([0.07, 0.0, 0.0])
+    for step in range(100):
+        place = behind + np.array([0.0, 0.0, 0.1 if step < 30 else 0.0])
+        if step >= 60:
+            place = start + np.array([0.05, 0.0, 0.0])
+        actions = towards(env, place)
+        actions[1] = 0.0
+        env.step(actions)
+    moved = env._places - start
+    assert moved[0, 0] > 0.03
+    assert np.abs(moved[1]).max() < 1e-3
+
+
+def test_the_fingers_pick_the_cube_up_and_bring_it_to_the_goal():
+    env = PandaPick(3)
+    env.reset(seed=3)
+    infos: Any = None
+    for step in range(150):
+        over = np.array([0.0, 0.0, 0.15 if step < 30 else 0.0])
+        carried = step >= 80
+        place = env.goals + (env._tips - env._places) if carried else env._places + over
+        turns = towards(env, place) * (0.4 if carried else 1.0)
+        opening = np.full(3, 1.0 if step < 60 else -1.0)
+        infos = env.step(np.column_stack([turns, opening]))[4]
+    assert infos["success"].all(), (env._places, env.goals)
