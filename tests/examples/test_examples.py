@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.cluster.small_ray import ray_here
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -132,6 +133,17 @@ def test_the_demo_writes_a_table_and_a_plot(example, tmp_path, capsys):
     for result in results:
         assert result["name"] in table
         assert np.isfinite(result["measured"]).all()
+
+
+def test_the_rollout_plays_all_episodes_and_leaning_is_better_than_guessing(example, tmp_path, capsys):
+    pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+    with ray_here():
+        plot = tmp_path / "returns.svg"
+        returns = example("cluster_rollout").main(["--episodes", "12", "--envs", "4", "--plot", str(plot)])
+    assert len(returns["lean"]) == len(returns["guess"]) == 12
+    assert returns["lean"].mean() > 1.5 * returns["guess"].mean()
+    assert plot.stat().st_size > 1000
+    assert "12 episodes on" in capsys.readouterr().out
 
 
 def test_every_example_is_tested():
