@@ -12,8 +12,11 @@
 #   make report       the comparison as tables and plots, in docs/conformance/
 #   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
+#   make scaling      how the rate of many worlds grows with their number and the threads: a plot in docs/
 #   make watching     what it costs to be watched, in a browser; needs Chromium
 #   make clients      other people's tests and scripts on PyBullet and on Carom; needs git and GitHub
+#   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
+#   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make clean        remove what the above have made, the recordings and reports excepted
 
@@ -32,7 +35,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak bench clients growth watching clean
+.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak fuzz bench clients growth scaling watching gpu-report clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -114,6 +117,7 @@ types: $(VENV)/dev
 
 record: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.conformance.record
+	env -u PYTHONPATH .oracle/bin/python -m tests.first_contacts.record
 
 surface: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.surface.record
@@ -123,6 +127,7 @@ conformance: oracle $(VENV)/dev
 
 report: $(VENV)/dev
 	$(RUN) -m tests.conformance.report
+	$(RUN) -m tests.first_contacts.compare
 
 CLIENT_SOURCES ?= .clients/sources
 
@@ -130,12 +135,24 @@ clients: .clients/carom/clients .clients/oracle/clients
 	$(PYTHON) -m tests.clients.run --carom .clients/carom/bin/python --oracle .clients/oracle/bin/python \
 		--work .clients --sources $(CLIENT_SOURCES) $(CLIENTS)
 
+gpu-report: $(VENV)/dev
+	PYTHONPATH=. $(RUN) -m tools.gpu.report
+
+fuzz: $(VENV)/dev
+	$(RUN) -m tests.fuzz.api --operations 1000000
+	$(RUN) -m tests.fuzz.files --cases 100000
+
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak
 
 bench: oracle .mujoco/mujoco $(VENV)/dev
 	$(RUN) -m carom warmup
 	$(RUN) benchmarks/run.py --oracle .oracle/bin/python
+	$(RUN) benchmarks/throughput.py --oracle .oracle/bin/python
+
+scaling: $(VENV)/dev
+	$(RUN) -m carom warmup
+	$(RUN) benchmarks/scaling.py
 
 growth: oracle $(VENV)/dev
 	$(RUN) benchmarks/growth.py --oracle .oracle/bin/python

@@ -39,14 +39,15 @@ MAY_IMPORT = {
         "carom.version",
     },
     "carom.worlds": {*ENGINE, "carom.checks", "carom.world", "carom.camera"},
-    "carom.vector": {"carom.checks", "carom.world", "carom.worlds", "carom.camera"},
+    "carom.vector": {"carom.checks", "carom.world", "carom.worlds", "carom.camera", "pybullet_data"},
     "carom.algorithms": {*ENGINE, "carom.world"},
     "carom.render": {*ENGINE, "carom.saved", "carom.world"},
-    "carom.viewer": {*ENGINE, "carom.world", "carom.render"},
+    "carom.viewer": {*ENGINE, "carom.checks", "carom.world", "carom.render"},
     "carom.camera": {*DESCRIPTION, "carom.checks", "carom.world", "carom.render"},
     "carom.video": {"carom.checks"},
     "carom.recorder": {"carom.checks", "carom.world", "carom.camera", "carom.video"},
     "carom.warmup": {*ENGINE, "carom.algorithms", "carom.render"},
+    "carom.record": {"carom.world", "carom.viewer"},
     "carom": {
         "carom.world",
         "carom.worlds",
@@ -58,6 +59,7 @@ MAY_IMPORT = {
     "carom.cli": {
         *MODEL,
         "carom.serve",
+        "carom.record",
         "carom.world",
         "carom.viewer",
         "carom.version",
@@ -81,18 +83,22 @@ MAY_IMPORT = {
     "pybullet_data": set(),
     "eglRenderer": set(),
     # The URDF editor writes files of its own.
-    "pybullet_utils": {"pybullet", *DESCRIPTION, "carom.formats"},
+    "pybullet_utils": {"pybullet", "pybullet_data", *DESCRIPTION, "carom.formats"},
+    "pybullet_robots": {"pybullet", "pybullet_data", "pybullet_utils"},
     "pybullet_envs": {
         "pybullet",
         "pybullet_data",
         "pybullet_utils",
+        "pybullet_robots",
         # Environments many at once.
+        *MODEL,
         "carom.checks",
         "carom.camera",
         "carom.vector",
         "carom.world",
         "carom.worlds",
     },
+    "pybullet_examples": {"pybullet_utils"},
 }
 
 

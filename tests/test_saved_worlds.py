@@ -59,6 +59,7 @@ def machines() -> World:
     world.tie(UserConstraintKind.POINT_TO_POINT, first, -1, second, -1, child_frame=Pose((-0.2, 0.0, 0.0)))
     world.untie(world.tie(UserConstraintKind.FIXED, first, -1, None, -1))
     world.tie(UserConstraintKind.FIXED, third, -1, None, -1, child_frame=Pose((0.3, 0.4, 0.5)))
+    world.tie(UserConstraintKind.FIXED, second, -1, third, -1).enabled = False
     world.remove(4)
     world.touch.shapes.filters.set(second.first_link, third.first_link, enabled=False)
     world.user_data.add(1, -1, -1, "owner", "nobody")
@@ -195,7 +196,7 @@ def test_bodies_of_a_file_are_added_to_a_world_that_has_some(tmp_path: Path) -> 
                 getattr(world, view)[getattr(old, first) :][:count],
                 getattr(other, view)[getattr(new, first) :][:count],
             )
-    assert [tie.parent.id for tie in other.user_constraints.all] == [2, 4]
+    assert [tie.parent.id for tie in other.user_constraints.all] == [2, 4, 3]
     other.step(5)
 
 

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import carom
-from carom.warmup import KERNEL_MODULES, ON_DEMAND
+from carom.warmup import KERNEL_MODULES, ON_DEMAND, PARALLEL_MODULES
 
 SCRIPT = """
 import warp as wp
@@ -31,7 +31,7 @@ def test_every_module_with_kernels_is_warmed_up():
         for file in source.rglob("*.py")
         if re.search(r"^@kernel$", file.read_text(encoding="utf-8"), re.MULTILINE)
     }
-    assert {*KERNEL_MODULES, *ON_DEMAND} == with_kernels
+    assert {*KERNEL_MODULES, *ON_DEMAND, *PARALLEL_MODULES} == with_kernels
 
 
 def test_nothing_is_left_to_compile_after_the_warm_up(tmp_path):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from carom.suggestions import install as _suggest_names
 from carom.version import __version__
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from carom.recorder import Recorder
     from carom.world import World
     from carom.worlds.worlds import Worlds
+
+_suggest_names()
 
 __all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "Worlds", "__version__", "control"]
 

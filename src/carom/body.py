@@ -86,6 +86,12 @@ class Body:
         self.position_index = _first_rows(self.first_position + BASE_POSITIONS, self.position_count)
         self.velocity_index = _first_rows(self.first_velocity + BASE_VELOCITIES, self.velocity_count)
 
+    def _repr_html_(self) -> str:
+        """Its joints and links, for notebooks."""
+        from carom.tables import body_table
+
+        return body_table(self)
+
     @property
     def name(self) -> str:
         """Name of the robot."""

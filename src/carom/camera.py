@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
+from io import BytesIO
 from math import inf, radians, tan
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -81,6 +83,14 @@ class CameraImage:
             body.id: (body.name, [link.name for link in (body.spec.base, *body.spec.links)])
             for body in bodies.values()
         }
+
+    def _repr_png_(self) -> bytes:
+        """The colours as a PNG file, for notebooks."""
+        from PIL import Image
+
+        file = BytesIO()
+        Image.fromarray(self.colour).save(file, "png")
+        return file.getvalue()
 
     def mask(self, body: Body | int | str, link: Link | int | str | None = None) -> NDArray[np.bool_]:
         """Where a body, or one link of it, is seen.
@@ -241,6 +251,12 @@ class Camera:
         if not 0.0 < degrees < 180.0:
             raise ValueError(f"degrees must be between 0 and 180, not {degrees!r}")
         return cls(width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far)
+
+    def _repr_html_(self) -> str:
+        """Where it is and what it can see, for notebooks."""
+        position = ", ".join(f"{value:.4g}" for value in self.pose.position)
+        where = f"at ({position}) m" if self.link is None else f"on link {self.link.name}, at ({position}) m"
+        return f"<b>Camera</b>: {self.width} x {self.height} pixels, {escape(where)}"
 
     @property
     def intrinsics(self) -> Array:

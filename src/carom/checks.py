@@ -14,7 +14,7 @@ def finite(value: ArrayLike, name: str) -> Array:
     Raises:
         ValueError: Something in it is NaN or infinite; the message calls it `name`.
     """
-    array = np.array(value, dtype=np.float64)
+    array = _numbers(value, name)
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite, not {value!r}")
     return array
@@ -28,8 +28,20 @@ def vector(value: ArrayLike, length: int, name: str) -> Array:
     """
     array = finite(value, name)
     if array.shape != (length,):
-        raise ValueError(f"{name} must have shape ({length},), not {array.shape}")
+        raise ValueError(f"{name} must have shape ({length},), not {array.shape}: it is {value!r}")
     return array
+
+
+def one_or_each(value: ArrayLike, count: int, name: str) -> Array:
+    """`value` as `count` doubles: one number stands for all. Infinity is allowed.
+
+    Raises:
+        ValueError: It is neither one number nor `count` of them.
+    """
+    array = _numbers(value, name)
+    if array.shape not in ((), (1,), (count,)):
+        raise ValueError(f"{name} must be one number or {count} of them, not shape {array.shape}: {value!r}")
+    return np.broadcast_to(array, count).copy()
 
 
 def positive(value: ArrayLike, name: str) -> Array:
@@ -38,7 +50,7 @@ def positive(value: ArrayLike, name: str) -> Array:
     Raises:
         ValueError: Something in it is not.
     """
-    array = np.array(value, dtype=np.float64)
+    array = _numbers(value, name)
     if not (np.isfinite(array).all() and (array > 0.0).all()):
         raise ValueError(f"{name} must be finite and > 0, not {value!r}")
     return array
@@ -50,7 +62,15 @@ def not_negative(value: ArrayLike, name: str) -> Array:
     Raises:
         ValueError: Something in it is not.
     """
-    array = np.array(value, dtype=np.float64)
+    array = _numbers(value, name)
     if not (array >= 0.0).all():
         raise ValueError(f"{name} must be >= 0, not {value!r}")
     return array
+
+
+def _numbers(value: ArrayLike, name: str) -> Array:
+    try:
+        # PyTorch's tensors do not know how to make a copy for NumPy, and warn.
+        return np.asarray(value, dtype=np.float64).copy()
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be a number or an array of numbers, not {value!r}") from None

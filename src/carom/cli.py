@@ -52,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     info = commands.add_parser("info", help="print the joint and link tables of a robot file")
     info.add_argument("file", type=Path, help="URDF file; one that pybullet_data ships is found by its name")
     info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
-    info.add_argument("--fixed-base", action="store_true", help="nail the base to the world")
+    info.add_argument("--fixed-base", action="store_true", help="hold the base where it is")
     info.add_argument(
         "--inertia-from-file", action="store_true", help="use <inertia>, not the collision shapes"
     )
@@ -68,6 +68,14 @@ def _parser() -> argparse.ArgumentParser:
         "--port", type=int, help="port to serve the page at (default 8400, or any other that is free)"
     )
     view.set_defaults(command=_view)
+
+    record = commands.add_parser("record", help="run a script and write a page that replays its world")
+    record.add_argument("script", type=Path, help="Python script, unchanged")
+    record.add_argument("output", type=Path, help="HTML file to write")
+    record.add_argument("arguments", nargs=argparse.REMAINDER, help="arguments of the script")
+    record.add_argument("--seconds", type=_positive, help="end the script after so much simulated time")
+    record.add_argument("--fps", type=_positive, default=60.0, help="frames for each second (default 60)")
+    record.set_defaults(command=_record)
 
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
     convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
@@ -123,17 +131,33 @@ def _info(options: argparse.Namespace) -> None:
 
 
 def _view(options: argparse.Namespace) -> None:
+    from carom.viewer.display import tunnel_command
     from carom.viewer.robot import RobotView
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
     print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    if tunnel := tunnel_command(view.viewer.address):
+        print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
     try:
         view.run()
     except KeyboardInterrupt:
         pass
     finally:
         view.viewer.close()
+
+
+def _record(options: argparse.Namespace) -> None:
+    from carom.record import Take, record
+
+    take = Take(options.script, options.output, options.arguments, options.seconds, options.fps)
+    if not take.script.is_file():
+        raise FileNotFoundError(f"{take.script}: no such script")
+    files = record(take)
+    for file in files:
+        print(f"Wrote {file}")
+    if not files:
+        print(f"{take.script} made no world, so there is nothing to replay.", file=sys.stderr)
 
 
 def _convert(options: argparse.Namespace) -> None:

@@ -10,6 +10,8 @@ from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.any_file import MJCF_SUFFIXES, read_robots
 from carom.formats.placed import PlacedRobot
+from carom.formats.search import AssetSearch
+from carom.formats.shipped import shipped_folder
 from carom.formats.urdf_writer import urdf_text
 from carom.model.assemble import assemble
 from carom.model.flags import LoadFlags
@@ -19,12 +21,13 @@ from carom.model.mjcf_inertia import set_mjcf_inertias
 def convert(source: Path, target: Path, model: str | None = None) -> None:
     """Writes a robot as URDF. Where the file puts it in the world is lost.
 
-    A robot that the file nails to the world gets a base without mass, which PyBullet and Carom do not
+    A robot that the file fixes to the world gets a base without mass, which PyBullet and Carom do not
     move. Links without moments of inertia, such as those of MJCF files, get those they have here, which are
     found from their collision shapes. Meshes are not copied.
 
     Args:
-        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
+        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file; one that comes with `pybullet_data` is found by
+            its name.
         target: The file to write.
         model: Name of the robot, of its root link, or its number from 0; needed where there are several.
 
@@ -33,7 +36,8 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
         OSError: The target cannot be written.
     """
     robot = _with_moments(
-        _chosen(source, read_robots(source), model), is_mjcf=source.suffix.lower() in MJCF_SUFFIXES
+        _chosen(source, read_robots(source, search=AssetSearch(shipped_folder())), model),
+        is_mjcf=source.suffix.lower() in MJCF_SUFFIXES,
     )
     target.write_text(urdf_text(robot, target.absolute().parent), encoding="utf-8")
 

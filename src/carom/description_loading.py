@@ -5,10 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from carom.body import Body
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
+
+if TYPE_CHECKING:
+    from carom.formats.search import AssetSearch
 
 
 class DescriptionLoading(ABC):
@@ -31,7 +35,7 @@ class DescriptionLoading(ABC):
         """Add the robot a URDF file describes.
 
         Args:
-            path: The file.
+            path: The file; one that comes with `pybullet_data` is found by its name.
             position: Of the base's link frame [m].
             orientation: Of the base's link frame, quaternion (x, y, z, w).
             fixed_base: Hold the base where it is.
@@ -41,17 +45,16 @@ class DescriptionLoading(ABC):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.formats.search import AssetSearch
         from carom.loading import urdf_body
 
-        spec = urdf_body(Path(path), AssetSearch(), scale=scale, flags=flags, fixed_base=fixed_base)
+        spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
         return self._add(spec, position, orientation)
 
     def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
         """Add the models an SDF file describes, where it puts them.
 
         Args:
-            path: The file.
+            path: The file; one that comes with `pybullet_data` is found by its name.
             scale: Factor on lengths.
 
         Returns:
@@ -60,16 +63,15 @@ class DescriptionLoading(ABC):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.formats.search import AssetSearch
         from carom.loading import sdf_bodies
 
-        return self.load_all(sdf_bodies(Path(path), AssetSearch(), scale=scale))
+        return self.load_all(sdf_bodies(Path(path), _search(), scale=scale))
 
     def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
         """Add the bodies an MJCF file describes, where it puts them.
 
         Args:
-            path: The file.
+            path: The file; one that comes with `pybullet_data` is found by its name.
             flags: Loading flags, see `carom.model.flags.LoadFlags`.
 
         Returns:
@@ -78,10 +80,9 @@ class DescriptionLoading(ABC):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.formats.search import AssetSearch
         from carom.loading import mjcf_bodies
 
-        return self.load_all(mjcf_bodies(Path(path), AssetSearch(), flags=flags))
+        return self.load_all(mjcf_bodies(Path(path), _search(), flags=flags))
 
     def load_all(self, bodies: Sequence[tuple[BodySpec, Pose]]) -> list[Body]:
         """Add bodies at rest, all or none.
@@ -96,3 +97,11 @@ class DescriptionLoading(ABC):
 
         make_shapes(bodies)
         return [self._add(spec, pose.position, pose.orientation) for spec, pose in bodies]
+
+
+def _search() -> AssetSearch:
+    """Files are looked for as named, and then among those that come with `pybullet_data`."""
+    from carom.formats.search import AssetSearch
+    from carom.formats.shipped import shipped_folder
+
+    return AssetSearch(shipped_folder())

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom import joint_motor
 from carom.alive import world_of
-from carom.checks import Array, finite, vector
+from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
@@ -161,7 +161,7 @@ class Joint:
             max_force: Greatest force; `effort_limit` by default.
             max_velocity: Greatest velocity the motor asks for.
         """
-        target = float(np.clip(target, *self.limits))
+        target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
         world = world_of(self.body)
         joint_motor.aim_at_position(
             world.motor,
@@ -261,7 +261,8 @@ class Joint:
 
         The motor is not switched off; see `disable_motor`.
         """
-        world_of(self.body).joint_torque[self._dofs] = finite(torque, "torque")
+        torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
+        world_of(self.body).joint_torque[self._dofs] = torque
 
     def disable_motor(self) -> None:
         """Let go of the joint: its motor, with which every joint starts, and its spring stop acting."""
@@ -328,6 +329,12 @@ class Joints(Named[Joint]):
         super().__init__("joint", [Joint(body, index) for index in range(body.joint_count)])
         self._body = body
         self._movable = [joint for joint in self if joint.degrees_of_freedom]
+
+    def _repr_html_(self) -> str:
+        """A table of them, for notebooks."""
+        from carom.tables import joints_table
+
+        return joints_table(self, f"Joints of {self._body.name}")
 
     @property
     def movable(self) -> list[Joint]:
@@ -398,12 +405,12 @@ class Joints(Named[Joint]):
             world.motor,
             self._one_dof_each,
             world.parameters.substep_time,
-            np.clip(targets, *self.limits),
-            velocities,
-            gains,
-            velocity_gains,
-            self._forces(max_forces),
-            max_velocities,
+            np.clip(self._each(targets, "targets"), *self.limits),
+            self._each(velocities, "velocities"),
+            self._each(gains, "gains"),
+            self._each(velocity_gains, "velocity_gains"),
+            self._each(self._forces(max_forces), "max_forces"),
+            self._each(max_velocities, "max_velocities"),
         )
 
     def set_velocity_targets(
@@ -415,14 +422,15 @@ class Joints(Named[Joint]):
             world.motor,
             self._one_dof_each,
             world.parameters.substep_time,
-            targets,
-            gains,
-            self._forces(max_forces),
+            self._each(targets, "targets"),
+            self._each(gains, "gains"),
+            self._each(self._forces(max_forces), "max_forces"),
         )
 
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
-        world_of(self._body).joint_torque[self._dofs] = finite(torques, "torques")
+        torques = self._each(finite(torques, "torques"), "torques")
+        world_of(self._body).joint_torque[self._dofs] = torques
 
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
@@ -439,6 +447,14 @@ class Joints(Named[Joint]):
         for joint in self._movable:
             joint._require_one_freedom()
         return self._dofs
+
+    def _each(self, value: ArrayLike, name: str) -> Array:
+        """One number for each velocity coordinate; the message of an error names the joints."""
+        try:
+            return one_or_each(value, sum(self._body.velocity_count), name)
+        except ValueError as problem:
+            names = ", ".join(joint.name for joint in self._movable)
+            raise ValueError(f"{problem}; the movable joints of {self._body.name!r} are {names}") from None
 
     def _forces(self, max_forces: ArrayLike | None) -> ArrayLike:
         return self.effort_limits if max_forces is None else max_forces

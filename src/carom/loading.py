@@ -39,14 +39,22 @@ def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedB
     return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
 
 
-def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int) -> list[PlacedBody]:
-    """The bodies of an MJCF file, in its order; raises `DescriptionError`."""
+def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool = True) -> list[PlacedBody]:
+    """The bodies of an MJCF file, in its order; raises `DescriptionError`.
+
+    Args:
+        path: The file.
+        search: Where it and what it refers to are looked for.
+        flags: Loading flags, see `carom.model.flags.LoadFlags`.
+        as_mujoco: `axisangle` turns bodies, and named classes limit joints; in PyBullet they do not.
+    """
     from carom.formats.mjcf import read_mjcf
 
     robots = read_mjcf(
         path,
         colours=bool(flags & LoadFlags.MJCF_COLORS_FROM_FILE),
         implicit=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
+        as_mujoco=as_mujoco,
         search=search,
     )
     loading = LoadFlags(flags & ~_NOT_FOR_MJCF | _ALWAYS_FOR_MJCF)

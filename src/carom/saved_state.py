@@ -65,6 +65,7 @@ def read_state(reader: Reader, data: Any) -> SavedState:
         raise reader.fail("state", "is no state")
     bodies = reader.read(list[BodyLayout], data["bodies"], "state.bodies")
     arrays = {part: _arrays(reader, part, data[part]) for part in _ARRAYS}
+    _check_counts(reader, bodies, arrays["state"])
     impulses = reader.array(
         data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
     )
@@ -76,6 +77,17 @@ def read_state(reader: Reader, data: Any) -> SavedState:
         arrays["contacts"],
         impulses,
     )
+
+
+def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
+    """See that bodies have no more rows than the file has, so that counts cannot ask for any memory."""
+    for axis, counts in (
+        ("link_pose", [body.links for body in bodies]),
+        ("position", [body.positions for body in bodies]),
+        ("dof_velocity", [body.dofs for body in bodies]),
+    ):
+        if axis not in state or min(counts, default=0) < 0 or sum(counts) != len(state[axis]):
+            raise reader.fail("state.bodies", f"does not have the rows of {axis}")
 
 
 def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:

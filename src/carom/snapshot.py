@@ -119,6 +119,10 @@ def take(world: World, layout: Layout) -> Snapshot:
         name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy()
         for name, rows in _rows(world.arrays.state, world.arrays.used)
     }
+    islands = snapshot.state["tree_island"]
+    if islands.size and islands.max() >= len(islands):
+        # Those of the last step, since which a body has gone. The next step makes others.
+        islands[:] = np.arange(len(islands))
     snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, world.touch.contact_count)}
     snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][0, : world.touch.user_count].copy()
     return snapshot

@@ -66,6 +66,18 @@ class UserData:
         self._of_body.setdefault(body, []).append(datum)
         return datum
 
+    def put(self, datum: UserDatum) -> None:
+        """Take over a text that has its number from elsewhere; others of that number or name go."""
+        same = self.find(datum.body, datum.link, datum.shape, datum.key)
+        if same is not None and same.id == datum.id:
+            same.value = datum.value
+            return
+        for other in (same, self.get(datum.id)):
+            if other is not None and self.get(other.id) is other:
+                self.remove(other)
+        self._by_id[datum.id] = datum
+        self._of_body.setdefault(datum.body, []).append(datum)
+
     def add_stated(self, body: int, spec: BodySpec) -> None:
         """Attach what the file of a new body states."""
         for key, value in spec.user_data.items():

@@ -15,6 +15,7 @@ import warp as wp
 
 from carom.model.launch import CompilationNotice
 from carom.model.warp_start import start_warp
+from carom.physics.parallel import BLOCK_SIZE
 
 # Those that take longest to compile come first, so that processes that share them out end together.
 KERNEL_MODULES = (
@@ -35,6 +36,25 @@ KERNEL_MODULES = (
     "carom.algorithms.tree.motion",
     "carom.render.kernels.draw",
 )
+# Steps on CUDA devices are made of these; `carom.engine.parallel` launches them.
+PARALLEL_MODULES = (
+    "carom.collision.parallel",
+    "carom.physics.parallel.contact_rows",
+    "carom.physics.parallel.restless_sweeps",
+    "carom.physics.parallel.batches",
+    "carom.physics.parallel.sweeps",
+    "carom.physics.parallel.trees",
+    "carom.physics.parallel.joint_rows",
+)
+# What takes a world through a whole step, which is for CPUs.
+_CPU_MODULES = {
+    "carom.physics.coupled_step",
+    "carom.collision.collide",
+    "carom.physics.step",
+    "carom.physics.step_ends",
+    "carom.engine.interpreter",
+}
+CUDA_MODULES = (*PARALLEL_MODULES, *(name for name in KERNEL_MODULES if name not in _CPU_MODULES))
 # The stages of `World.profile` are compiled again, each on its own, when someone asks for a profile.
 ON_DEMAND = ("carom.collision.stages", "carom.physics.stages")
 
@@ -53,10 +73,11 @@ def warmup(device: str = "cpu") -> None:
     start_warp()
     target = wp.get_device(device)
     with CompilationNotice():
-        if target.is_cpu:
-            _build_side_by_side([name for name in KERNEL_MODULES if not _is_built(_warp_module(name))])
-        modules = [_warp_module(name) for name in KERNEL_MODULES]
-        wp.force_load(target, modules, _CPU_BLOCK_SIZE if target.is_cpu else None)
+        if not target.is_cpu:
+            wp.force_load(target, [_warp_module(name) for name in CUDA_MODULES], BLOCK_SIZE)
+            return
+        _build_side_by_side([name for name in KERNEL_MODULES if not _is_built(_warp_module(name))])
+        wp.force_load(target, [_warp_module(name) for name in KERNEL_MODULES], _CPU_BLOCK_SIZE)
 
 
 def build(name: str) -> None:

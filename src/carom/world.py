@@ -11,6 +11,7 @@ from typing import overload
 import numpy as np
 
 from carom.body import Body
+from carom.checks import vector
 from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
@@ -18,6 +19,7 @@ from carom.description_loading import DescriptionLoading
 from carom.engine.engine import DEVICE, Engine
 from carom.engine.touch_arrays import TouchArrays
 from carom.errors import SimulationError
+from carom.faults import cause_in
 from carom.log import Log, Observer, SubstepObserver
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
@@ -29,6 +31,7 @@ from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kerne
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.present_poses import PresentPoses
 from carom.queries import Queries
+from carom.recordable import Recordable
 from carom.snapshot import Layout, Snapshot, layout, put_back, take
 from carom.solver_report import solver_report
 from carom.state_views import VIEWS, StateViews
@@ -50,7 +53,7 @@ class Derived:
     link_columns: tuple[list[int], list[int]] | None = None
 
 
-class World(DescriptionLoading, StateViews):
+class World(DescriptionLoading, Recordable, StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
@@ -156,8 +159,8 @@ class World(DescriptionLoading, StateViews):
 
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
         """Add a body at rest."""
-        px, py, pz = position
-        qx, qy, qz, qw = orientation
+        px, py, pz = vector(position, 3, "position").tolist()
+        qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
         pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
         rows = self.arrays.append(spec, pose)
         body_id = self.free_ids.pop() if self.free_ids else self.next_id
@@ -327,7 +330,7 @@ class World(DescriptionLoading, StateViews):
 
     @gravity.setter
     def gravity(self, value: Sequence[float]) -> None:
-        x, y, z = (float(component) for component in value)
+        x, y, z = vector(value, 3, "gravity").tolist()
         self.parameters.gravity = (x, y, z)
         self.apply_parameters()
 
@@ -430,6 +433,7 @@ class World(DescriptionLoading, StateViews):
         """Throw away what the failed step left besides the coordinates, and say which body it was."""
         tree = self._status[STATUS] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        cause = cause_in(body)
         self.joint_reaction[:] = 0.0
         self.motor_impulse[:] = 0.0
         self.touch.forget_contacts()
@@ -437,7 +441,7 @@ class World(DescriptionLoading, StateViews):
             other.update_link_poses()
         raise SimulationError(
             f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
-            "the world is as it was before the step"
+            f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
     def prepare(self) -> None:

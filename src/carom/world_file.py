@@ -5,12 +5,10 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from importlib import import_module
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carom.constraints import JointConstraint
@@ -25,6 +23,7 @@ from carom.saved.check import check_body, check_finite
 from carom.saved.container import MOST_BYTES, packed, unpacked
 from carom.saved.files import restored
 from carom.saved.records import Reader, Writer
+from carom.saved.writing import write_whole
 from carom.saved_state import check_arrays, read_state, state_of, write_state
 from carom.snapshot import check_same, layout
 from carom.user_constraints import UserConstraint
@@ -170,17 +169,7 @@ def save_world(world: World, path: Path) -> None:
         "parts": {name: part.save(world, writer) for name, part in _parts()},
     }
     document["files"] = writer.files.records
-    data = packed(document, writer.blocks)
-    # Written beside it and moved into place, so that nobody ever sees half a file.
-    with NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as stream:
-        try:
-            stream.write(data)
-            stream.close()
-            os.replace(stream.name, path)
-        except BaseException:
-            stream.close()
-            Path(stream.name).unlink(missing_ok=True)
-            raise
+    write_whole(path, packed(document, writer.blocks))
 
 
 def load_world(world: World, path: Path) -> list[Body]:

@@ -6,7 +6,7 @@ from math import inf
 from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
 
-from pybullet._arguments import Vector, integer, numbers, one_body, required
+from pybullet._arguments import Vector, check_rotation, integer, numbers, one_body, required
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_PLANAR, JOINT_SPHERICAL
@@ -263,7 +263,7 @@ def calculateMassMatrix(
         tree = clients[physicsClientId].bodies[bodyUniqueId].tree
         if tree is not None and not flags and -inf < sum(objPositions) < inf:
             return tree.mass_matrix(objPositions)  # type: ignore[arg-type]
-    except (KeyError, TypeError, StructError):
+    except (KeyError, TypeError, ValueError, StructError):
         pass
     problem = "Internal error in calculateMassMatrix"
     body = body_of(client_of(physicsClientId), bodyUniqueId, problem)
@@ -315,8 +315,8 @@ def _check_extended(body: Body, positions: tuple[float, ...], problem: str) -> N
 
 
 def _check_rotation(quaternion: tuple[float, ...], problem: str) -> None:
-    if quaternion and not any(quaternion):
-        fail(problem, "objPositions holds a quaternion of length 0, which is no rotation.")
+    if quaternion:
+        check_rotation(quaternion, problem, "A part of objPositions")
 
 
 def _rows(matrix: Any) -> Matrix:

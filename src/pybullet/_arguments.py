@@ -8,13 +8,18 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Sequence
-from math import inf, isfinite, nan
+from contextlib import suppress
+from math import hypot, inf, isfinite, nan
 from operator import index
-from typing import Any, SupportsFloat
+from typing import Any, NoReturn, SupportsFloat
 
 from pybullet._errors import fail
 
 _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
+# Squared lengths of quaternions that have a direction: their products are still ordinary numbers.
+_LEAST_SQUARE, _GREATEST_SQUARE = 1e-60, 1e60
+MAX_MAGNITUDE = 1e30
+"""Positions, velocities, masses and the like may be so great; readers of files have the same bound."""
 
 # Lists, tuples, ranges and NumPy arrays are all iterables to a type checker, but not all sequences.
 Vector = Iterable[float]
@@ -177,11 +182,10 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
 
 
 def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
-    """Three finite numbers; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    """Three quantities; raises `pybullet.error` as `numbers` does, and for more or fewer."""
     try:
         x, y, z = values
-        check = x + y + z
-        if -inf < check < inf:
+        if abs(x) + abs(y) + abs(z) <= MAX_MAGNITUDE:
             return float(x), float(y), float(z)
     except (TypeError, ValueError):
         pass
@@ -190,11 +194,10 @@ def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
 
 
 def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
-    """Four finite numbers; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    """Four quantities; raises `pybullet.error` as `numbers` does, and for more or fewer."""
     try:
         x, y, z, w = values
-        check = x + y + z + w
-        if -inf < check < inf:
+        if abs(x) + abs(y) + abs(z) + abs(w) <= MAX_MAGNITUDE:
             return float(x), float(y), float(z), float(w)
     except (TypeError, ValueError):
         pass
@@ -203,15 +206,54 @@ def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, 
 
 
 def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
-    """A quaternion (x, y, z, w) whose length is not zero; raises `pybullet.error`."""
+    """A quaternion (x, y, z, w) that has a direction; raises `pybullet.error`."""
     x, y, z, w = vector4(values, problem, name)
-    if x == y == z == w == 0.0:
-        fail(problem, f"{name} is a quaternion of length 0, which is no rotation.")
+    squared = x * x + y * y + z * z + w * w
+    if not _LEAST_SQUARE < squared < _GREATEST_SQUARE:
+        _refuse_rotation((x, y, z, w), problem, name)
     return x, y, z, w
 
 
-def _counted(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
+def check_rotation(values: Sequence[float], problem: str, name: str) -> None:
+    """Raises `pybullet.error` for a quaternion that has no direction."""
+    if not _LEAST_SQUARE < sum(value * value for value in values) < _GREATEST_SQUARE:
+        _refuse_rotation(values, problem, name)
+
+
+def _refuse_rotation(values: Sequence[float], problem: str, name: str) -> NoReturn:
+    length = hypot(*values)
+    about = "is no rotation" if length < 1.0 else "is too long for a rotation"
+    fail(problem, f"{name} is a quaternion of length {length:g}, which {about}.")
+
+
+def moderate(value: float, problem: str, name: str) -> float:
+    """A number whose products with a few others are numbers, too; raises `pybullet.error` for any other."""
+    if not abs(value) <= MAX_MAGNITUDE:
+        particulars = f"{name} is {value:g}; it has to be from {-MAX_MAGNITUDE:g} to {MAX_MAGNITUDE:g}."
+        fail(problem or particulars, particulars if problem else "")
+    return value
+
+
+def quantity(value: Any, name: str) -> float:
+    """A position, velocity, gain or the like: a number that kernels can reckon with.
+
+    Raises:
+        TypeError: It is not a number.
+        pybullet.error: It is not finite, or greater than `MAX_MAGNITUDE`.
+    """
+    return moderate(real(value, name), "", name)
+
+
+def quantities(values: Any, problem: str, name: str) -> tuple[float, ...]:
+    """As `numbers`; each is a `quantity`."""
     result = numbers(values, problem, name)
+    for item in result:
+        moderate(item, problem, f"An item of {name}")
+    return result
+
+
+def _counted(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
+    result = quantities(values, problem, name)
     if len(result) != count:
         fail(problem, f"{name} has {len(result)} values instead of {count}.")
     return result
@@ -238,7 +280,9 @@ def _as_index(item: Any, name: str) -> int:
     try:
         return index(item)
     except TypeError:
-        number = float(item) if isinstance(item, SupportsFloat) else nan
+        number = nan
+        with suppress(TypeError, ValueError):
+            number = float(item) if isinstance(item, SupportsFloat) else nan
         if number.is_integer():
             return int(number)
     fail("Joint index out-of-range.", f"{name} contains {item!r}, which is no index.")

@@ -196,7 +196,7 @@ def getBasePositionAndOrientation(bodyUniqueId: int, physicsClientId: int = 0) -
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].base_pose()
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         return body_access(bodyUniqueId, physicsClientId, "GetBasePositionAndOrientation failed.").base_pose()
 
 
@@ -250,7 +250,7 @@ def getBaseVelocity(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[Vector
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].base_velocity()
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         return body_access(bodyUniqueId, physicsClientId, "getBaseVelocity failed.").base_velocity()
 
 

@@ -124,6 +124,9 @@ class Client:
         self.window.close()
 
 
+closed_by_users: set[int] = set()
+"""The clients whose window a user has closed, until the script disconnects or connects anew."""
+
 clients: dict[int, Client] = {}
 """Every client with a world in this process, by its id."""
 
@@ -141,8 +144,16 @@ def living_client(physics_client_id: Any) -> Client | None:
     client = clients.get(number)
     if client is not None and not client.window.is_open():
         forget(number)
+        closed_by_users.add(number)
         return None
     return client
+
+
+def why_not_connected(physics_client_id: Any) -> str:
+    """What to do about a connection that does not exist."""
+    if physics_client_id in closed_by_users:
+        return f"The window of client {physics_client_id} has been closed."
+    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) before."
 
 
 def client_of(physics_client_id: Any) -> Client:
@@ -156,7 +167,7 @@ def client_of(physics_client_id: Any) -> Client:
     if client is None or not client.window.is_open():
         client = living_client(physics_client_id)
     if client is None:
-        fail(NOT_CONNECTED, f"There is no client {physics_client_id}.")
+        fail(NOT_CONNECTED, why_not_connected(physics_client_id))
     return client
 
 

@@ -14,11 +14,13 @@ from pybullet._clients import (
     Client,
     client_of,
     clients,
+    closed_by_users,
     connection_of,
     forget,
     free_slot,
     living_client,
     remote_clients,
+    why_not_connected,
 )
 from pybullet._constants import (
     DIRECT,
@@ -122,6 +124,7 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     slot = free_slot()
     if slot is None:
         fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
+    closed_by_users.discard(slot)
     if method not in _METHODS:
         fail("connectPhysicsServer unexpected argument", f"There is no connection method {method}.")
     if method in _TO_A_SERVER or method in _TO_GRAPHICS:
@@ -184,6 +187,8 @@ def _serve(slot: int, target: Target) -> None:
 def disconnect(physicsClientId: int = 0) -> None:
     """Ends a connection; its world is gone.
 
+    A connection that the user has ended, by closing the window, may be ended once more.
+
     Args:
         physicsClientId: The connection.
 
@@ -196,7 +201,11 @@ def disconnect(physicsClientId: int = 0) -> None:
         0
     """
     if connection_of(physicsClientId) is None:
-        fail(NOT_CONNECTED, f"There is no client {physicsClientId}.")
+        number = index(physicsClientId)
+        if number not in closed_by_users:
+            fail(NOT_CONNECTED, why_not_connected(physicsClientId))
+        closed_by_users.remove(number)
+        return
     forget(index(physicsClientId))
 
 
@@ -290,7 +299,7 @@ def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
     """
     client = connection_of(physicsClientId)
     if client is None:
-        fail(NOT_CONNECTED, f"There is no client {physicsClientId}.")
+        fail(NOT_CONNECTED, why_not_connected(physicsClientId))
     client.set_timeout(real(timeOutInSeconds, "timeOutInSeconds"))
 
 

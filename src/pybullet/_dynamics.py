@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
-from pybullet._arguments import Vector, integer, real, vector3
+from pybullet._arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._errors import fail, logger
@@ -23,7 +23,12 @@ DynamicsInfo = tuple[
 
 _MULTI_BODY = 2
 
-_UNCHANGED = -1
+# Defaults. They are told by identity, as an array, which is no number either, cannot be compared.
+_UNCHANGED, _NO_LIMIT = -1, 1
+# Bounds and thresholds, which may be as great as one likes.
+_ANY_SIZE = frozenset(
+    {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
+)
 # What a `BodyAccess` is made with, and what only its equations of motion are.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}
@@ -161,49 +166,49 @@ def changeDynamics(
     named_link = integer(linkIndex, "linkIndex")
     changes = _Changes(named_link)
     # In the order in which PyBullet looks at them, see the docstring.
-    if jointLimitForce != _UNCHANGED:
+    if jointLimitForce is not _UNCHANGED:
         changes.take("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
-    if sleepThreshold != _UNCHANGED:
+    if sleepThreshold is not _UNCHANGED:
         changes.take_for_body("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
-    if jointLowerLimit != 1 or jointUpperLimit != _UNCHANGED:
+    if jointLowerLimit is not _NO_LIMIT or jointUpperLimit is not _UNCHANGED:
         lower = real(jointLowerLimit, "jointLowerLimit")
         changes.take_limits(lower, real(jointUpperLimit, "jointUpperLimit"))
     if anisotropicFriction is not None:
         changes.take_vector("anisotropic_friction", anisotropicFriction, "anisotropicFriction")
     if localInertiaDiagonal is not None:
         changes.take_vector("inertia", localInertiaDiagonal, "localInertiaDiagonal")
-    if mass != _UNCHANGED:
+    if mass is not _UNCHANGED:
         changes.take("mass", real(mass, "mass"))
-    if lateralFriction != _UNCHANGED:
+    if lateralFriction is not _UNCHANGED:
         changes.take("lateral_friction", real(lateralFriction, "lateralFriction"))
-    if spinningFriction != _UNCHANGED:
+    if spinningFriction is not _UNCHANGED:
         changes.take("spinning_friction", real(spinningFriction, "spinningFriction"))
-    if rollingFriction != _UNCHANGED:
+    if rollingFriction is not _UNCHANGED:
         changes.take("rolling_friction", real(rollingFriction, "rollingFriction"))
-    if linearDamping != _UNCHANGED:
+    if linearDamping is not _UNCHANGED:
         changes.take_for_body("linear_damping", real(linearDamping, "linearDamping"))
-    if angularDamping != _UNCHANGED:
+    if angularDamping is not _UNCHANGED:
         changes.take_for_body("angular_damping", real(angularDamping, "angularDamping"))
-    if jointDamping != _UNCHANGED:
+    if jointDamping is not _UNCHANGED:
         changes.take("joint_damping", real(jointDamping, "jointDamping"))
-    if restitution != _UNCHANGED:
+    if restitution is not _UNCHANGED:
         changes.take("restitution", real(restitution, "restitution"))
-    if contactStiffness != _UNCHANGED:
+    if contactStiffness is not _UNCHANGED:
         changes.take("contact_stiffness", real(contactStiffness, "contactStiffness"))
-    if contactDamping != _UNCHANGED:
+    if contactDamping is not _UNCHANGED:
         changes.take("contact_damping", real(contactDamping, "contactDamping"))
-    if frictionAnchor != _UNCHANGED:
+    if frictionAnchor is not _UNCHANGED:
         changes.take("friction_anchor", integer(frictionAnchor, "frictionAnchor"))
-    if ccdSweptSphereRadius != _UNCHANGED:
+    if ccdSweptSphereRadius is not _UNCHANGED:
         changes.take("ccd_swept_sphere_radius", real(ccdSweptSphereRadius, "ccdSweptSphereRadius"))
-    if activationState != _UNCHANGED:
+    if activationState is not _UNCHANGED:
         changes.take_for_body("activation_state", integer(activationState, "activationState"))
-    if contactProcessingThreshold != _UNCHANGED:
+    if contactProcessingThreshold is not _UNCHANGED:
         threshold = real(contactProcessingThreshold, "contactProcessingThreshold")
         changes.take("contact_processing_threshold", threshold)
-    if maxJointVelocity != _UNCHANGED:
+    if maxJointVelocity is not _UNCHANGED:
         changes.take_for_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
-    if collisionMargin != _UNCHANGED:
+    if collisionMargin is not _UNCHANGED:
         changes.take_for_body("collision_margin", real(collisionMargin, "collisionMargin"))
 
     if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
@@ -260,6 +265,10 @@ def enableJointForceTorqueSensor(
         client.bodies.forget(access.body.id)
 
 
+def _refuse_size(name: str, value: float) -> NoReturn:
+    fail(f"{name} is {value:g}; it may be at most {MAX_MAGNITUDE:g}, as products of it have to be numbers.")
+
+
 class _Changes:
     """What a call of `changeDynamics` changes, and the link it goes to.
 
@@ -279,6 +288,8 @@ class _Changes:
 
     def take(self, name: str, value: float) -> None:
         """Takes a value for the named link, unless it is negative."""
+        if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
+            _refuse_size(name, value)
         if value >= 0:
             self.values[name] = value
             self.link = self._named_link
@@ -286,6 +297,8 @@ class _Changes:
 
     def take_for_body(self, name: str, value: float) -> None:
         """Takes a value for the whole body, unless it is negative."""
+        if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
+            _refuse_size(name, value)
         if value >= 0:
             self.values[name] = value
             self.link = BASE
@@ -299,6 +312,10 @@ class _Changes:
 
     def take_vector(self, name: str, value: Vector, argument: str) -> None:
         """Takes three numbers for the named link."""
-        self.values[name] = vector3(value, f"{argument} needs 3 numbers.", argument)
+        vector = vector3(value, f"{argument} needs 3 numbers.", argument)
+        for number in vector:
+            if abs(number) > MAX_MAGNITUDE:
+                _refuse_size(name, number)
+        self.values[name] = vector
         self.link = self._named_link
         self.misdirected.append(name)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from carom.errors import SimulationError
-from pybullet._arguments import integer, real
+from pybullet._arguments import integer, quantity, real
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of, clients
 from pybullet._constants import DIRECT
@@ -25,7 +25,13 @@ __all__ = [
     "stepSimulation",
 ]
 
-_GREATEST_SUBSTEPS = 100_000
+# What decides how long a step takes: parameter, argument and greatest value.
+_WORK = {
+    "substeps": ("numSubSteps", 10_000),
+    "solver_iterations": ("numSolverIterations", 1_000_000),
+    "noncontact_inner_iterations": ("numNonContactInnerIterations", 10_000),
+}
+_MOST_WORK = 10_000_000
 
 
 @exported
@@ -53,11 +59,13 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
     """
     try:
         client = clients[physicsClientId]
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         client = client_of(physicsClientId)
     if client.window.held:
-        client.window.wait_for_turn()
+        goes_on = client.window.wait_for_turn()
         client = client_of(physicsClientId)
+        if not goes_on:
+            return ()
     with client.lock:
         try:
             client.world.step()
@@ -115,7 +123,7 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
         -1.62
     """
     client = client_of(physicsClientId)
-    gravity = (real(gravX, "gravX"), real(gravY, "gravY"), real(gravZ, "gravZ"))
+    gravity = (quantity(gravX, "gravX"), quantity(gravY, "gravY"), quantity(gravZ, "gravZ"))
     # Scripts that set gravity before every step need not pay for it.
     if gravity != client.world.parameters.gravity:
         _change(client, gravity=gravity)
@@ -156,7 +164,7 @@ def setDefaultContactERP(defaultContactERP: float, physicsClientId: int = 0) -> 
     Examples:
         >>> p.setDefaultContactERP(0.2)
     """
-    _change(client_of(physicsClientId), contact_erp=real(defaultContactERP, "defaultContactERP"))
+    _change(client_of(physicsClientId), contact_erp=quantity(defaultContactERP, "defaultContactERP"))
 
 
 @exported
@@ -335,11 +343,16 @@ def setPhysicsEngineParameter(
         real,
     )
     take("collision_filter_mode", collisionFilterMode, "collisionFilterMode", integer)
-    take("contact_breaking_threshold", contactBreakingThreshold, "contactBreakingThreshold", real)
-    take("restitution_velocity_threshold", restitutionVelocityThreshold, "restitutionVelocityThreshold", real)
-    take("erp", erp, "erp", real)
-    take("contact_erp", contactERP, "contactERP", real)
-    take("friction_erp", frictionERP, "frictionERP", real)
+    take("contact_breaking_threshold", contactBreakingThreshold, "contactBreakingThreshold", quantity)
+    take(
+        "restitution_velocity_threshold",
+        restitutionVelocityThreshold,
+        "restitutionVelocityThreshold",
+        quantity,
+    )
+    take("erp", erp, "erp", quantity)
+    take("contact_erp", contactERP, "contactERP", quantity)
+    take("friction_erp", frictionERP, "frictionERP", quantity)
     take("cone_friction", enableConeFriction, "enableConeFriction", _switch)
     take(
         "deterministic_overlapping_pairs",
@@ -347,16 +360,16 @@ def setPhysicsEngineParameter(
         "deterministicOverlappingPairs",
         _switch,
     )
-    take("allowed_ccd_penetration", allowedCcdPenetration, "allowedCcdPenetration", real)
+    take("allowed_ccd_penetration", allowedCcdPenetration, "allowedCcdPenetration", quantity)
     take("joint_feedback_mode", jointFeedbackMode, "jointFeedbackMode", integer)
-    take("solver_residual_threshold", solverResidualThreshold, "solverResidualThreshold", real)
-    take("contact_slop", contactSlop, "contactSlop", real)
+    take("solver_residual_threshold", solverResidualThreshold, "solverResidualThreshold", quantity)
+    take("contact_slop", contactSlop, "contactSlop", quantity)
     take("sat", enableSAT, "enableSAT", _switch)
     take("constraint_solver", constraintSolverType, "constraintSolverType", integer)
-    take("global_cfm", globalCFM, "globalCFM", real)
+    take("global_cfm", globalCFM, "globalCFM", quantity)
     take("minimum_island_size", minimumSolverIslandSize, "minimumSolverIslandSize", integer)
     take("report_solver_analytics", reportSolverAnalytics, "reportSolverAnalytics", _switch)
-    take("warm_starting_factor", warmStartingFactor, "warmStartingFactor", real)
+    take("warm_starting_factor", warmStartingFactor, "warmStartingFactor", quantity)
     take(
         "noncontact_inner_iterations",
         numNonContactInnerIterations,
@@ -365,18 +378,31 @@ def setPhysicsEngineParameter(
         least=1,
     )
     substeps = integer(numSubSteps, "numSubSteps")
-    if substeps > _GREATEST_SUBSTEPS:
-        fail(f"numSubSteps has to be at most {_GREATEST_SUBSTEPS}, not {substeps}.")
+    if substeps >= 0:
+        changes["substeps"] = substeps
+    _check_work(client, changes)
     integer(maxNumCmdPer1ms, "maxNumCmdPer1ms")
     integer(enableFileCaching, "enableFileCaching")
     real(sparseSdfVoxelSize, "sparseSdfVoxelSize")
     if real(fixedTimeStep, "fixedTimeStep") >= 0.0:
         _set_time_step(client, fixedTimeStep, "fixedTimeStep")
-    if substeps >= 0:
-        changes["substeps"] = substeps
     if changes:
         _change(client, **changes)
         client.report_analytics = bool(client.world.parameters.report_solver_analytics)
+
+
+def _check_work(client: Client, changes: dict[str, Any]) -> None:
+    """See that a step comes to an end in sensible time: nothing can interrupt a launch of kernels."""
+    parameters = client.world.parameters
+    product = 1
+    for name, (argument, greatest) in _WORK.items():
+        value = changes.get(name, getattr(parameters, name))
+        if value > greatest:
+            fail(f"{argument} has to be at most {greatest}, not {value}.")
+        product *= max(value, 1)
+    if product > _MOST_WORK:
+        stated = " x ".join(argument for argument, _ in _WORK.values())
+        fail(f"{stated} would be {product}; it has to be at most {_MOST_WORK}.")
 
 
 def _switch(value: Any, name: str) -> int:
@@ -386,7 +412,7 @@ def _switch(value: Any, name: str) -> int:
 
 
 def _set_time_step(client: Client, value: Any, name: str) -> None:
-    time_step = real(value, name)
+    time_step = quantity(value, name)
     if time_step <= 0.0:
         fail(f"{name} has to be greater than 0, not {time_step}.")
     _change(client, time_step=time_step)

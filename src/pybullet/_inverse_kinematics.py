@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from math import inf, isnan
+from math import isnan
 from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._algebra import joint_coordinates
@@ -271,7 +271,7 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
         return None
     try:
         x, y, z, w = values
-        if -inf < x + y + z + w < inf and (x or y or z or w):
+        if 0.5 < x * x + y * y + z * z + w * w < 2.0:
             return x, y, z, w
     except (TypeError, ValueError):
         pass
@@ -296,14 +296,14 @@ def _options(
     freedoms = sum(body.velocity_count)
     if freedoms == 0:
         fail(_PROBLEM, f"Body {body.id} ({body.name}) has no joint that moves.")
-    if solver not in _SOLVERS:
+    if integer(solver, "solver") not in _SOLVERS:
         fail(_PROBLEM, f"solver is {solver!r}, neither IK_DLS ({IK_DLS}) nor IK_SDLS ({IK_SDLS}).")
     options: dict[str, Any] = {}
     if solver == IK_SDLS:
         options["selective"] = True
-    if iterations != _UNSTATED and integer(iterations, "maxNumIterations") > 0:
+    if iterations is not _UNSTATED and integer(iterations, "maxNumIterations") > 0:
         options["iterations"] = iterations
-    if threshold != _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
+    if threshold is not _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
         options["threshold"] = threshold
     if not limits[0] is limits[1] is limits[2] is limits[3] is None:
         lower, upper, ranges, rest = [

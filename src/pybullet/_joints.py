@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import TYPE_CHECKING, Any
 
-from pybullet._arguments import Indices, Vector, Vectors, indices, integer, numbers, real, sequence
+from pybullet._arguments import (
+    MAX_MAGNITUDE,
+    Indices,
+    Vector,
+    Vectors,
+    indices,
+    integer,
+    quantities,
+    quantity,
+    sequence,
+)
 from pybullet._builtin import exported
 from pybullet._clients import client_of, clients
 from pybullet._constants import JOINT_SPHERICAL
@@ -67,7 +76,7 @@ def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joint_infos[jointIndex]
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         problem = "GetJointInfo failed."
         access = body_access(bodyUniqueId, physicsClientId, problem)
         index = integer(jointIndex, "jointIndex")
@@ -101,7 +110,7 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].state()
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         return state_access(bodyUniqueId, jointIndex, physicsClientId).state()
 
 
@@ -129,7 +138,7 @@ def getJointStates(
     try:
         group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
         return group.states() or None
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         requested = _requested(bodyUniqueId, jointIndices, physicsClientId)
         if not requested:
             return None
@@ -164,7 +173,7 @@ def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: i
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].multi_dof_state()
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         return state_access(bodyUniqueId, jointIndex, physicsClientId).multi_dof_state()
 
 
@@ -226,13 +235,13 @@ def resetJointState(
     """
     try:
         joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
-        if -inf < targetValue + targetVelocity < inf:
+        if abs(targetValue) + abs(targetVelocity) <= MAX_MAGNITUDE:
             joint.reset(targetValue, targetVelocity)
             return
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         pass
     joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
-    joint.reset(real(targetValue, "targetValue"), real(targetVelocity, "targetVelocity"))
+    joint.reset(quantity(targetValue, "targetValue"), quantity(targetVelocity, "targetVelocity"))
 
 
 @exported
@@ -332,8 +341,8 @@ def _requested(body_id: int, joint_indices: Indices, physics_client_id: int) -> 
 
 def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Positions and velocities of one joint from what the script gave for them."""
-    positions = numbers(position, _NO_LISTS, "targetValue") if position is not None else ()
-    velocities = numbers(velocity, _NO_LISTS, "targetVelocity") if velocity is not None else ()
+    positions = quantities(position, _NO_LISTS, "targetValue") if position is not None else ()
+    velocities = quantities(velocity, _NO_LISTS, "targetVelocity") if velocity is not None else ()
     if not positions and not velocities:
         fail(_NO_LISTS, "Both are empty.")
     return positions, velocities

@@ -68,7 +68,7 @@ def getLinkState(
                 return link.state()
             access.body.update_link_velocities()
             return link.state() + link.velocity()
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         pass
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     index = integer(linkIndex, "linkIndex")
@@ -118,7 +118,7 @@ def getLinkStates(
                 return tuple([link.state() for link in links])
             access.body.update_link_velocities()
             return tuple([link.state() + link.velocity() for link in links])
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         pass
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(linkIndices, "expected a sequence of joint indices", "linkIndices")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from carom.description import Pose
-from pybullet._arguments import Vector, by_name, integer, real, rotation, text, vector3
+from pybullet._arguments import Vector, by_name, integer, moderate, real, rotation, text, vector3
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
 from pybullet._errors import fail
@@ -91,7 +91,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         basePosition: Position of the link frame of the base [m]; its centre of mass may be elsewhere.
         baseOrientation: Orientation of that frame (x, y, z, w).
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
-        useFixedBase: 1 to nail the base to the world.
+        useFixedBase: 1 for a base that does not move.
         flags: `URDF_*`, added up.
         globalScaling: Factor on all lengths; 1 when not greater than 0.
         physicsClientId: The connection.
@@ -125,7 +125,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     from carom.errors import CaromError
     from carom.loading import urdf_body
 
-    scale = scaling if scaling > 0.0 else 1.0
+    scale = moderate(scaling, _CANNOT_LOAD, "globalScaling") if scaling > 0.0 else 1.0
     try:
         spec = urdf_body(Path(name), client.search(), scale=scale, flags=flags, fixed_base=fixed_base)
     except CaromError as problem:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pybullet._arguments import integer, real, text
+from pybullet._arguments import integer, moderate, real, text
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._errors import fail, logger
@@ -58,6 +58,8 @@ def loadSDF(
     name = text(sdfFileName, "sdfFileName")
     maximal = integer(useMaximalCoordinates, "useMaximalCoordinates")
     scaling = real(globalScaling, "globalScaling")
+    if scaling > 0.0:
+        moderate(scaling, _CANNOT_LOAD_SDF, "globalScaling")
     client = client_of(physicsClientId)
     warn_of_coordinates("loadSDF", maximal)
 
@@ -78,8 +80,9 @@ def loadMJCF(
 
     What PyBullet reads of such files is read its way: every joint has a link without mass of its own,
     geoms weigh 1000 kg/m³, joints have neither damping nor armature, a body without joints floats, and
-    every geom of the world is a body. What PyBullet cannot read is read as MuJoCo means it: classes of
-    defaults, ball joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
+    every geom of the world is a body, `axisangle` turns geoms but not bodies, and named classes of defaults
+    limit no joint. What PyBullet cannot read is read as MuJoCo means it: what else such classes say, ball
+    joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
 
     Args:
         mjcfFileName: The file: as given, in `data` folders near the working directory, or in the
@@ -109,7 +112,7 @@ def loadMJCF(
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.loading import mjcf_bodies
 
-        return mjcf_bodies(Path(name), search, flags=bits)
+        return mjcf_bodies(Path(name), search, flags=bits, as_mujoco=False)
 
     return _load(client, read, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
 

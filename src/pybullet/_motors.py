@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
-from math import inf
 from struct import error as StructError
 from typing import Any, overload
 
-from pybullet._arguments import Indices, Vector, bound, indices, integer, one_body, real, required, sequence
+from pybullet._arguments import (
+    MAX_MAGNITUDE,
+    Indices,
+    Vector,
+    bound,
+    indices,
+    integer,
+    one_body,
+    quantity,
+    real,
+    required,
+    sequence,
+)
 from pybullet._builtin import exported_as
 from pybullet._clients import client_of, clients
 from pybullet._constants import PD_CONTROL, POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
@@ -116,24 +127,24 @@ def setJointMotorControl2(
     """
     try:
         check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
-        if -inf < check < inf and bodyIndex is None:
+        if -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
             joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
             joint.command(
                 controlMode, targetPosition, targetVelocity, force, positionGain, velocityGain, maxVelocity
             )
             return
-    except (KeyError, TypeError, StructError):
+    except (KeyError, TypeError, ValueError, StructError):
         pass
     body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
     required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
     joint = joint_access(body, jointIndex, physicsClientId)
     joint.command(
         integer(controlMode, "controlMode"),
-        real(targetPosition, "targetPosition"),
-        real(targetVelocity, "targetVelocity"),
+        quantity(targetPosition, "targetPosition"),
+        quantity(targetVelocity, "targetVelocity"),
         _force(force, controlMode, "force"),
-        real(positionGain, "positionGain"),
-        real(velocityGain, "velocityGain"),
+        quantity(positionGain, "positionGain"),
+        quantity(velocityGain, "velocityGain"),
         bound(maxVelocity, "maxVelocity"),
     )
 

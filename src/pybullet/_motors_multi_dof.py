@@ -7,7 +7,18 @@ from itertools import chain
 from math import inf
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
-from pybullet._arguments import Indices, Vector, bound, indices, integer, numbers, real, sequence
+from pybullet._arguments import (
+    MAX_MAGNITUDE,
+    Indices,
+    Vector,
+    bound,
+    check_rotation,
+    indices,
+    integer,
+    quantities,
+    quantity,
+    sequence,
+)
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL, TORQUE_CONTROL
@@ -212,20 +223,20 @@ def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[S
 
 def _gains(values: Sequence[float], name: str) -> Sequence[float]:
     """Finite numbers, all looked at together if they are as usual."""
-    if _USUAL_NUMBERS.issuperset(map(type, values)) and -inf < sum(values) < inf:
+    if _USUAL_NUMBERS.issuperset(map(type, values)) and -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
         return values
-    return [real(value, name) for value in values]
+    return [quantity(value, name) for value in values]
 
 
 def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
     """The numbers of one joint, at most as many as any joint has; none when left out."""
     if isinstance(values, (list, tuple)) and len(values) <= most:
         try:
-            if -inf < sum(values) < inf:
+            if -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
                 return values
         except TypeError:
             pass
-    return () if values is None else numbers(values, f"expected a {name} sequence", name)[:most]
+    return () if values is None else quantities(values, f"expected a {name} sequence", name)[:most]
 
 
 def _entries(values: Any, name: str) -> tuple[Any, ...]:
@@ -236,10 +247,10 @@ def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
     """A number, or at most three of them; no number at all stands for the default of each use."""
     # Arrays of one number can be floats, too, but are lists.
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
-        return real(value, name)
-    return numbers(value, f"expected a {name} sequence", name)[:3]
+        return quantity(value, name)
+    return quantities(value, f"expected a {name} sequence", name)[:3]
 
 
 def _check_rotation(position: Sequence[float]) -> None:
-    if len(position) == 4 and not any(position):
-        fail("expected a targetPosition sequence", "A quaternion of length 0 is no rotation.")
+    if len(position) == 4:
+        check_rotation(position, "expected a targetPosition sequence", "targetPosition")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose, Robot
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
-from pybullet._arguments import Indices, Vector, Vectors, integer, real, rotation, sequence, vector3
+from pybullet._arguments import Indices, Vector, Vectors, integer, moderate, real, rotation, sequence, vector3
 from pybullet._builtin import exported
 from pybullet._clients import Client, client_of
 from pybullet._constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
@@ -256,7 +256,7 @@ def _mass(value: Any, name: str) -> float:
     mass = real(value, name)
     if mass < 0.0:
         fail(_FAILED, f"{name} is {mass}; it has to be at least 0.")
-    return mass
+    return moderate(mass, _FAILED, name)
 
 
 def _rotation(values: Any, name: str) -> Quaternion:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from math import isfinite
 from pathlib import Path
+from tempfile import gettempdir
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
@@ -17,11 +18,16 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from carom.ray_cast import Points, RayHit
     from carom.viewer.viewer import Viewer
     from pybullet._clients import Client
 
 # Options that are whole numbers, and the least they can be.
 _COUNTS = {"width": 1, "height": 1, "port": 0}
+_PAUSED = (
+    "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
+)
+_GOES_ON = "The simulation goes on."
 # A colour component that is not stated, or is no number.
 _DEFAULT_SHADE = 0.8
 
@@ -31,14 +37,23 @@ class PageWindow(RecordingWindow):
 
     Args:
         viewer: The viewer.
+        client: Whose world it shows.
     """
 
-    def __init__(self, viewer: Viewer) -> None:
+    def __init__(self, viewer: Viewer, client: Client) -> None:
         super().__init__(viewer.camera.orbit.width, viewer.camera.orbit.height)
         self._viewer = viewer
+        self._client = client
         self.items = viewer.drawings.items
         self.sliders = viewer.controls.sliders
+        # Simulated time at which the script last asked what the user does.
+        self._asked = -1.0
+        self.held = viewer.held
         viewer.on_hold = self._hold
+        viewer.on_pause = self._say_pause
+        viewer.on_profile = self._profile
+        self._profiles = 0
+        self._profile_log: int | None = None
 
     @property
     def viewer(self) -> Viewer:
@@ -51,11 +66,15 @@ class PageWindow(RecordingWindow):
     def close(self) -> None:
         self._viewer.close()
 
-    def wait_for_turn(self) -> None:
-        self._viewer.gate.wait()
+    @property
+    def speed(self) -> float | None:
+        return self._viewer.gate.speed
+
+    def wait_for_turn(self) -> bool:
+        return self._viewer.wait_for_turn(listening=self._asked == self._viewer.time)
 
     def has_turn(self) -> bool:
-        return self._viewer.gate.passes()
+        return self._viewer.has_turn()
 
     def draw(self, item: DebugItem, replaced: int) -> int:
         self._viewer.drawings.expire()
@@ -84,10 +103,16 @@ class PageWindow(RecordingWindow):
         super().colour_link(body, link, colour)
         self._show_options()
 
+    def slider_value(self, item: int) -> float | None:
+        self._asked = self._viewer.time
+        return super().slider_value(item)
+
     def key_events(self) -> dict[int, int]:
-        return self._viewer.keyboard.events()
+        self._asked = self._viewer.time
+        return self._viewer.key_events()
 
     def mouse_events(self) -> Sequence[tuple[int, float, float, int, int]]:
+        self._asked = self._viewer.time
         return self._viewer.mouse.events()
 
     def configure(self, changes: VisualizerOptions) -> None:
@@ -99,6 +124,10 @@ class PageWindow(RecordingWindow):
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         self._viewer.camera.move(distance, yaw, pitch, target)
+
+    def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
+        if self._viewer.rays.wanted:
+            self._viewer.rays.tell(starts, ends, hits)
 
     def show_image(
         self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
@@ -121,6 +150,24 @@ class PageWindow(RecordingWindow):
     def _hold(self, held: bool) -> None:
         self.held = held
 
+    def _profile(self, running: bool) -> None:
+        """Writes a trace of where the time goes for as long as the key p is held."""
+        from pybullet._log_files import TimingLog
+
+        client = self._client
+        with client.lock:
+            if running and self._profile_log is None:
+                self._profiles += 1
+                path = Path(gettempdir(), f"timings_{self._profiles}")
+                self._profile_log = client.logs.start(client, TimingLog(path))
+            elif not running and self._profile_log is not None:
+                client.logs.stop(client, self._profile_log)
+                self._profile_log = None
+                print(f"Wrote {Path(gettempdir(), f'timings_{self._profiles}_0.json')}", flush=True)
+
+    def _say_pause(self, paused: bool) -> None:
+        print(_PAUSED if paused else _GOES_ON, flush=True)
+
     def _show_options(self) -> None:
         options = {field.name: getattr(self.options, field.name) for field in fields(self.options)}
         colours = [[body, link + 1, colour] for (body, link), colour in self.colours.items()]
@@ -137,6 +184,7 @@ def open_window(client: Client, options: str) -> PageWindow:
     Raises:
         pybullet.error: The address asked for cannot be listened on, or the video asked for not be written.
     """
+    from carom.viewer.display import tunnel_command
     from carom.viewer.viewer import Viewer
 
     values: dict[str, str] = {}
@@ -145,21 +193,33 @@ def open_window(client: Client, options: str) -> PageWindow:
         if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
             values[name] = value
     arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
-    if "host" in values:
-        arguments["host"] = values["host"]
+    arguments |= {name: values[name] for name in ("host", "token") if values.get(name)}
+    if "names" in values:
+        arguments["names"] = values["names"].split(",")
     try:
-        viewer = Viewer(client.world, client.lock, title=Path(sys.argv[0]).stem or "Carom", **arguments)
+        viewer = Viewer(client.world, client.lock, title=_title(), **arguments)
     except OSError as problem:
         fail("Cannot open the window:", f"{problem}.")
-    client.window = window = PageWindow(viewer)
+    client.window = window = PageWindow(viewer, client)
     background = [values.get(f"background_color_{name}") for name in ("red", "green", "blue")]
     if any(background):
         window.configure(VisualizerOptions(background=_colour(background)))
     if "mp4" in values:
         _film(client, values["mp4"].strip("\"'"), values.get("mp4fps", ""))
     print(f"The simulation is shown at {viewer.address}", flush=True)
+    if tunnel := tunnel_command(viewer.address):
+        print(
+            f"You are connected by SSH: run '{tunnel}' on your own machine, and open {viewer.address} there."
+        )
     viewer.open_browser()
     return window
+
+
+def _title() -> str:
+    """The name of the script."""
+    from carom.viewer.notebook import in_notebook
+
+    return "Carom" if in_notebook() else Path(sys.argv[0]).stem or "Carom"
 
 
 def _film(client: Client, file: str, fps: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,8 @@ EGL_RENDERER = len(BUILT_IN)
 def is_egl_renderer(path: str) -> bool:
     """Whether a path is that of the library `eglRenderer`, as Python's import system finds it."""
     file = Path(path)
-    return file.is_file() and "eglRenderer" in (file.parent.name, file.name.partition(".")[0])
+    # `os.path`, for which a name that no file can have is none.
+    return os.path.isfile(path) and "eglRenderer" in (file.parent.name, file.name.partition(".")[0])
 
 
 class Plugins:

@@ -12,7 +12,7 @@ import numpy as np
 
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
-from pybullet._arguments import integer, real, sequence, vector3
+from pybullet._arguments import MAX_MAGNITUDE, integer, real, sequence, vector3
 from pybullet._builtin import exported
 from pybullet._clients import client_of
 from pybullet._constants import MAX_RAY_INTERSECTION_BATCH_SIZE
@@ -60,14 +60,16 @@ def rayTest(
         >>> body == cube, link, round(position[2], 3)
         (True, -1, 0.05)
     """
-    world = client_of(physicsClientId).world
+    client = client_of(physicsClientId)
     start = vector3(rayFromPosition, _BAD_ITEM, "rayFromPosition")
     end = vector3(rayToPosition, _BAD_ITEM, "rayToPosition")
     mask, number = (
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    return (world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0)),)
+    hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
+    client.window.show_rays((start,), (end,), (hit,))
+    return (hit,)
 
 
 @exported
@@ -131,14 +133,18 @@ def rayTestBatch(
         rotation = np.array(rotation_matrix(frame.orientation))
         starts = starts @ rotation.T + frame.position
         ends = ends @ rotation.T + frame.position
-    return client.world.queries().cast_rays(
+    hits = client.world.queries().cast_rays(
         starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
     )
+    client.window.show_rays(starts, ends, hits)
+    return hits
 
 
 def _points(values: Any, name: str) -> np.ndarray:
     """Points as rows; arrays of numbers are taken as they are."""
     items = values if isinstance(values, np.ndarray) else sequence(values, _BAD_ITEM, name)
+    if isinstance(items, np.ndarray) and not items.ndim:
+        fail(_BAD_ITEM, f"{name} is {values!r}.")
     try:
         if not isinstance(items, np.ndarray) and set(map(len, items)) == {3}:
             # Four times as fast as to let NumPy find out how deep the lists are.
@@ -148,8 +154,10 @@ def _points(values: Any, name: str) -> np.ndarray:
     except (TypeError, ValueError, StructError):
         points = np.empty((len(items), 0))
     if len(items) and (points.shape[1] != 3 or not np.isfinite(points).all()):
-        for number, item in enumerate(items):
-            vector3(item, _BAD_ITEM, f"{name}[{number}]")
+        each = [vector3(item, _BAD_ITEM, f"{name}[{number}]") for number, item in enumerate(items)]
+        return np.array(each)
+    if len(items) and np.abs(points).max() > MAX_MAGNITUDE:
+        fail(_BAD_ITEM, f"{name} holds a number greater than {MAX_MAGNITUDE:g}.")
     return points
 
 

@@ -70,7 +70,7 @@ class RealTimeClock:
     def _run(self) -> None:
         client, pace = self._client, Pace(monotonic())
         while not self._stopping.wait(max(_PERIOD, client.time_step)):
-            for _ in range(pace.steps_due(monotonic(), client.time_step)):
+            for _ in range(pace.steps_due(monotonic(), client.time_step / (client.window.speed or 1.0))):
                 if client.window.held and not client.window.has_turn():
                     break
                 with client.lock:

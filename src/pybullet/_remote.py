@@ -9,6 +9,7 @@ from weakref import WeakSet
 from carom.remote.errors import Malformed, NoServer, ServerGone
 from pybullet._clients import NOT_CONNECTED
 from pybullet._errors import error, fail, logger
+from pybullet._user_data_view import UserDataView
 
 if TYPE_CHECKING:
     from carom.remote.connection import Connection
@@ -41,6 +42,7 @@ class RemoteClient:
     def __init__(self, method: int, connection: Connection) -> None:
         self.method = method
         self._connection = connection
+        self._user_data = UserDataView(lambda name, *arguments: self._ask(name, list(arguments), {}))
         _alive.add(self)
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
@@ -53,12 +55,18 @@ class RemoteClient:
         if not self._connection.is_usable:
             fail(NOT_CONNECTED, "The server has closed the connection, or did not answer in time.")
         positional, named = function.with_client(0, list(arguments), keywords)
+        return self._user_data.call(
+            function, arguments, keywords, lambda: self._ask(function.name, positional, named)
+        )
+
+    def _ask(self, name: str, arguments: list[Any], keywords: dict[str, Any]) -> Any:
+        """Has the server call a function by name; raises what `call` does."""
         try:
-            kind, *answer = self._connection.call((function.name, positional, named))
+            kind, *answer = self._connection.call((name, arguments, keywords))
         except ServerGone as problem:
             raise error(f"{NOT_CONNECTED} {problem}") from None
         except Malformed as problem:
-            raise error(f"{function.name} cannot be called in another process: {problem}") from None
+            raise error(f"{name} cannot be called in another process: {problem}") from None
         if kind == RESULT:
             return answer[0]
         _raise(*answer)

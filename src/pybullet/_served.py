@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from threading import RLock, current_thread
+from threading import RLock, current_thread, local
 from typing import Any
 from weakref import WeakSet
 
@@ -18,6 +18,7 @@ from pybullet._detours import Function, detour_of, functions, remove_detour
 from pybullet._errors import error, fail, logger
 from pybullet._remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
 from pybullet._server_options import ServerOptions, reachable
+from pybullet._user_data_view import UserDataView
 
 # How long a server may take to answer that it is there [s].
 _PATIENCE = 5.0
@@ -31,7 +32,7 @@ _alive: WeakSet[Served] = WeakSet()
 class Served:
     """A world, its own client, and the clients in other processes.
 
-    All of them call the same functions, one call at a time.
+    All of them call the same functions, one call at a time. Only of user data each has a view of its own.
 
     Args:
         number: Id of the client in this process.
@@ -45,6 +46,8 @@ class Served:
     def __init__(self, number: int, client: Client, options: ServerOptions) -> None:
         self._number = number
         self._client = client
+        self._user_data = UserDataView(self._ask)
+        self._for_others = local()
         self._notes: list[tuple[str, Note]] = []
         for meeting in options.meetings:
             name = meeting.name(meeting.port)
@@ -76,8 +79,18 @@ class Served:
         return self._listener.client_count
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        """Calls a function for the script in this process."""
-        return self._call(function, arguments, keywords)
+        """Calls a function for the script in this process, or for another on its way through a log."""
+        if getattr(self._for_others, "answering", False):
+            return self._call(function, arguments, keywords)
+        return self._user_data.call(
+            function, arguments, keywords, lambda: self._call(function, arguments, keywords)
+        )
+
+    def _ask(self, name: str, *arguments: Any) -> Any:
+        """Calls a function by name."""
+        function = functions()[name]
+        positional, keywords = function.with_client(self._number, list(arguments), {})
+        return self._call(function, positional, keywords)
 
     def close(self) -> None:
         """Ends all connections."""
@@ -99,6 +112,8 @@ class Served:
         request = unpack(frame.message, frame.contents, lists=True)
         name, arguments, keywords = _checked(request)
         function = functions().get(name)
+        # A thread that answers others does so for ever.
+        self._for_others.answering = True
         try:
             if function is None:
                 fail(f"A server has no function {name!r}.")

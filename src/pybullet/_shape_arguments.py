@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Pose, Sphere
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
-from pybullet._arguments import real, sequence
+from carom.formats.shipped import advice
+from pybullet._arguments import MAX_MAGNITUDE, moderate, real, sequence
 from pybullet._constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
 from pybullet._errors import fail
 from pybullet._optional_vectors import optional_rotation, optional_vector3
@@ -91,14 +92,19 @@ def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
 
 def scale_of(values: Any, problem: str) -> Vector3:
     """`meshScale`; None for 1."""
-    return optional_vector3(values, problem, "meshScale") or (1.0, 1.0, 1.0)
+    scale = optional_vector3(values, problem, "meshScale") or (1.0, 1.0, 1.0)
+    for factor in scale:
+        moderate(factor, problem, "A factor of meshScale")
+    return scale
 
 
 def find_file(client: Client, name: str, problem: str) -> Path:
     """A file named by a script; raises `pybullet.error` if there is none."""
-    path = client.search().find(name)
+    search = client.search()
+    path = search.find(name)
     if path is None:
-        fail(problem, f"There is no file {name!r}.")
+        hint = advice(Path(name), search.places)
+        fail(problem, f"There is no file {name!r}{hint}{'' if hint.endswith('?') else '.'}")
     return path
 
 
@@ -116,6 +122,8 @@ def points(values: Any, problem: str, name: str, columns: int = 3) -> NDArray[np
         fail(problem, f"{name} has to be a sequence of {columns} numbers each.")
     if not np.isfinite(rows).all():
         fail(problem, f"{name} holds a number that is not finite.")
+    if np.abs(rows).max() > MAX_MAGNITUDE:
+        fail(problem, f"{name} holds a number greater than {MAX_MAGNITUDE:g}.")
     return rows
 
 

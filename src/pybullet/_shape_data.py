@@ -204,7 +204,7 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
     """
     try:
         return clients[physicsClientId].bodies[bodyUniqueId].boxes[linkIndex].corners()
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         client = client_of(physicsClientId)
         if integer(bodyUniqueId, "bodyUniqueId") < 0:
             fail("getAABB failed; invalid bodyUniqueId", no_body(bodyUniqueId))

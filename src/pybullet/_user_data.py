@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+from carom.user_data import UserData
 from pybullet._arguments import integer, sequence, text
 from pybullet._builtin import exported, exported_as
 from pybullet._clients import client_of
@@ -80,9 +82,7 @@ def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
         >>> p.getUserData(data).decode()
         'green'
     """
-    client = client_of(physicsClientId)
-    datum = client.world.user_data.get(integer(userDataId, "userDataId"))
-    return None if datum is None else datum.value.encode()
+    return _value(client_of(physicsClientId).world.user_data, userDataId)
 
 
 @exported
@@ -113,14 +113,8 @@ def getUserDataId(
         >>> p.getUserDataId(cube, "colour") == data
         True
     """
-    client = client_of(physicsClientId)
-    datum = client.world.user_data.find(
-        integer(bodyUniqueId, "bodyUniqueId"),
-        integer(linkIndex, "linkIndex"),
-        integer(visualShapeIndex, "visualShapeIndex"),
-        _c_string(key, "key"),
-    )
-    return _NONE if datum is None else datum.id
+    data = client_of(physicsClientId).world.user_data
+    return _number(data, bodyUniqueId, key, linkIndex, visualShapeIndex)
 
 
 @exported
@@ -141,8 +135,7 @@ def getNumUserData(bodyUniqueId: int, physicsClientId: int = 0) -> int:
         >>> p.getNumUserData(cube)
         0
     """
-    client = client_of(physicsClientId)
-    return len(client.world.user_data.of_body(integer(bodyUniqueId, "bodyUniqueId")))
+    return _count(client_of(physicsClientId).world.user_data, bodyUniqueId)
 
 
 @exported
@@ -167,13 +160,7 @@ def getUserDataInfo(
         >>> p.getUserDataInfo(cube, 0)[1]
         b'colour'
     """
-    client = client_of(physicsClientId)
-    number, index = integer(bodyUniqueId, "bodyUniqueId"), integer(userDataIndex, "userDataIndex")
-    data = client.world.user_data.of_body(number)
-    if not 0 <= index < len(data):
-        fail("Could not get user data info.", f"Body {number} has {len(data)} texts, so there is no {index}.")
-    datum = data[index]
-    return datum.id, datum.key.encode(), datum.body, datum.link, datum.shape
+    return _info(client_of(physicsClientId).world.user_data, bodyUniqueId, userDataIndex)
 
 
 @exported
@@ -204,7 +191,10 @@ def removeUserData(userDataId: int, physicsClientId: int = 0) -> None:
 
 @exported_as("(bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None)")
 def syncUserData(bodyUniqueId: Any = -1, physicsClientId: int = 0, *, bodyUniqueIds: Any = None) -> None:
-    """Reads texts from the server. A world in the same process is always up to date.
+    """Reads texts anew, as far as other clients of the same world may have changed them.
+
+    A client of a server knows the texts there were when it connected, and its own changes since. A world
+    without other clients is always up to date.
 
     Args:
         bodyUniqueId: The body, or a sequence of bodies; -1 for all.
@@ -231,9 +221,52 @@ def syncUserData(bodyUniqueId: Any = -1, physicsClientId: int = 0, *, bodyUnique
             fail(problem, no_body(body_id))
 
 
+def _value(data: UserData, user_data_id: Any) -> bytes | None:
+    datum = data.get(integer(user_data_id, "userDataId"))
+    return None if datum is None else datum.value.encode()
+
+
+def _number(data: UserData, body: Any, key: Any, link: Any, shape: Any) -> int:
+    datum = data.find(
+        integer(body, "bodyUniqueId"),
+        integer(link, "linkIndex"),
+        integer(shape, "visualShapeIndex"),
+        _c_string(key, "key"),
+    )
+    return _NONE if datum is None else datum.id
+
+
+def _count(data: UserData, body: Any) -> int:
+    return len(data.of_body(integer(body, "bodyUniqueId")))
+
+
+def _info(data: UserData, body: Any, place: Any) -> tuple[int, bytes, int, int, int]:
+    number, index = integer(body, "bodyUniqueId"), integer(place, "userDataIndex")
+    texts = data.of_body(number)
+    if not 0 <= index < len(texts):
+        fail(
+            "Could not get user data info.", f"Body {number} has {len(texts)} texts, so there is no {index}."
+        )
+    datum = texts[index]
+    return datum.id, datum.key.encode(), datum.body, datum.link, datum.shape
+
+
+READERS: dict[str, Callable[..., Any]] = {
+    "getUserData": _value,
+    "getUserDataId": _number,
+    "getNumUserData": _count,
+    "getUserDataInfo": _info,
+}
+"""What answers the questions about texts, by the name of the function; its first argument are all texts."""
+
+
 def _c_string(value: Any, name: str) -> str:
     """A text that C can hold."""
     words = text(value, name)
     if "\0" in words:
-        raise ValueError(f"embedded null character in {name}")
+        fail(f"{name} must not contain a null character: {words!r}.")
+    try:
+        words.encode()
+    except UnicodeEncodeError as problem:
+        fail(f"{name} cannot be encoded: {problem}.")
     return words

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from carom.ray_cast import Points, RayHit
+
 __all__ = [
     "NO_ITEM",
     "DebugCamera",
@@ -110,9 +112,17 @@ class Window(ABC):
     held = False
     background: Vector3 | None = None
 
+    @property
+    def speed(self) -> float | None:
+        """Simulated time by real time that the user wants of the simulation; None if nothing was said."""
+        return None
+
     @abstractmethod
-    def wait_for_turn(self) -> None:
-        """Returns when the user lets the simulation make a step."""
+    def wait_for_turn(self) -> bool:
+        """Returns whether the user lets the simulation make a step, once that is known.
+
+        False means that the user has done something that the script listens to: it is to look, and come back.
+        """
 
     @abstractmethod
     def has_turn(self) -> bool:
@@ -180,6 +190,11 @@ class Window(ABC):
     ) -> None:
         """Shows what a camera image of the script shows; see `getCameraImage` for the arrays."""
 
+    def show_rays(  # noqa: B027 (most windows do not show them)
+        self, starts: Points, ends: Points, hits: Sequence[RayHit]
+    ) -> None:
+        """Shows rays that the script has cast, and what they hit."""
+
     @abstractmethod
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         """The 12 fields of `getDebugVisualizerCamera`."""
@@ -194,8 +209,8 @@ class NoWindow(Window):
     def close(self) -> None:
         """There is nothing to take off the screen."""
 
-    def wait_for_turn(self) -> None:
-        """Nobody holds it."""
+    def wait_for_turn(self) -> bool:
+        return True
 
     def has_turn(self) -> bool:
         return True
@@ -272,8 +287,8 @@ class RecordingWindow(Window):
     def close(self) -> None:
         self._open = False
 
-    def wait_for_turn(self) -> None:
-        """Nobody holds it."""
+    def wait_for_turn(self) -> bool:
+        return True
 
     def has_turn(self) -> bool:
         return True

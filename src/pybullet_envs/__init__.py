@@ -1,7 +1,8 @@
 """PyBullet's environments for learning, for Gymnasium: `gymnasium.make("AntBulletEnv-v0")`.
 
-Importing this package registers them. Observations, actions, rewards and ends of episodes are PyBullet's; the
-interface is Gymnasium's, with its five results of `step`.
+Importing this package registers them, where Gymnasium is installed. Observations, actions, rewards and ends
+of episodes are PyBullet's; the interface is Gymnasium's, with its five results of `step`. Robots and other
+parts work without Gymnasium.
 """
 
 from __future__ import annotations
@@ -9,14 +10,10 @@ from __future__ import annotations
 from functools import partial
 from typing import Any, NoReturn
 
-try:
-    import gymnasium
-except ImportError as missing:
-    raise ImportError(
-        "pybullet_envs needs Gymnasium; install it with: pip install carom[envs]", name="gymnasium"
-    ) from missing
-
 import pybullet as p
+from pybullet_envs._absent_modules import ABSENT
+from pybullet_envs._gymnasium import INSTALLED, gymnasium
+from pybullet_utils._absent import announce
 
 __all__ = ["getList"]
 
@@ -69,6 +66,7 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
 _VECTORS = {
     "CartPoleBulletEnv-v1": "cartpole:CartPoleVectorEnv",
     "CartPoleContinuousBulletEnv-v0": "cartpole:CartPoleContinuousVectorEnv",
+    "KukaBulletEnv-v0": "kuka:KukaVectorEnv",
     "InvertedPendulumBulletEnv-v0": "pendula:InvertedPendulumVectorEnv",
     "InvertedPendulumSwingupBulletEnv-v0": "pendula:InvertedPendulumSwingupVectorEnv",
     "InvertedDoublePendulumBulletEnv-v0": "pendula:InvertedDoublePendulumVectorEnv",
@@ -96,19 +94,24 @@ def _names() -> str:
     return ", ".join(name for name, *_ in _ENVIRONMENTS)
 
 
-for _name in _DEEP_MIMIC:
-    if _name not in gymnasium.registry:
-        gymnasium.register(_name, entry_point=partial(_unavailable, _name))
+def _register_all() -> None:
+    for name in _DEEP_MIMIC:
+        if name not in gymnasium.registry:
+            gymnasium.register(name, entry_point=partial(_unavailable, name))
+    for name, place, steps, solved in _ENVIRONMENTS:
+        if name not in gymnasium.registry:
+            gymnasium.register(
+                name,
+                entry_point=f"pybullet_envs.{place}",
+                vector_entry_point=f"pybullet_envs.vector.{_VECTORS[name]}" if name in _VECTORS else None,
+                max_episode_steps=steps,
+                reward_threshold=solved,
+            )
 
-for _name, _place, _steps, _solved in _ENVIRONMENTS:
-    if _name not in gymnasium.registry:
-        gymnasium.register(
-            _name,
-            entry_point=f"pybullet_envs.{_place}",
-            vector_entry_point=f"pybullet_envs.vector.{_VECTORS[_name]}" if _name in _VECTORS else None,
-            max_episode_steps=_steps,
-            reward_threshold=_solved,
-        )
+
+announce(__name__, ABSENT)
+if INSTALLED:
+    _register_all()
 
 
 def getList() -> list[str]:

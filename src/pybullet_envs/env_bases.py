@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import gymnasium
 import numpy as np
 
 import pybullet
+from pybullet_envs._gymnasium import gymnasium, require_gymnasium
 from pybullet_utils.bullet_client import BulletClient
 
 Place = tuple[float, float, float]
@@ -34,6 +34,7 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
         """
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode is {render_mode!r}, none of {self.metadata['render_modes']}")
+        require_gymnasium()
         self.render_mode = "human" if render and render_mode is None else render_mode
         self._p: Any = None
 
@@ -48,9 +49,14 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
         """What the camera looks at."""
         return (0.0, 0.0, 0.0)
 
-    def render(self) -> np.ndarray | None:  # type: ignore[override]
-        """A picture (height, width, 3) where `render_mode` is `rgb_array`; white before `reset`."""
-        if self.render_mode != "rgb_array":
+    def render(self, mode: str | None = None) -> np.ndarray | None:  # type: ignore[override]
+        """A picture (height, width, 3), white before `reset`; None where there is a window to look at.
+
+        Args:
+            mode: `human` or `rgb_array`, as older scripts say it; the environment's own `render_mode`
+                without, and `rgb_array` where it has none.
+        """
+        if (mode or self.render_mode or "rgb_array") != "rgb_array":
             return None
         width, height = self.picture_size
         if self._p is None:

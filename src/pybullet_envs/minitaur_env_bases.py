@@ -8,11 +8,11 @@ from abc import abstractmethod
 from math import hypot, inf
 from typing import Any, Generic, TypeVar
 
-import gymnasium
 import numpy as np
 
 import pybullet
 import pybullet_data
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.env_bases import BulletEnv, Place
 from pybullet_envs.minitaur_bases import MinitaurBody
 

@@ -6,11 +6,11 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-import gymnasium
 import numpy as np
 
 import pybullet
 import pybullet_data
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.robot_parts import BodyPart, Joint, Pose_Helper
 
 __all__ = ["BodyPart", "Joint", "MJCFBasedRobot", "Pose_Helper", "URDFBasedRobot", "XmlBasedRobot"]

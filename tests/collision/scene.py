@@ -241,7 +241,7 @@ class Scene:
         wp.launch(
             prepare_rays_kernel,
             dim=1,
-            inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
+            inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"], 0],
         )
         starts, ends = (np.reshape(points, (-1, 3)) for points in (starts, ends))
         count, threads = len(starts), 2

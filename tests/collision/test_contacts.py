@@ -182,13 +182,25 @@ def test_boxes_that_touched_stay_in_contact_up_to_the_breaking_distance():
 
 
 def test_parts_of_a_compound_make_contacts_only_where_their_bounds_meet():
-    scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.51))])
+    scene = Scene([box((0.5, 0.5, 0.5)), sphere(0.5, position=(0, 0, 1.01))])
+    scene.collide()
+    assert len(scene.contacts("distance")) == 1
     scene.numpy("shapes")["link_shape_count"][1] = 2
     scene.collide()
     assert len(scene.contacts("distance")) == 0
-    scene.place(1, (0, 0, 0.4999))
+    scene.place(1, (0, 0, 0.9999))
     scene.collide()
     assert len(scene.contacts("distance")) == 1
+
+
+def test_parts_of_a_compound_always_meet_the_bounds_of_a_plane():
+    scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.51))])
+    scene.numpy("shapes")["link_shape_count"][1] = 2
+    scene.collide()
+    assert len(scene.contacts("distance")) == 1
+    scene.place(1, (0, 0, 0.5201))
+    scene.collide()
+    assert len(scene.contacts("distance")) == 0
 
 
 def test_contacts_without_room_are_found_when_there_is_and_have_lost_nothing():

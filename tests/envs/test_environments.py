@@ -123,6 +123,18 @@ def test_actions_that_are_no_numbers_are_refused() -> None:
 
 
 def test_without_gymnasium_it_says_what_to_install() -> None:
-    code = "import sys; sys.modules['gymnasium'] = None\nimport pybullet_envs"
+    code = "import sys; sys.modules['gymnasium'] = None\n"
+    code += "from pybullet_envs.gym_locomotion_envs import AntBulletEnv; AntBulletEnv()"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert "pip install carom[envs]" in run.stderr
+
+
+def test_pictures_need_no_render_mode() -> None:
+    env: Any = gymnasium.make("InvertedPendulumBulletEnv-v0")
+    env.reset(seed=1)
+    picture = env.render()
+    assert picture.shape == (240, 320, 3)
+    assert len(np.unique(picture)) > 20
+    assert np.array_equal(env.unwrapped.render("rgb_array"), picture)
+    assert env.unwrapped.render("human") is None
+    env.close()

@@ -27,7 +27,11 @@ LENGTHS = {
     "AntBulletEnv-v0": 80,
     "HumanoidBulletEnv-v0": 60,
 }
-STEPS = 200
+
+
+def steps_of(length: int) -> int:
+    """How long to play: beyond the first episodes that are as long as they may be."""
+    return max(200, length + 5)
 
 
 def action_of(space: Any, world: int, step: int) -> Any:
@@ -38,12 +42,12 @@ def action_of(space: Any, world: int, step: int) -> Any:
     return (1.2 * wave * space.high).astype(np.float32)
 
 
-def alone(name: str, seed: int, world: int, mode: AutoresetMode) -> list[tuple[Any, ...]]:
+def alone(name: str, seed: int, world: int, mode: AutoresetMode, length: int) -> list[tuple[Any, ...]]:
     """What the single environment gives, begun anew as the vector environment does."""
-    env: Any = gymnasium.make(name, max_episode_steps=LENGTHS[name])
+    env: Any = gymnasium.make(name, max_episode_steps=length)
     told: list[tuple[Any, ...]] = [(env.reset(seed=seed)[0],)]
     over = False
-    for step in range(STEPS):
+    for step in range(steps_of(length)):
         if over and mode == AutoresetMode.NEXT_STEP:
             told.append((env.reset()[0], 0.0, False, False))
             over = False
@@ -65,16 +69,25 @@ def same(told: Any, expected: Any, where: Any) -> None:
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP], ids=lambda m: m.name)
 @pytest.mark.parametrize("name", LENGTHS)
 def test_each_is_the_single_environment_with_its_seed(name: str, mode: AutoresetMode):
+    assert episodes_that_agree(name, mode, LENGTHS[name]) >= 2 * COUNT
+
+
+def test_an_episode_of_a_thousand_steps_agrees_to_its_end():
+    assert episodes_that_agree("HalfCheetahBulletEnv-v0", AutoresetMode.NEXT_STEP, 1000) == COUNT
+
+
+def episodes_that_agree(name: str, mode: AutoresetMode, length: int) -> int:
+    """Compares many environments with single ones; how many episodes have ended."""
     many: Any = gymnasium.make_vec(
-        name, num_envs=COUNT, max_episode_steps=LENGTHS[name], autoreset_mode=mode, threads=2
+        name, num_envs=COUNT, max_episode_steps=length, autoreset_mode=mode, threads=2
     )
-    singles = [alone(name, SEED + world, world, mode) for world in range(COUNT)]
+    singles = [alone(name, SEED + world, world, mode, length) for world in range(COUNT)]
     observations = many.reset(seed=SEED)[0]
     assert observations.dtype == np.float32
     assert many.observation_space.shape == observations.shape
     same(observations, [told[0][0] for told in singles], "the beginning")
     begun = 0
-    for step in range(STEPS):
+    for step in range(steps_of(length)):
         actions = [action_of(many.single_action_space, world, step) for world in range(COUNT)]
         observations, rewards, terminations, truncations, infos = many.step(np.array(actions))
         expected = [told[step + 1] for told in singles]
@@ -87,11 +100,37 @@ def test_each_is_the_single_environment_with_its_seed(name: str, mode: Autoreset
         assert np.flatnonzero(infos.get("_final_obs", [])).tolist() == list(last)
         for world, observation in last.items():
             same(infos["final_obs"][world], observation, step)
-    assert begun >= 2 * COUNT
     many.close()
+    return begun
 
 
 def test_those_that_can_be_made_many_at_once_are_registered():
     assert set(LENGTHS) <= set(pybullet_envs._VECTORS)
     for name in pybullet_envs._VECTORS:
         assert gymnasium.spec(name).vector_entry_point
+
+
+@pytest.mark.parametrize("options", [{}, {"isDiscrete": True, "actionRepeat": 3}], ids=["numbers", "choices"])
+def test_each_kuka_is_the_single_one_with_its_seed(options: dict[str, Any]):
+    """Their episodes end in a thousand steps of grasping and lifting."""
+    many: Any = gymnasium.make_vec("KukaBulletEnv-v0", num_envs=2, **options)
+    singles: list[Any] = [gymnasium.make("KukaBulletEnv-v0", **options) for _ in range(2)]
+    expected: list[Any] = [(single.reset(seed=SEED + k)[0],) for k, single in enumerate(singles)]
+    same(many.reset(seed=SEED)[0], [told[0] for told in expected], "the beginning")
+    begun = 0
+    for step in range(999):
+        actions = [action_of(many.single_action_space, world, step) for world in range(2)]
+        observations, rewards, terminations, _, _ = many.step(np.array(actions))
+        for world, single in enumerate(singles):
+            if len(expected[world]) > 1 and expected[world][2]:
+                expected[world] = (single.reset()[0], 0.0, False)
+                begun += 1
+            else:
+                expected[world] = single.step(actions[world])
+        same(observations, [told[0] for told in expected], step)
+        same(rewards, [told[1] for told in expected], step)
+        assert terminations.tolist() == [told[2] for told in expected], step
+        if begun == 2:
+            break
+    assert begun == 2
+    many.close()

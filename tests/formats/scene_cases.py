@@ -44,6 +44,7 @@ CASES = [
     SceneCase("loadMJCF", "mjcf/scene.xml"),
     SceneCase("loadMJCF", "mjcf/scene.xml", {"flags": 2}),
     SceneCase("loadMJCF", "mjcf/no_compiler.xml"),
+    SceneCase("loadMJCF", "mjcf/turned.xml"),
 ]
 
 

@@ -230,3 +230,44 @@ def test_what_is_no_mjcf_is_refused(tmp_path: Path) -> None:
         read_mjcf(file)
     with pytest.raises(DescriptionError, match=r"no such file: nowhere\.xml"):
         read_mjcf(Path("nowhere.xml"))
+
+
+def _joint_of(folder: Path, attributes: str, *, as_mujoco: bool) -> tuple[float, float]:
+    file = folder / "file.xml"
+    file.write_text(
+        f"""<mujoco><default><joint limited="true" range="-1 2"/>
+          <default class="free"><joint limited="false"/></default>
+          <default class="arm"><joint limited="true" range="-3 4"/></default></default>
+        <worldbody><body><joint axis="0 0 1" {attributes}/></body></worldbody></mujoco>""",
+        encoding="utf-8",
+    )
+    joint = only(read_mjcf(file, as_mujoco=as_mujoco)).robot.joints[0]
+    return joint.limit.lower, joint.limit.upper
+
+
+@pytest.mark.parametrize(
+    ("attributes", "pybullet", "mujoco"),
+    [
+        ("", (-1, 2), (-1, 2)),
+        ('class="free"', (-1, 2), (1, 0)),
+        ('class="arm"', (-1, 2), (-3, 4)),
+        ('class="arm" range="-5 6"', (-5, 6), (-5, 6)),
+        ('class="arm" limited="false"', (1, 0), (1, 0)),
+        # Where PyBullet ends the process.
+        ('class="arm" limited="true"', (-3, 4), (-3, 4)),
+    ],
+)
+def test_named_classes_limit_no_joint_in_pybullet(
+    tmp_path: Path, attributes: str, pybullet: tuple[float, float], mujoco: tuple[float, float]
+) -> None:
+    assert _joint_of(tmp_path, attributes, as_mujoco=False) == pybullet
+    assert _joint_of(tmp_path, attributes, as_mujoco=True) == mujoco
+
+
+def test_axisangle_turns_bodies_in_mujoco_alone(tmp_path: Path) -> None:
+    file = tmp_path / "file.xml"
+    body = '<body axisangle="0 0 1 90" quat="2 2 0 0"/>'
+    file.write_text(f"<mujoco><compiler/><worldbody>{body}</worldbody></mujoco>", encoding="utf-8")
+    turned, left = (only(read_mjcf(file, as_mujoco=so)).pose.orientation for so in (True, False))
+    assert_allclose(turned, (0, 0, HALF, HALF), rtol=0, atol=1e-6)
+    assert_allclose(left, (HALF, 0, 0, HALF), rtol=0, atol=1e-6)

@@ -102,6 +102,29 @@ def test_collisions_carry_name_pose_filter_and_concavity(read: Read, tmp_path: P
     assert collision.geometry.concave
 
 
+@pytest.mark.parametrize(
+    ("text", "bits"),
+    [
+        ("non_gripper", 0),
+        ("", 0),
+        ("nan", 0),
+        ("0x2", 2),
+        ("2abc", 2),
+        ("2.9", 2),
+        ("1e1", 10),
+        (" +3 ", 3),
+        ("4294967295", -1),
+        ("99999999999", -(1 << 31)),
+        ("-1e999", -(1 << 31)),
+    ],
+)
+def test_filters_are_read_as_pybullet_reads_numbers(read: Read, text: str, bits: int) -> None:
+    shape = '<geometry><sphere radius="1"/></geometry>'
+    robot = read(link(inside=f'<collision group="{text}" mask="{text}">{shape}</collision>'))
+    (collision,) = robot.links[0].collisions
+    assert (collision.group, collision.mask) == (bits, bits)
+
+
 def test_materials_are_global_inline_or_defined_later(read: Read, tmp_path: Path) -> None:
     (tmp_path / "t.png").write_text("")
 

@@ -16,7 +16,7 @@ from tests.pybullet.conftest import keys
 from tests.servers import Process, Servers
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients import Client, clients
 from pybullet_utils.bullet_client import BulletClient
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -135,7 +135,11 @@ def test_functions_ask_only_while_there_is_somebody_to_ask(servers: Servers, key
         lambda: p.getCameraImage(0, 0),
     ],
 )
-def test_errors_are_those_of_a_world_in_the_same_process(servers: Servers, key: int, call: Any) -> None:
+def test_errors_are_those_of_a_world_in_the_same_process(
+    servers: Servers, key: int, call: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # What was searched by tests before this one is not searched by the server.
+    monkeypatch.setattr(Client, "latest_search_path", None)
     problems = []
     servers.open(key)
     for connect in (lambda: p.connect(p.SHARED_MEMORY, key), lambda: p.connect(p.DIRECT)):

@@ -110,7 +110,7 @@ def test_refusals(bodies) -> None:
         p.getUserDataInfo(body, 0)
     with pytest.raises(p.error, match=r"^Error in removeUserData command\."):
         p.removeUserData(5)
-    with pytest.raises(ValueError, match="null"):
+    with pytest.raises(p.error, match="null character"):
         p.addUserData(body, "a\0b", "c")
     with pytest.raises(TypeError):
         p.addUserData(body, b"k", "v")  # type: ignore[arg-type]

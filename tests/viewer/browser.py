@@ -34,12 +34,12 @@ _ARGUMENTS = [
 
 
 @contextmanager
-def chromium() -> Iterator:
-    """The browser; it is closed at the end."""
+def chromium(*arguments: str) -> Iterator:
+    """The browser, with more arguments of its command line; it is closed at the end."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=_ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=[*_ARGUMENTS, *arguments])
         yield browser
         browser.close()
 
@@ -65,14 +65,18 @@ class Page:
         if message.type in ("error", "warning") and "GPU stall" not in message.text:
             self.complaints.append(message.text)
 
+    def until(self, expression: str) -> None:
+        """Waits until an expression is true in the page."""
+        wait_for(lambda: self.page.evaluate(expression), self)
+
     def picture(self) -> NDArray[np.int16]:
         """What the page shows of the scene alone: (height, width, 3) red, green and blue."""
         self.page.evaluate(
-            "for (const id of ['panel', 'labels']) document.getElementById(id).style.opacity = 0"
+            "for (const id of ['panel', 'labels', 'timeline']) document.getElementById(id).style.opacity = 0"
         )
         image = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
         self.page.evaluate(
-            "for (const id of ['panel', 'labels']) document.getElementById(id).style.opacity = 1"
+            "for (const id of ['panel', 'labels', 'timeline']) document.getElementById(id).style.opacity = 1"
         )
         return np.array(image).astype(np.int16)
 

@@ -87,4 +87,4 @@ def test_a_notebook_shows_the_page_below_a_cell(viewer: Viewer, tmp_path: Path) 
 def test_notebooks_are_told_by_html(viewer: Viewer) -> None:
     html = viewer._repr_html_()
     assert html.startswith("<iframe")
-    assert f'src="{viewer.address}"' in html
+    assert f'src="{viewer.address}?token=' in html

@@ -115,7 +115,7 @@ def key_events(page: Page) -> dict[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("key", "code"), [("Escape", 27), ("q", ord("q")), ("ArrowUp", p.B3G_UP_ARROW), ("Shift", p.B3G_SHIFT)]
+    ("key", "code"), [("Tab", 9), ("q", ord("q")), ("ArrowUp", p.B3G_UP_ARROW), ("Shift", p.B3G_SHIFT)]
 )
 def test_keys_are_down_triggered_and_released(page: Page, key: str, code: int):
     page.page.focus("#view")

@@ -1,6 +1,7 @@
 """What pages are told over their socket, and what they can do."""
 
 import http.client
+import socket
 import threading
 from pathlib import Path
 
@@ -265,15 +266,15 @@ def test_keys_and_mouse_reach_the_script(viewer: Viewer):
             page.tell("slider", slider=slider, value=1 - value)
             page.wait_for(lambda: page.shown.get(("slider", slider), {}).get("value") == 1 - value)
 
-        page.tell("key", key="Escape", code="Escape", down=True)
+        page.tell("key", key="Enter", code="Enter", down=True)
         page.tell("mouse", x=10, y=20, button=0, down=True)
         settle()
-        assert p.getKeyboardEvents() == {27: p.KEY_IS_DOWN | p.KEY_WAS_TRIGGERED}
+        assert p.getKeyboardEvents() == {p.B3G_RETURN: p.KEY_IS_DOWN | p.KEY_WAS_TRIGGERED}
         assert p.getMouseEvents() == ((2, 10, 20, 0, p.KEY_IS_DOWN | p.KEY_WAS_TRIGGERED),)
-        assert p.getKeyboardEvents() == {27: p.KEY_IS_DOWN}
-        page.tell("key", key="Escape", code="Escape", down=False)
+        assert p.getKeyboardEvents() == {p.B3G_RETURN: p.KEY_IS_DOWN}
+        page.tell("key", key="Enter", code="Enter", down=False)
         settle()
-        assert p.getKeyboardEvents() == {27: p.KEY_WAS_RELEASED}
+        assert p.getKeyboardEvents() == {p.B3G_RETURN: p.KEY_WAS_RELEASED}
 
 
 def test_pausing_holds_steps_until_they_are_let_through(viewer: Viewer):
@@ -315,3 +316,11 @@ def test_an_address_that_cannot_be_had():
     with pytest.raises(p.error, match=r"^Cannot open the window:"):
         p.connect(p.GUI, options="--host=203.0.113.7")
     assert not p.isConnected()
+
+
+def test_a_request_with_two_names_is_turned_away(viewer: Viewer):
+    host, port = viewer.address.removeprefix("http://").rstrip("/").rsplit(":", 1)
+    with socket.create_connection((host, int(port)), PATIENCE) as peer:
+        name = f"Host: {host}:{port}\r\n"
+        peer.sendall(f"GET / HTTP/1.1\r\n{name}{name}\r\n".encode())
+        assert peer.recv(100).startswith(b"HTTP/1.1 421")

@@ -40,6 +40,38 @@ def test_ctrl_c_ends_a_script_that_is_watched(paused: bool):
 
 
 @needs_browser
+@pytest.mark.parametrize(
+    ("example", "slider", "value"),
+    [
+        ("motor_arguments", "targetPosition [rad]", "-0.5"),
+        ("pid_terms", "target [rad]", "-0.7"),
+        ("joint_angle", "target [degrees]", "30"),
+        ("balance_torque", "torque of the arm [N m]", "5"),
+        ("inverse_kinematics", "radius [m]", "0.15"),
+        ("rays_and_contacts", "push [N]", "20"),
+        ("constraints", None, None),
+    ],
+)
+def test_tutorials_run_in_the_window_and_end_with_escape(example: str, slider: str | None, value: str | None):
+    script, address = started(ROOT / "examples" / f"{example}.py")
+    try:
+        with chromium() as browser:
+            page = Page(browser, address, 900, 600)
+            page.until("window.app?.history.count > 5")
+            if slider is not None:
+                page.page.get_by_label(slider, exact=True).fill(value)
+                page.page.wait_for_timeout(500)
+                assert page.page.get_by_title(f"Value of {slider}").input_value().startswith(value)
+            page.page.focus("#view")
+            page.page.keyboard.press("Escape")
+            assert script.wait(PATIENCE) == 0
+            assert page.complaints == [] or all("WebSocket" in line for line in page.complaints)
+    finally:
+        script.kill()
+        script.wait()
+
+
+@needs_browser
 def test_the_pid_tutorial_is_tuned_by_its_sliders_and_ends_with_escape():
     script, address = started(ROOT / "examples" / "pid_sliders.py")
     try:

@@ -12,6 +12,7 @@ from tests.patience import PATIENCE
 from websockets.sync.client import connect
 
 from carom.viewer.messages import decoded
+from carom.viewer.readings import CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS
 
 
 class Watcher:
@@ -22,6 +23,7 @@ class Watcher:
         payloads: The numbers that came with them.
         frame: Header of the newest frame.
         poses: (links, 7) poses of the newest frame.
+        blocks: What else it tells, by name; see `carom.viewer.readings`.
     """
 
     def __init__(self, address: str, **options: Any) -> None:
@@ -30,6 +32,7 @@ class Watcher:
         self.payloads: dict[tuple[str, Any], bytes] = {}
         self.frame: dict[str, Any] = {}
         self.poses = np.zeros((0, 7))
+        self.blocks: dict[str, np.ndarray] = {}
 
     def __enter__(self) -> Watcher:
         return self
@@ -66,7 +69,14 @@ class Watcher:
         kind = header["type"]
         if kind == "frame":
             self.frame = header
-            self.poses = np.frombuffer(payload, dtype="<f4").reshape(-1, 7)
+            numbers = np.frombuffer(payload, dtype="<f4")
+            at = 7 * header["poses"]
+            self.poses = numbers[:at].reshape(-1, 7)
+            self.blocks = {}
+            for name, count in header.get("blocks", []):
+                end = at + count * _COLUMNS[name]
+                self.blocks[name] = numbers[at:end].reshape(count, -1)
+                at = end
         elif kind.startswith("no "):
             del self.shown[kind[3:], header[kind[3:]]]
         else:
@@ -78,10 +88,13 @@ class Watcher:
             self.payloads[name, number] = payload
 
 
+_COLUMNS = {"contacts": CONTACT_COLUMNS, "joints": JOINT_COLUMNS, "links": LINK_COLUMNS}
 _NUMBERS: dict[str, Callable[[str], bool]] = {
     "item": lambda kind: kind in ("line", "text", "points"),
     "slider": lambda kind: kind == "slider",
     "mesh": lambda kind: kind == "mesh",
     "texture": lambda kind: kind == "texture",
     "body": lambda kind: kind == "body",
+    "dynamics": lambda kind: kind == "dynamics",
+    "mark": lambda kind: kind == "mark",
 }

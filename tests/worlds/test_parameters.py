@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -191,7 +192,7 @@ def test_an_arm_with_limits_goes_on_alone() -> None:
     ],
 )
 def test_what_makes_no_sense_is_refused(
-    link: int | str, changes: dict[str, object], error: type[Exception], words: str
+    link: int | str, changes: dict[str, Any], error: type[Exception], words: str
 ) -> None:
     scene, box = box_world()
     worlds = Worlds(scene, COUNT)

@@ -30,7 +30,8 @@ def local_extents(shapes: Shapes, shape: Int32) -> Vector3:
     if kind == BOX:
         return size
     if kind == CAPSULE:
-        return Vector3(size[0], size[0], size[0] + size[1])
+        across = size[0] + size[2]
+        return Vector3(across, across, across + size[1])
     if kind == CYLINDER:
         return Vector3(size[0], size[0], size[1])
     # Bullet adds the margin of polyhedra once to the vertices and once to their box.

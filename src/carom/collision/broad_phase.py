@@ -168,6 +168,12 @@ def find_pairs(
     for shape in range(settings.shape_count):
         pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
     place_shapes(shapes, state, settings, pairs, world)
+    find_pairs_of_placed(shapes, model, settings, pairs, world)
+
+
+@func
+def find_pairs_of_placed(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
+    """As `find_pairs`, once all shapes have been placed."""
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, READINESS] = STALE
     pairs.count_pairs[world, PAIRS] = 0

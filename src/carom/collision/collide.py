@@ -7,7 +7,7 @@ from carom.collision.gathering import AT_ONCE, find_new_point, gather
 from carom.collision.hierarchy import PAIRS
 from carom.collision.manifold import THERE, keep_previous, skip_contacts, write_new_contact
 from carom.collision.narrow_phase import touch
-from carom.collision.reach import breaking_distance, contact_reach
+from carom.collision.reach import breaking_distance, contact_reach, region_reach
 from carom.collision.sides import in_order_of_sides
 from carom.model.codes import ASLEEP
 from carom.model.contact_structs import Contacts, Pairs, Shapes
@@ -83,7 +83,6 @@ def make_contacts(
 
     The first of the previous contacts is at `kept`.
     """
-    room = contacts.contact_shapes.shape[1]
     end = kept + contacts.count_contacts[world, THERE]
     wanted = Int32(0)
     first = kept + 0
@@ -95,20 +94,71 @@ def make_contacts(
             wanted += last - first
             first = last
             continue
-        reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
-        sides = in_order_of_sides(shapes, pair)
-        far = breaking_distance(shapes, pair[0], pair[1])
-        found = find_new_point(shapes, pairs, world, sides, reach, first, last)
-        if found != AT_ONCE:
-            wanted = gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
-        else:
-            for candidate in range(touch(shapes, pairs, world, sides[0], sides[1], reach)):
-                if wanted < room:
-                    write_new_contact(
-                        shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
-                    )
-                wanted += 1
+        found, count = find_candidates(shapes, pairs, world, pair, first, last)
+        wanted = add_manifold(shapes, state, contacts, pairs, world, pair, found, count, first, last, wanted)
         first = last
+    return wanted
+
+
+@func
+def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, first: Int32, last: Int32):
+    """Write the candidates of a pair, whose contacts of the last substep are [first, last).
+
+    Returns:
+        What `find_new_point` returned; the number of candidates if that is `AT_ONCE`, else 0.
+    """
+    reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+    sides = in_order_of_sides(shapes, pair)
+    found = find_new_point(shapes, pairs, world, sides, reach, first, last)
+    count = Int32(0)
+    if found == AT_ONCE:
+        around = region_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+        count = touch(shapes, pairs, world, sides[0], sides[1], reach, around)
+    return found, count
+
+
+@func
+def add_manifold(
+    shapes: Shapes,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+    pair: Index4,
+    found: Int32,
+    count: Int32,
+    first: Int32,
+    last: Int32,
+    wanted: Int32,
+) -> Int32:
+    """Write the contacts that come of the candidates of a pair; those beyond the capacity are counted only.
+
+    Args:
+        shapes: All shapes.
+        state: Poses of the links.
+        contacts: Where they go.
+        pairs: Candidates and previous contacts.
+        world: The world.
+        pair: The pair.
+        found: What `find_candidates` returned.
+        count: As well.
+        first: First previous contact of the pair.
+        last: End of these.
+        wanted: Number of contacts of the pairs before.
+
+    Returns:
+        Number of contacts, these included.
+    """
+    sides = in_order_of_sides(shapes, pair)
+    far = breaking_distance(shapes, pair[0], pair[1])
+    if found != AT_ONCE:
+        return gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
+    for candidate in range(count):
+        if wanted < contacts.contact_shapes.shape[1]:
+            write_new_contact(
+                shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
+            )
+        wanted += 1
     return wanted
 
 
@@ -127,7 +177,12 @@ def find_contacts(shapes: Shapes, model: Model, state: State, contacts: Contacts
         report_overflow(state, world, pairs.count_pairs[world, PAIRS], 0)
         return
     kept = keep_previous(contacts, pairs, world)
-    wanted = make_contacts(shapes, model, state, contacts, pairs, world, kept)
+    accept_contacts(state, contacts, world, make_contacts(shapes, model, state, contacts, pairs, world, kept))
+
+
+@func
+def accept_contacts(state: State, contacts: Contacts, world: Int32, wanted: Int32):
+    """Let the contacts that have been written be there, if all of them did fit."""
     if wanted > contacts.contact_shapes.shape[1]:
         report_overflow(state, world, 0, wanted)
         return

@@ -102,13 +102,19 @@ def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: In
     row = first
     skipping = row < end
     while skipping:
-        shapes = pairs.previous_shapes[world, row]
-        lower = wp.min(shapes[0], shapes[1])
-        skipping = lower < pair[0] or (lower == pair[0] and wp.max(shapes[0], shapes[1]) < pair[1] + equal)
+        skipping = comes_before(pairs, world, row, pair, equal)
         if skipping:
             row += 1
             skipping = row < end
     return row
+
+
+@func
+def comes_before(pairs: Pairs, world: Int32, row: Int32, pair: Index4, equal: Int32) -> bool:
+    """Whether a previous contact is one of those that `skip_contacts` skips."""
+    shapes = pairs.previous_shapes[world, row]
+    lower = wp.min(shapes[0], shapes[1])
+    return lower < pair[0] or (lower == pair[0] and wp.max(shapes[0], shapes[1]) < pair[1] + equal)
 
 
 @func

@@ -81,7 +81,9 @@ def touch_simple(
 
 
 @func
-def touch_in_order(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> Int32:
+def touch_in_order(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real, around: real
+) -> Int32:
     """Candidates of two shapes in the order of `in_order`."""
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
@@ -90,7 +92,7 @@ def touch_in_order(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int3
         return 0
     core_a = core_of(shapes, pairs, world, a)
     if kind_b >= TRIANGLES:
-        return touch_surface(shapes, pairs, world, a, b, core_a, reach)
+        return touch_surface(shapes, pairs, world, a, b, core_a, reach, around)
     count = touch_simple(shapes, pairs, world, a, b, core_a, reach)
     if count >= 0:
         return count
@@ -117,7 +119,7 @@ def in_order(shapes: Shapes, a: Int32, b: Int32) -> Index4:
 
 
 @func
-def touch(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> Int32:
+def touch(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real, around: real) -> Int32:
     """Write at most four candidates for two shapes that are at most `reach` apart; returns their number.
 
     Args:
@@ -127,9 +129,10 @@ def touch(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach:
         a: Row of one shape.
         b: Row of the other; normals point from it towards a.
         reach: Largest distance of a contact [m].
+        around: Triangles of meshes and height fields within this distance of the other's bounds count [m].
     """
     order = in_order(shapes, a, b)
-    count = touch_in_order(shapes, pairs, world, order[0], order[1], reach)
+    count = touch_in_order(shapes, pairs, world, order[0], order[1], reach, around)
     if count > 4:
         count = keep_four(pairs.candidate_terms, world, count)
     if order[0] != a:

@@ -224,6 +224,7 @@ def cast_packet(
     fractions = limit
     remaining = hit_number
     while remaining >= 0:
+        found = Int32(0)
         for ray in range(packet.first, packet.end):
             rays.ray_last_shape[ray] = rays.ray_shape[ray]
             rays.ray_last_fraction[ray] = rays.ray_fraction[ray]
@@ -234,7 +235,10 @@ def cast_packet(
             rays.ray_fraction[ray] = lane_of(fractions, lane)
             if rays.ray_shape[ray] < 0:
                 looking = with_lane(looking, lane, NOWHERE)
-        remaining -= 1
+            else:
+                found = Int32(1)
+        # Behind the last hit there are no others, however many are asked for.
+        remaining = wp.where(found == 1, remaining - 1, Int32(-1))
 
 
 @func

@@ -7,7 +7,7 @@ two shapes, and most pairs make one as early as that, so that it can slow them i
 import warp as wp
 
 from carom.collision.extremes import greater, lesser
-from carom.model.codes import BOX, SPHERE
+from carom.model.codes import BOX, PLANE, SPHERE
 from carom.model.contact_structs import Pairs, Shapes
 from carom.model.real import Int32, func, real
 
@@ -37,12 +37,27 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 def bounds_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
     """Gap between the bounds of two shapes up to which they can be in contact [m].
 
-    Bullet widens the bounds of bodies, but not those of the parts of compounds.
+    Bullet widens the bounds of bodies, but not those of the parts of compounds. Those of planes are infinite,
+    so that everything meets them.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
-    if is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b):
+    on_plane = shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
+    if not on_plane and (is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b)):
         return ahead
     return greater(ahead, breaking_distance(shapes, a, b))
+
+
+@func
+def region_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
+    """Distance from the bounds of a shape up to which triangles of a mesh or height field count [m].
+
+    Bullet looks at those that meet the bounds, and keeps what contacts there are until their sides have
+    parted.
+    """
+    ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
+    if in_contact:
+        return greater(ahead, breaking_distance(shapes, a, b))
+    return ahead
 
 
 @func

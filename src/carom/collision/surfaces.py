@@ -47,14 +47,17 @@ def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
 def region_around(
     shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, surface: Int32, reach: real
 ) -> Region:
-    """The region of a surface that is within reach of a shape."""
+    """The region of a surface that is within reach of the bounds of a shape."""
     to_surface = wp.transpose(pairs.shape_frame[world, surface])
     turn = to_surface * pairs.shape_frame[world, shape]
     center = turn * local_center(shapes, shape) + to_surface * (
         pairs.shape_position[world, shape] - pairs.shape_position[world, surface]
     )
     more = reach + shapes.shape_margin[surface]
-    extents = magnitudes(turn) * local_extents(shapes, shape) + Vector3(more, more, more)
+    extents = local_extents(shapes, shape)
+    if shapes.shape_kind[shape] != SPHERE:
+        extents = magnitudes(turn) * extents
+    extents += Vector3(more, more, more)
     return region_of(shapes, surface, center - extents, center + extents)
 
 
@@ -112,10 +115,21 @@ def triangle_normal(core: Core) -> Vector3:
 
 @func
 def touch_surface(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real, around: real
 ) -> Int32:
-    """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number."""
-    region = region_around(shapes, pairs, world, a, b, reach)
+    """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
+
+    Args:
+        shapes: All shapes.
+        pairs: Room for candidates, and the poses of the shapes.
+        world: The world.
+        a: Row of the convex shape.
+        b: Row of the surface.
+        core: Core of a.
+        reach: Largest distance of a contact [m].
+        around: Triangles within this distance of the bounds of a are looked at [m].
+    """
+    region = region_around(shapes, pairs, world, a, b, around)
     radius = surface_radius(shapes, core, b)
     thickness = 2.0 * radius + SAME_PLANE
     count = Int32(0)

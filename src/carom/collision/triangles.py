@@ -8,6 +8,7 @@ import warp as wp
 
 from carom.collision.bounds import boxes_meet
 from carom.collision.cores import Core
+from carom.collision.extremes import greater, lesser
 from carom.collision.hierarchy import next_node
 from carom.model.codes import TRIANGLES
 from carom.model.contact_structs import Pairs, Shapes
@@ -63,44 +64,6 @@ def region_box(shapes: Shapes, region: Region, surface: Int32, node: Int32) -> b
 
 
 @func
-def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) -> Int32:
-    """The first cursor at or after `start` whose triangle may be in the region; -1 after the last.
-
-    The first of all starts is what `first_cursor` says.
-    """
-    if shapes.shape_kind[surface] != TRIANGLES:
-        if start < 2 * region.columns * region.rows:
-            return start
-        return -1
-    leaf_count = shapes.shape_leaf_count[surface]
-    node = start
-    while node > 0:
-        if region_box(shapes, region, surface, node):
-            if node >= leaf_count:
-                return node
-            node = 2 * node
-        else:
-            node = next_node(node)
-    return -1
-
-
-@func
-def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
-    """Where a walk over the triangles of a surface starts."""
-    if shapes.shape_kind[surface] == TRIANGLES:
-        return 1
-    return 0
-
-
-@func
-def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
-    """Where a walk goes on after a triangle."""
-    if shapes.shape_kind[surface] == TRIANGLES:
-        return next_node(cursor)
-    return cursor + 1
-
-
-@func
 def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int32) -> Matrix3:
     """The corners of a triangle as columns, in the frame of the surface, counter-clockwise from outside."""
     a = Int32(0)
@@ -131,6 +94,59 @@ def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int
     q = shapes.vertex_position[b]
     r = shapes.vertex_position[c]
     return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+
+
+@func
+def corners_meet(region: Region, corners: Matrix3) -> bool:
+    """Whether the bounds of a triangle, its corners as columns, meet a region."""
+    meet = True
+    for axis in range(3):
+        low = lesser(lesser(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
+        high = greater(greater(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
+        if low > region.upper[axis] or high < region.lower[axis]:
+            meet = False
+    return meet
+
+
+@func
+def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) -> Int32:
+    """The first cursor at or after `start` whose triangle's bounds meet the region; -1 after the last.
+
+    The first of all starts is what `first_cursor` says.
+    """
+    if shapes.shape_kind[surface] != TRIANGLES:
+        cursor = start + 0
+        while cursor < 2 * region.columns * region.rows:
+            if corners_meet(region, triangle_corners(shapes, region, surface, cursor)):
+                return cursor
+            cursor += 1
+        return -1
+    leaf_count = shapes.shape_leaf_count[surface]
+    node = start
+    while node > 0:
+        if region_box(shapes, region, surface, node):
+            if node >= leaf_count:
+                return node
+            node = 2 * node
+        else:
+            node = next_node(node)
+    return -1
+
+
+@func
+def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
+    """Where a walk over the triangles of a surface starts."""
+    if shapes.shape_kind[surface] == TRIANGLES:
+        return 1
+    return 0
+
+
+@func
+def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
+    """Where a walk goes on after a triangle."""
+    if shapes.shape_kind[surface] == TRIANGLES:
+        return next_node(cursor)
+    return cursor + 1
 
 
 @func

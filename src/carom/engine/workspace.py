@@ -18,19 +18,22 @@ from carom.physics.couplings import ROWS_PER_PAIR
 class Workspace:
     """Room for the intermediate results of one world's step, whichever world it is: one for each thread.
 
-    Nothing in it lasts from one step to the next.
+    Nothing in it lasts from one step to the next. Where worlds are stepped side by side, each has its own.
 
     Attributes:
         scratch: Of single trees.
         pairs: Of collision detection.
         couplings: Of the solver.
         structs: Structs over these and all other arrays, by the name kernels give them.
+
+    Args:
+        world_count: Number of worlds that have rows of their own; 1 if one at a time is stepped.
     """
 
-    def __init__(self) -> None:
-        self.scratch: ArrayTable = ArrayTable(Scratch, entry_views=ENTRY_VIEWS)
-        self.pairs: ArrayTable = ArrayTable(Pairs)
-        self.couplings: ArrayTable = ArrayTable(Couplings, entry_views=COUPLING_ENTRY_VIEWS)
+    def __init__(self, world_count: int = 1) -> None:
+        self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
+        self.pairs: ArrayTable = ArrayTable(Pairs, world_count)
+        self.couplings: ArrayTable = ArrayTable(Couplings, world_count, COUPLING_ENTRY_VIEWS)
         self.structs: KernelStructs = KernelStructs()
 
     def fit(self, arrays: WorldArrays, touch: TouchArrays) -> None:

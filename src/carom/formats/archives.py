@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import lzma
+import struct
 import zipfile
+import zlib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,6 +14,12 @@ from carom.errors import DescriptionError
 MOST_BYTES = 2 << 30
 MOST_MEMBERS = 100_000
 """Larger archives, unpacked, are refused: they are made to fill discs."""
+
+# What reading a damaged archive raises. RuntimeError: encrypted, or compressed by a method that zipfile does
+# not know; the last three come from the methods themselves.
+_DAMAGES = (
+    OSError, ValueError, RuntimeError, zipfile.BadZipFile, struct.error, EOFError, zlib.error, lzma.LZMAError
+)  # fmt: skip
 
 
 class Archive:
@@ -41,8 +50,7 @@ class Archive:
                     )
                 # Names that point out of the folder are turned into ones within.
                 archive.extractall(self.folder)
-        except (OSError, ValueError, RuntimeError, zipfile.BadZipFile) as problem:
-            # RuntimeError: encrypted, or compressed by a method that zipfile does not know.
+        except _DAMAGES as problem:
             self.close()
             raise DescriptionError(f"it cannot be unpacked: {problem}", file=path) from problem
         except DescriptionError:

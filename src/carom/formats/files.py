@@ -72,6 +72,9 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
     """
     try:
         stamp = FileStamp.of(file)
+        if not file.is_file():
+            # A pipe would wait for somebody to write, and a device may have no end.
+            raise DescriptionError("it is no regular file", file=file)
         if stamp.size > most_bytes:
             raise DescriptionError(f"{stamp.size} bytes are more than the {most_bytes} accepted", file=file)
         with open(file, "rb") as stream:
@@ -79,6 +82,8 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
             data = stream.read(most_bytes + 1)
     except OSError as error:
         raise DescriptionError(f"cannot be read: {error.strerror}", file=file) from error
+    except ValueError as error:
+        raise DescriptionError(f"cannot be read: {error}", file=file) from error
     if len(data) > most_bytes:
         raise DescriptionError(f"it holds more than the {most_bytes} bytes accepted", file=file)
     return data, stamp

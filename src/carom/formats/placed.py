@@ -15,7 +15,7 @@ class PlacedRobot:
     Attributes:
         robot: The robot.
         pose: World pose of the link frame of its root.
-        fixed_base: The file nails it to the world.
+        fixed_base: The file fixes it to the world.
     """
 
     robot: Robot

@@ -23,6 +23,11 @@ class AssetSearch:
     additional: Path | None = None
     folders: tuple[Path, ...] = ()
 
+    @property
+    def places(self) -> tuple[Path | None, ...]:
+        """The directories that are searched besides the working directory."""
+        return (self.additional, *self.folders)
+
     def find(self, name: str | os.PathLike[str]) -> Path | None:
         """The file a script asks for: as named, in nearby data folders, in the additional directories.
 
@@ -33,7 +38,7 @@ class AssetSearch:
             The path of an existing file as it was found, or None.
         """
         names = [os.fspath(name)]
-        for folder in (self.additional, *self.folders):
+        for folder in self.places:
             if folder is not None:
                 names.append(os.path.join(folder, os.fspath(name).lstrip("/\\")))
         for candidate in names:

@@ -24,6 +24,9 @@ ROUNDING = 1e-9
 EXACT = 1e-7
 """Relative error that single precision leaves in the points of mesh files."""
 
+SMALLEST, LARGEST = 1e-100, 1e100
+"""Sizes below which points are one and above which they are refused, as products have to be numbers [m]."""
+
 FLAT = 1e-6
 """Relative thickness below which points are thought to lie in a plane, on a line or in one point."""
 
@@ -47,7 +50,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
         The hull; coplanar triangles are joined to polygons.
 
     Raises:
-        ValueError: There are no points, or one is not finite.
+        ValueError: There are no points, one is not finite, or they are too far apart.
     """
     middle, centred, loops = _hull_loops(points, tolerance, most_vertices)
     return polyhedron_of_loops(centred, loops).moved(middle)
@@ -84,6 +87,10 @@ def _hull_loops(
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     centred = points - middle
     size = float(np.abs(centred).max())
+    if not size < LARGEST:
+        raise ValueError(f"points {size:g} m apart are too far apart for a hull")
+    if size < SMALLEST:
+        centred, size = np.zeros_like(centred), 0.0
     corners = _first_corners(centred, FLAT * size)
     if len(corners) < 4:
         centred = _thickened(centred, corners, size)

@@ -32,7 +32,7 @@ def assemble(
     Args:
         robot: What to build.
         flags: Loading options.
-        fixed_base: The base is nailed to the world: its mass becomes zero.
+        fixed_base: The base does not move: its mass becomes zero.
         compound_margin: `LinkSpec.compound_margin` of every link [m].
 
     Returns:

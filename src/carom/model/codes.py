@@ -52,7 +52,7 @@ class ShapeKind(IntEnum):
 
     SPHERE = 0  # radius
     BOX = 1  # half extents
-    CAPSULE = 2  # radius, half length along z
+    CAPSULE = 2  # radius, half length along z, what its bounds are larger by
     CYLINDER = 3  # radius, half length along z
     PLANE = 4  # unit normal
     HULL = 5  # half extents of its bounds

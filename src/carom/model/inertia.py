@@ -33,6 +33,7 @@ from carom.description.transform import (
     transposed,
 )
 from carom.model.bounds import MARGIN, Bounds, placed_bounds, shape_bounds
+from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends, is_swept
 
 _log = logging.getLogger(__name__)
 
@@ -97,22 +98,29 @@ def link_bounds(
         DescriptionError: The file of a mesh cannot be used.
     """
     if is_in_place(collisions, inertial_frame):
+        if is_swept(collisions[0]):
+            return bounds_between_ends(collisions[0], FIRST_MARGIN)
         return shape_bounds(collisions[0].geometry, implicit_cylinder=implicit_cylinder)
-    boxes = [
-        placed_bounds(
-            collision.geometry,
-            *placement(inertial_frame, collision.frame),
-            implicit_cylinder=implicit_cylinder,
-        )
-        for collision in collisions
-    ]
+    boxes = [_bounds_in(inertial_frame, collision, implicit_cylinder) for collision in collisions]
     nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     return (reduce(Bounds.joined, boxes) if boxes else nothing).grown(compound_margin)
 
 
+def _bounds_in(inertial_frame: Pose, collision: Collision, implicit_cylinder: bool) -> Bounds:
+    """Bounds of one of several shapes along the axes of an inertial frame."""
+    if is_swept(collision):
+        rotation, position = placement(inertial_frame, as_given(collision).frame)
+        return bounds_between_ends(collision, FIRST_MARGIN).placed(rotation, position)
+    place = placement(inertial_frame, collision.frame)
+    return placed_bounds(collision.geometry, *place, implicit_cylinder=implicit_cylinder)
+
+
 def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
-    """Whether there is a single shape and its frame is exactly the inertial frame."""
-    return len(collisions) == 1 and placement(inertial_frame, collisions[0].frame) == _IN_PLACE
+    """Whether there is a single shape and its frame, or that of its ends, is exactly the inertial frame."""
+    if len(collisions) != 1:
+        return False
+    only = as_given(collisions[0]) if is_swept(collisions[0]) else collisions[0]
+    return placement(inertial_frame, only.frame) == _IN_PLACE
 
 
 def collision_margin(
@@ -124,6 +132,8 @@ def collision_margin(
     """
     if not is_in_place(collisions, inertial_frame):
         return compound_margin
+    if is_swept(collisions[0]):
+        return FIRST_MARGIN
     match collisions[0].geometry:
         case Sphere(radius) | Capsule(radius, _):
             return radius

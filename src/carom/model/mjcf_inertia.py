@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import reduce
 
-from carom.description import Capsule, Collision, Mesh, Pose
+from carom.description import Collision, Mesh, Pose
 from carom.description.pose import Vector3
-from carom.description.transform import NO_ROTATION, compose, inverse, rotation_matrix
 from carom.model.body_spec import BodySpec
-from carom.model.bounds import MARGIN, Bounds, placed_bounds, shape_bounds, vertex_bounds
+from carom.model.bounds import MARGIN, Bounds, placed_bounds, vertex_bounds
 from carom.model.flags import LoadFlags
 from carom.model.inertia import TWELFTH, box_moments, inertia_from_shapes, is_in_place, placement
-
-_FIRST_MARGIN = 0.04
-"""Margin of shapes that nobody gave another one [m]: swept spheres, and hulls while they are made."""
+from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
 
 
 def set_mjcf_inertias(body: BodySpec) -> None:
@@ -37,28 +33,23 @@ def set_mjcf_inertias(body: BodySpec) -> None:
 def _inertia(mass: float, collisions: Sequence[Collision], frame: Pose) -> Vector3:
     if not any(collision.ends_frame or _is_stl(collision) for collision in collisions):
         return inertia_from_shapes(mass, collisions, frame, implicit_cylinder=True, compound_margin=0.0)
-    if is_in_place([_as_given(collision) for collision in collisions], frame):
+    if is_in_place([as_given(collision) for collision in collisions], frame):
         (only,) = collisions
         if only.ends_frame is not None:
-            return box_moments(mass / 12.0, _bounds_between_ends(only, 0.0))
+            return box_moments(mass / 12.0, bounds_between_ends(only, 0.0))
         return box_moments(mass * TWELFTH, _stl_bounds(only).grown(MARGIN))
     boxes = [_placed(collision, frame) for collision in collisions]
     return box_moments(mass / 12.0, reduce(Bounds.joined, boxes))
 
 
-def _as_given(collision: Collision) -> Collision:
-    """A shape where the file has it; what is given by its ends is where they are given."""
-    return collision if collision.ends_frame is None else replace(collision, frame=collision.ends_frame)
-
-
 def _placed(collision: Collision, frame: Pose) -> Bounds:
     """Bounds of a shape along the axes of an inertial frame."""
-    rotation, position = placement(frame, _as_given(collision).frame)
+    rotation, position = placement(frame, as_given(collision).frame)
     if _is_stl(collision):
         return _stl_bounds(collision).placed(rotation, position)
     if collision.ends_frame is None:
         return placed_bounds(collision.geometry, rotation, position, implicit_cylinder=True)
-    return _bounds_between_ends(collision, _FIRST_MARGIN).placed(rotation, position)
+    return bounds_between_ends(collision, FIRST_MARGIN).placed(rotation, position)
 
 
 def _is_stl(collision: Collision) -> bool:
@@ -70,22 +61,4 @@ def _stl_bounds(collision: Collision) -> Bounds:
     """Bounds of the hull of an STL file: PyBullet sets its margin too late for the first of two uses."""
     geometry = collision.geometry
     assert isinstance(geometry, Mesh), "only meshes come from STL files"
-    return vertex_bounds(geometry).grown(_FIRST_MARGIN).grown(MARGIN)
-
-
-def _bounds_between_ends(collision: Collision, margin: float) -> Bounds:
-    """Bounds of a capsule or cylinder along the axes of the frame in which its ends are given.
-
-    Args:
-        collision: The shape.
-        margin: Widens the bounds of a capsule [m].
-    """
-    assert collision.ends_frame is not None, "the shape is given by its ends"
-    within = compose(inverse(collision.ends_frame), collision.frame)
-    rotation = rotation_matrix(within.orientation)
-    geometry = collision.geometry
-    if not isinstance(geometry, Capsule):
-        return shape_bounds(geometry, implicit_cylinder=True).placed(rotation, within.position)
-    ball = geometry.radius
-    x, y, z = (0.5 * geometry.length * abs(row[2]) + ball for row in rotation)
-    return Bounds((0.0, 0.0, 0.0), (x, y, z)).grown(margin).placed(NO_ROTATION, within.position)
+    return vertex_bounds(geometry).grown(FIRST_MARGIN).grown(MARGIN)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 from carom.description import Mesh, SignedDistanceField
@@ -13,6 +13,7 @@ from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import ShapePiece, shape_pieces
+from carom.model.swept_spheres import FIRST_MARGIN, is_swept
 
 _log = logging.getLogger(__name__)
 
@@ -44,6 +45,8 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
         if isinstance(collision.geometry, SignedDistanceField):
             _log.warning("link %r: nothing collides with a signed distance field", link.name)
         pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
+        if is_swept(collision):
+            pieces = [replace(piece, size=(*piece.size[:2], FIRST_MARGIN)) for piece in pieces]
         placed.extend(PlacedPiece(piece, pose, index) for piece in pieces)
     return placed
 
@@ -63,7 +66,7 @@ def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
 
 def has_own_margin(link: LinkSpec) -> bool:
     """Whether the margin of a link is that of its one shape, and not that of a compound."""
-    if not is_in_place(link.collisions, link.inertial_frame):
+    if not is_in_place(link.collisions, link.inertial_frame) or is_swept(link.collisions[0]):
         return False
     match link.collisions[0].geometry:
         case Mesh(path, _, concave):

@@ -126,10 +126,15 @@ def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratc
 
     residual = real(0.0)
     sweep = Int32(0)
-    searching = count > 0
+    searching = count > 0 and settings.iterations > 0
     while searching:
-        for _inner in range(settings.inner_iterations):
+        inner = Int32(0)
+        while inner < settings.inner_iterations:
             residual = row_sweep(scratch, world, count, sweep)
+            inner += 1
+            if residual == 0.0:
+                # Nothing has changed, so nothing ever will.
+                inner = settings.inner_iterations
         sweep += 1
         searching = residual > settings.residual_threshold and sweep < settings.iterations
     keep_row_results(model, settings, state, scratch, world, root, count, sweep, residual)

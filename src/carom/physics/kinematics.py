@@ -162,19 +162,24 @@ def forward_kinematics_kernel(model: Model, state: State, tree: Int32, first_wor
     forward_kinematics(model, state, state.link_pose, first_world + wp.tid(), tree)
 
 
+@func
+def update_link_poses(
+    settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Bring the link poses of a tree up to date; if some shape is to look ahead, keep them as they were."""
+    if settings.looks_ahead != 0:
+        base = model.tree[tree].first_link
+        for link in range(base, base + model.tree[tree].link_count):
+            scratch.link_pose[world, link] = state.link_pose[world, link]
+    forward_kinematics(model, state, state.link_pose, world, tree)
+
+
 @kernel
 def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
-    """Bring the link poses of all trees up to date with their coordinates.
-
-    If some shape is to look ahead, they are kept as they were.
-    """
+    """Bring the link poses of all trees up to date with their coordinates."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
-        if settings.looks_ahead != 0:
-            base = model.tree[tree].first_link
-            for link in range(base, base + model.tree[tree].link_count):
-                scratch.link_pose[world, link] = state.link_pose[world, link]
-        forward_kinematics(model, state, state.link_pose, world, tree)
+        update_link_poses(settings, model, state, scratch, world, tree)
 
 
 @kernel

@@ -22,11 +22,17 @@ from carom.model.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
-from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func
+from carom.model.real import Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.model.structs import Model, Scratch, Settings, State
 from carom.physics.kinematics import load_quaternion
 from carom.physics.rotation import rotation_matrix
 from carom.physics.rows import add_row, axis_effective_masses, dof_effective_mass
+
+
+@func
+def unless_nan(value: real, other: real) -> real:
+    """A number, or NaN where another is that: bounds that are NaN bound nothing, and would not be noticed."""
+    return wp.where(other == other, value, other)
 
 
 @func
@@ -45,14 +51,13 @@ def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
         if model.link[link].dof_count == 1:
             dof = model.link[link].first_dof
             drive = state.dof_pd[world, dof]
-            if drive[PD_MAX_FORCE] > 0.0:
+            bound = drive[PD_MAX_FORCE]
+            if not bound <= 0.0:
                 position = state.position[world, model.link[link].first_position]
                 force = drive[PD_KP] * (drive[PD_POSITION] - position) + drive[PD_KD] * (
                     drive[PD_VELOCITY] - state.dof_velocity[world, dof]
                 )
-                state.dof_torque[world, dof] += within_bounds(
-                    force, -drive[PD_MAX_FORCE], drive[PD_MAX_FORCE]
-                )
+                state.dof_torque[world, dof] += unless_nan(within_bounds(force, -bound, bound), bound)
 
 
 @func
@@ -79,7 +84,8 @@ def motor_row(
         + velocity
         + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - velocity)
     )
-    wanted = within_bounds(wanted, -motor[MOTOR_VELOCITY_CLAMP], motor[MOTOR_VELOCITY_CLAMP])
+    clamp = motor[MOTOR_VELOCITY_CLAMP]
+    wanted = unless_nan(within_bounds(wanted, -clamp, clamp), bound + clamp)
     effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
     return add_row(
         model, scratch, world, constraint, row, dof, wanted - velocity, effective_mass, -bound, bound
@@ -131,6 +137,7 @@ def spherical_motor_rows(
         bound = motor[MOTOR_MAX_IMPULSE]
         change = -motor[MOTOR_DAMPING] * state.dof_velocity[world, first + axis]
         change -= motor[MOTOR_KP] * error[axis] * settings.joint_erp / settings.time_step
+        change = unless_nan(change, bound)
         row = add_row(
             model,
             scratch,

@@ -113,7 +113,7 @@ def sweep_island(
     square = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
-    if visits > 0 or units[0] > 0:
+    if (visits > 0 or units[0] > 0) and most > 0:
         searching = Int32(1)
     while searching == 1:
         if calm == 1:
@@ -151,7 +151,8 @@ def solve_island(
     made = island_rows(model, settings, state, scratch, users, couplings, world, root)
     visits = made[3]
     first_contact = couplings.tree_first_contact[world, root]
-    calm = wp.min(couplings.tree_calm[world, root], 1)
+    # Without any sweep there are no impulses, those of the last step included.
+    calm = wp.min(wp.min(couplings.tree_calm[world, root], 1), settings.iterations)
     outcome = Int32(NOT_CALM)
     units = Index4(0, 0, 0, 0)
     found = Vector3(0.0, 0.0, 0.0)

@@ -80,10 +80,16 @@ def constrained_motion(settings: Settings, model: Model, state: State, scratch: 
         if is_asleep(state, world, tree):
             stop(model, state, world, tree)
             continue
-        if model.tree[tree].sensor_count > 0:
-            constraint_feedback(model, settings, state, scratch, world, tree)
-        apply_delta_velocities(model, state, scratch, world, tree)
-        integrate_positions(model, state, world, tree, settings.time_step)
+        move_on(settings, model, state, scratch, world, tree)
+
+
+@func
+def move_on(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `constrained_motion`, for one tree that is awake."""
+    if model.tree[tree].sensor_count > 0:
+        constraint_feedback(model, settings, state, scratch, world, tree)
+    apply_delta_velocities(model, state, scratch, world, tree)
+    integrate_positions(model, state, world, tree, settings.time_step)
 
 
 @kernel

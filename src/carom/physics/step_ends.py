@@ -24,14 +24,31 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
 
 
 @func
-def begin_step(
-    settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, moves: Int32
-):
-    """Keep the start of a step, and let joint friction act for all of it, if anything `moves`."""
+def begin_world(state: State, pairs: Pairs, world: Int32):
+    """Let a world be well at the start of a step, with none of its contacts put aside."""
     state.status_entry[world, STATUS] = WELL
     state.status_entry[world, PAIRS_WANTED] = 0
     state.status_entry[world, CONTACTS_WANTED] = 0
     pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
+
+
+@func
+def abandon_tree(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Put a tree back to where the step started.
+
+    The forces that were applied are gone with a step that went wrong; one that is repeated needs them.
+    """
+    return_to_start(model, state, scratch, world, tree)
+    if state.status_entry[world, STATUS] > WELL:
+        clear_forces(model, state, world, tree)
+
+
+@func
+def begin_step(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, moves: Int32
+):
+    """Keep the start of a step, and let joint friction act for all of it, if anything `moves`."""
+    begin_world(state, pairs, world)
     for tree in range(settings.tree_count):
         keep_start(model, state, scratch, world, tree)
         if moves != 0:
@@ -75,13 +92,8 @@ def abandon_step_kernel(
     pairs: Pairs,
     first_world: Int32,
 ):
-    """Go back to the start, where a step went wrong or something did not fit.
-
-    The forces that were applied are gone with a step that went wrong; one that is repeated needs them.
-    """
+    """Go back to the start, where a step went wrong or something did not fit."""
     world = first_world + wp.tid()
     restore_contacts(contacts, pairs, world)
     for tree in range(settings.tree_count):
-        return_to_start(model, state, scratch, world, tree)
-        if state.status_entry[world, STATUS] > WELL:
-            clear_forces(model, state, world, tree)
+        abandon_tree(model, state, scratch, world, tree)

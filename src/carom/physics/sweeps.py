@@ -25,7 +25,9 @@ def visit_sweep(
 ) -> real:
     """Relax motors, limits and user constraints once; returns the greatest change squared."""
     residual = real(0.0)
-    for _inner in range(settings.inner_iterations):
+    inner = Int32(0)
+    while inner < settings.inner_iterations:
+        inner += 1
         residual = real(0.0)
         place = Int32(0)
         stride = Int32(1)
@@ -42,6 +44,9 @@ def visit_sweep(
                 change = relax_coupling(scratch, couplings, world, -1 - row)
             if change * change > residual:
                 residual = change * change
+        if residual == 0.0:
+            # Nothing has changed, so nothing ever will.
+            inner = settings.inner_iterations
     return residual
 
 

@@ -2,7 +2,8 @@
 
 The client sends a greeting and a random number. The server answers with its greeting, a random number of its
 own, and a digest (HMAC-SHA256) of both under the key; the client then sends a digest of its own, and the
-server a last byte when that is right. So nobody without the key can talk to a server, nor pose as one.
+server a last byte when that is right: that the client is welcome, or that there is no room for it. So nobody
+without the key can talk to a server, nor pose as one.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import hmac
 import secrets
 import socket
+from collections.abc import Callable
 from time import monotonic
 
 from carom.remote.errors import NoServer
@@ -20,7 +22,7 @@ TIMEOUT = 5.0
 _GREETING = b"carom 1\n"
 _NONCE = 32
 _DIGEST = 32
-_WELCOME = b"+"
+_WELCOME, _FULL = b"+", b"-"
 
 
 def new_key() -> bytes:
@@ -44,16 +46,22 @@ def enter(peer: socket.socket, key: bytes) -> None:
         if not hmac.compare_digest(talk.receive(_DIGEST), _digest(key, b"server", mine, theirs)):
             raise NoServer("The server has another key.")
         peer.sendall(_digest(key, b"client", mine, theirs))
-        talk.receive(len(_WELCOME))
+        if talk.receive(len(_WELCOME)) != _WELCOME:
+            raise NoServer("The server has as many clients as it can have.")
     except (OSError, EOFError) as problem:
         raise NoServer(f"The server turns away: {problem}") from problem
 
 
-def admit(peer: socket.socket, key: bytes) -> bool:
+def admit(peer: socket.socket, key: bytes, take_place: Callable[[], bool]) -> bool:
     """The server's side.
 
+    Args:
+        peer: The client.
+        key: What it has to know.
+        take_place: Tells whether there is room for a client that knows the key, which it then takes.
+
     Returns:
-        Whether the client knows the key.
+        Whether the client knows the key. It has a place then, unless none was left, and knows about that.
 
     Raises:
         OSError: The socket is closed, or its time is over.
@@ -67,7 +75,8 @@ def admit(peer: socket.socket, key: bytes) -> bool:
     peer.sendall(_GREETING + mine + _digest(key, b"server", theirs, mine))
     if not hmac.compare_digest(talk.receive(_DIGEST), _digest(key, b"client", theirs, mine)):
         return False
-    peer.sendall(_WELCOME)
+    has_place = take_place()
+    peer.sendall(_WELCOME if has_place else _FULL)
     return True
 
 

@@ -15,7 +15,8 @@ from carom.remote.handshake import admit
 MAX_CLIENTS = 64
 """Connections at the same time."""
 
-# Connections that have not shown the key yet do not count as clients, but there are bounds for them, too.
+# Connections that have not shown the key yet do not count as clients, but there are bounds for them, too: who
+# has waited longest goes. Clients take a millisecond to show it, so that strangers cannot keep them out.
 _MAX_STRANGERS = 32
 # How long to wait for the calls in progress when a server closes [s].
 _PATIENCE = 5.0
@@ -52,7 +53,7 @@ class Listener:
         self._closing = Event()
         self._lock = Lock()
         self._places = BoundedSemaphore(MAX_CLIENTS)
-        self._waiting_room = BoundedSemaphore(_MAX_STRANGERS)
+        self._strangers: dict[socket.socket, None] = {}
         self._talks: dict[Thread, socket.socket] = {}
         self._sockets: list[socket.socket] = []
         try:
@@ -108,11 +109,12 @@ class Listener:
                 # Either it is closing, the connection has gone before it came, or there are no more files.
                 self._closing.wait(0.05)
                 continue
-            if not self._waiting_room.acquire(blocking=False):
-                peer.close()
-                continue
             thread = Thread(target=self._talk, args=(peer,), name="carom client", daemon=True)
             with self._lock:
+                if len(self._strangers) >= _MAX_STRANGERS:
+                    _hang_up(next(iter(self._strangers)))
+                    del self._strangers[next(iter(self._strangers))]
+                self._strangers[peer] = None
                 self._talks[thread] = peer
             thread.start()
 
@@ -136,16 +138,26 @@ class Listener:
 
     def _admitted(self, peer: socket.socket) -> bool:
         """Whether it knows the key, and there is room: then it has a place, to be released."""
+        has_place = False
+
+        def take_place() -> bool:
+            nonlocal has_place
+            has_place = self._places.acquire(blocking=False)
+            return has_place
+
         try:
-            if not admit(peer, self._key):
+            if not admit(peer, self._key, take_place):
                 _log.warning("A client with a wrong key was refused.")
-                return False
+            elif not has_place:
+                _log.warning("A client was refused: there are %s already.", MAX_CLIENTS)
+            return has_place
+        except BaseException:
+            if has_place:
+                self._places.release()
+            raise
         finally:
-            self._waiting_room.release()
-        if not self._places.acquire(blocking=False):
-            _log.warning("A client was refused: there are %s already.", MAX_CLIENTS)
-            return False
-        return True
+            with self._lock:
+                self._strangers.pop(peer, None)
 
     def _converse(self, peer: socket.socket) -> None:
         peer.settimeout(None)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import re
 from functools import cache
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
@@ -19,14 +18,9 @@ from typing import Any
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.saved.container import Blocks
+from carom.saved.references import references
 
 _MOST_BYTES = 1 << 30
-# How files name others, by their suffix.
-_REFERENCES = {
-    ".obj": re.compile(rb"^\s*mtllib\s+(.+?)\s*$", re.MULTILINE),
-    ".mtl": re.compile(rb"^\s*map_Kd\s+(?:.*\s)?(\S+?)\s*$", re.MULTILINE),
-    ".dae": re.compile(rb"<init_from>\s*(?:file://)?([^<]+?)\s*</init_from>"),
-}
 
 
 class FileTable:
@@ -73,10 +67,8 @@ def _with_references(path: Path) -> dict[Path, bytes]:
     waiting = [path]
     while waiting:
         source = waiting.pop()
-        pattern = _REFERENCES.get(source.suffix.lower())
-        for name in [] if pattern is None else pattern.findall(contents[source]):
-            other = Path(os.path.abspath(source.parent / os.fsdecode(name)))
-            if other not in contents and other.is_file() and other.drive == path.drive:
+        for other in references(source, contents[source]):
+            if other not in contents and other.drive == path.drive:
                 contents[other] = read_bounded(other, _MOST_BYTES)[0]
                 waiting.append(other)
     return contents

@@ -3,16 +3,100 @@
 The server listens on this machine alone unless it is told otherwise, but that is not enough: any page in the
 user's browser could open a socket to it, or reach it under a name of its own that it lets point here. So a
 request has to name the server by an address no other site can have, and a socket has to come from the
-server's own page.
+server's own page. Behind a proxy, as of a notebook, names are others: there a token does, which only those
+know who were given the whole address. Where other machines can reach the server, all have to know it.
 """
 
 from __future__ import annotations
 
+import secrets
 import socket
+from dataclasses import dataclass, field
 from ipaddress import ip_address
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
+TOKEN_BYTES = 16
+# Nothing is sent there: it only makes the system choose the address by which others reach this machine.
+_ANYWHERE = ("192.0.2.1", 9)
+_EVERYWHERE = frozenset({"0.0.0.0", "::"})
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """Who may talk to a server.
+
+    Attributes:
+        host: What the server listens on.
+        token: What those have to know who are not on this machine.
+        names: Names, besides its own, by which the server may be asked for.
+    """
+
+    host: str = "127.0.0.1"
+    token: str = field(default_factory=lambda: secrets.token_urlsafe(TOKEN_BYTES))
+    names: frozenset[str] = frozenset()
+
+    @property
+    def needs_token(self) -> bool:
+        """Whether everybody has to know the token, as others can reach the server."""
+        return not is_loopback(self.host)
+
+    def address(self, port: int) -> str:
+        """What to open in a browser: on this machine or, if others are to reach it, on any."""
+        host = reachable_host(self.host)
+        name = f"[{host}]" if ":" in host else host
+        return f"http://{name}:{port}/" + (f"?token={self.token}" if self.needs_token else "")
+
+    def may_connect(self, path: str, host_header: str | None, origin: str | None) -> bool:
+        """Whether a socket may be opened.
+
+        Args:
+            path: What is asked for, with the query.
+            host_header: `Host` of the request.
+            origin: `Origin` of the request; programs that are no browsers name none.
+        """
+        if self.knows_token(path):
+            return True
+        return not self.needs_token and self.is_own(host_header) and origin_allowed(host_header, origin)
+
+    def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
+        """Whether a file of the page may be given out; they are the same for everybody.
+
+        Args:
+            path: What is asked for, with the query.
+            host_header: `Host` of the request.
+            cookies: `Cookie` of the request. The page itself is asked for with the token; its parts come with
+                a cookie instead.
+        """
+        return (
+            self.is_own(host_header) or self.knows_token(path) or self.cookie in (cookies or "").split("; ")
+        )
+
+    @property
+    def cookie(self) -> str:
+        """What a browser is given that has asked with the token."""
+        return f"carom-{self.token[:4]}={self.token}"
+
+    def is_own(self, host_header: str | None) -> bool:
+        """Whether a request names this server."""
+        return host_allowed(self.host, host_header) or _name(f"//{host_header}") in self.names
+
+    def knows_token(self, path: str) -> bool:
+        """Whether a request states the token."""
+        stated = parse_qs(urlsplit(path).query).get("token", [""])[0]
+        return secrets.compare_digest(stated.encode(), self.token.encode())
+
+
+def reachable_host(host: str) -> str:
+    """An address by which a server that listens on this one can be reached from where it is meant to be."""
+    if host not in _EVERYWHERE:
+        return host
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as way:
+        try:
+            way.connect(_ANYWHERE)
+            return str(way.getsockname()[0])
+        except OSError:
+            return socket.gethostname()
 
 
 def is_loopback(host: str) -> bool:

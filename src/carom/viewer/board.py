@@ -10,6 +10,7 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from threading import Lock
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from carom.viewer.messages import encoded
 
@@ -95,3 +96,7 @@ class Board:
             self._entries.pop(key, None)
             self._entries[key] = _Entry(self._revision, message, gone)
             (self._removals.add if gone else self._removals.discard)(key)
+
+
+boards: WeakKeyDictionary[Any, Board] = WeakKeyDictionary()
+"""The board of the viewer of each world that has one."""

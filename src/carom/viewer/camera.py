@@ -34,20 +34,28 @@ class SharedCamera:
 
     Attributes:
         orbit: Where it was last moved to, by whomever.
+        chosen: A script or a user has said where to look from; until then pages look at what there is.
     """
 
     def __init__(self, board: Board, width: int, height: int) -> None:
         self._board = board
         self.orbit: Orbit = Orbit(width=width, height=height)
+        self.chosen: bool = False
         board.put("camera", self._message())
 
     def move(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """A script moves the camera of every page."""
+        self.chosen = True
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
         self._board.put("camera", self._message())
 
-    def moved(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
-        """The user has moved the camera of a page."""
+    def moved(
+        self, distance: float, yaw: float, pitch: float, target: Vector3, *, chosen: bool = True
+    ) -> None:
+        """The camera of a page has moved, by its user or, if it is not `chosen`, by itself."""
+        if self.chosen and not chosen:
+            return
+        self.chosen = chosen
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
         self._board.amend("camera", self._message())
 
@@ -63,4 +71,5 @@ class SharedCamera:
             "yaw": orbit.yaw,
             "pitch": orbit.pitch,
             "target": orbit.target,
+            "chosen": self.chosen,
         }

@@ -1,24 +1,34 @@
-"""Pausing a simulation, and letting it go step by step."""
+"""Pausing a simulation, letting it go step by step, and slowing it down."""
 
 from __future__ import annotations
 
 from threading import Condition
+from time import monotonic, sleep
 
 # On Windows a Ctrl-C is noticed only between two waits [s].
 _LOOK = 0.1
+# A simulation that falls behind its speed by more than this does not catch up [s].
+_GREATEST_LAG = 0.1
 
 
 class Gate:
-    """What a step has to pass while a simulation is paused. Safe to use from all threads.
+    """What a step has to pass while a simulation is paused or slowed down. Safe to use from all threads.
 
     Attributes:
         closed: Steps have to wait. Read without a lock, so that it costs nothing while nobody pauses.
+        speed: Greatest speed, as simulated time by real time; None for any.
+        listeners: How many waits end at `call_back`.
     """
 
     def __init__(self) -> None:
         self.closed: bool = False
+        self.speed: float | None = None
+        self.listeners: int = 0
         self._steps = 0
+        self._calls = 0
         self._changed = Condition()
+        # Simulated and real time from which the speed is counted.
+        self._origin: tuple[float, float] | None = None
 
     def close(self) -> None:
         """Pauses."""
@@ -30,6 +40,7 @@ class Gate:
         """Goes on."""
         with self._changed:
             self.closed = False
+            self._origin = None
             self._changed.notify_all()
 
     def let_through(self, steps: int = 1) -> None:
@@ -38,11 +49,52 @@ class Gate:
             self._steps += steps
             self._changed.notify_all()
 
-    def wait(self) -> None:
-        """Returns when a step may be made."""
+    def set_speed(self, speed: float | None) -> None:
+        """Bounds the speed from now on, as simulated time by real time; None for no bound."""
         with self._changed:
-            while not self._passes():
-                self._changed.wait(_LOOK)
+            self.speed = speed
+            self._origin = None
+
+    def call_back(self) -> None:
+        """Ends a wait without a step, if the waiting script wants to hear of what the user does."""
+        with self._changed:
+            self._calls += 1
+            self._changed.notify_all()
+
+    def wait(self, *, listening: bool = False) -> bool:
+        """Returns when a step may be made, or when the user has done something a script listens to.
+
+        Args:
+            listening: Return at `call_back`, too.
+
+        Returns:
+            Whether a step may be made; it then counts as made.
+        """
+        with self._changed:
+            calls = self._calls
+            self.listeners += listening
+            try:
+                while not self._passes():
+                    if listening and self._calls != calls:
+                        return False
+                    self._changed.wait(_LOOK)
+                return True
+            finally:
+                self.listeners -= listening
+
+    def keep_pace(self, time: float) -> None:
+        """Waits as long as a step at this simulated time [s] would be too early for the speed."""
+        speed = self.speed
+        if speed is None:
+            return
+        now = monotonic()
+        if self._origin is None or time < self._origin[0]:
+            self._origin = (time, now)
+        due = self._origin[1] + (time - self._origin[0]) / speed
+        if now - due > _GREATEST_LAG:
+            self._origin = (time, now)
+        elif due > now:
+            sleep(due - now)
 
     def passes(self) -> bool:
         """Whether a step may be made now; it then counts as made."""

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from threading import Lock
+from time import monotonic
 
 DOWN, TRIGGERED, RELEASED = 1, 2, 4
+# A script that has asked for keys within this time will ask again [s].
+_ATTENTION = 1.0
 
 # Keys without a character, by their name in a browser's events.
 _FUNCTION_KEYS = {f"F{number}": 65279 + number for number in range(1, 16)}
@@ -58,6 +61,12 @@ class Keyboard:
         # Codes of the keys each page holds; a key is up when nobody holds it.
         self._held: defaultdict[int, dict[str, int]] = defaultdict(dict)
         self._states: dict[int, int] = {}
+        self._asked = -_ATTENTION
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether a script asks for keys again and again."""
+        return monotonic() - self._asked < _ATTENTION
 
     def press(self, page: int, key: str, place: str) -> None:
         """A key goes down on a page. Keyboards repeat held keys; that is no second press."""
@@ -87,6 +96,7 @@ class Keyboard:
 
         A key that went down and up in between is triggered and released.
         """
+        self._asked = monotonic()
         with self._lock:
             states = self._states
             self._states = {code: DOWN for code, state in states.items() if state & DOWN}

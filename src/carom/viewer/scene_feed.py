@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,8 @@ from carom.viewer.shapes import Assets, described
 if TYPE_CHECKING:
     from carom.body import Body
     from carom.world import World
+
+Blocks = Sequence[tuple[str, NDArray[np.float32]]]
 
 # How long to wait for a world that is stepping before bodies are looked at in the next frame [s].
 _PATIENCE = 0.02
@@ -51,11 +54,12 @@ class SceneFeed:
         self._last = b""
         self._clock: list[tuple[float, float]] = []
 
-    def frame(self, extras: dict[str, Any]) -> bytes | None:
+    def frame(self, extras: dict[str, Any], blocks: Blocks = ()) -> bytes | None:
         """Where everything is now, as a message; None if nothing has changed.
 
         Args:
             extras: What else the message is to say.
+            blocks: Numbers that follow the poses, by name.
         """
         self._follow_bodies()
         poses = self._world.link_pose
@@ -63,7 +67,17 @@ class SceneFeed:
             return None
         payload = poses[self._rows].astype("<f4").tobytes()
         time = float(self._world.time)
-        header = {"type": "frame", "layout": self._layout, "time": time, "rate": self._rate(time), **extras}
+        header = {
+            "type": "frame",
+            "layout": self._layout,
+            "poses": self._rows.size,
+            "time": time,
+            "rate": self._rate(time),
+            **extras,
+        }
+        if blocks:
+            header["blocks"] = [[name, len(columns)] for name, columns in blocks]
+            payload += b"".join(columns.astype("<f4").tobytes() for _, columns in blocks)
         message = encoded(header, payload)
         if message == self._last:
             return None

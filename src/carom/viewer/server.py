@@ -17,9 +17,11 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from carom.viewer.access import host_allowed, origin_allowed
+from carom.viewer.access import Access
 from carom.viewer.board import Board
 from carom.viewer.messages import MAX_INCOMING_BYTES, received
+from carom.viewer.page_files import page_files
+from carom.viewer.replay_page import replay_page
 
 _log = logging.getLogger("carom")
 # Of the library: browsers that turn away in the middle of a request are no news.
@@ -28,7 +30,6 @@ _quiet.setLevel(logging.CRITICAL)
 
 PREFERRED_PORT = 8400
 _FRAMES_PER_SECOND = 60
-_PAGE = Path(__file__).with_name("page")
 _KINDS = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -39,19 +40,16 @@ _KINDS = {
 _POLICY = (
     "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; "
     "style-src 'self' 'unsafe-inline'; "
-    "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview:"
+    "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview: https://*.googleusercontent.com"
 )
 
 
 @cache
 def _files() -> dict[str, tuple[str, bytes]]:
     """Kind and content of everything the server gives out, by path."""
-    files = {
-        f"/{path.name}": (_KINDS[path.suffix], path.read_bytes())
-        for path in sorted(_PAGE.iterdir())
-        if path.suffix in _KINDS
-    }
-    return {**files, "/": files["/index.html"]}
+    files = {f"/{name}": (_KINDS[Path(name).suffix], content) for name, content in page_files().items()}
+    replay = (_KINDS[".html"], replay_page().encode())
+    return {**files, "/": files["/index.html"], "/replay.html": replay}
 
 
 class _Page:
@@ -67,7 +65,7 @@ class PageServer:
     """Keeps every page that is open up to date, at display rate, from a thread of its own.
 
     Args:
-        host: Address to listen on.
+        access: Where to listen, and who may talk to the server.
         port: Port to listen on; None for the usual one or, where that is taken, any; 0 for any.
         board: What pages show.
         frame: Called at display rate while pages are open: a message with what moves, or None. Pages get
@@ -81,14 +79,14 @@ class PageServer:
 
     def __init__(
         self,
-        host: str,
+        access: Access,
         port: int | None,
         board: Board,
         frame: Callable[[], bytes | None],
         receive: Callable[[int, dict[str, Any]], None],
         gone: Callable[[int], None],
     ) -> None:
-        self.host = host
+        self.access = access
         self.port = 0
         self._wanted_ports = (PREFERRED_PORT, 0) if port is None else (port,)
         self._board = board
@@ -110,8 +108,7 @@ class PageServer:
     @property
     def address(self) -> str:
         """Where the page is."""
-        name = f"[{self.host}]" if ":" in self.host else self.host
-        return f"http://{'localhost' if name == '0.0.0.0' else name}:{self.port}/"
+        return self.access.address(self.port)
 
     @property
     def page_count(self) -> int:
@@ -162,7 +159,7 @@ class PageServer:
     async def _listen_on(self, port: int) -> Server:
         return await serve(
             self._talk,
-            self.host,
+            self.access.host,
             port,
             process_request=self._answer,
             # Poses hardly get smaller, and compressing them costs more than sending them.
@@ -189,14 +186,17 @@ class PageServer:
             await asyncio.sleep(due - loop.time())
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
-        host = request.headers.get("Host")
-        if not host_allowed(self.host, host):
+        hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        cookies = "; ".join(request.headers.get_all("Cookie"))
+        host = hosts[0] if len(hosts) == 1 else None
+        # Several of what may be there once are none of them.
+        if len(origins) > 1 or not self.access.may_read(request.path, host, cookies):
             return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
-            if not origin_allowed(host, request.headers.get("Origin")):
-                return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
-            return None
+            if self.access.may_connect(request.path, host, origins[0] if origins else None):
+                return None
+            return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
         file = _files().get(path)
         if file is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "There is no such file.\n")
@@ -211,6 +211,8 @@ class PageServer:
                 "Connection": "close",
             }
         )
+        if self.access.knows_token(request.path):
+            headers["Set-Cookie"] = f"{self.access.cookie}; HttpOnly; SameSite=Strict"
         return Response(HTTPStatus.OK, "OK", headers, content)
 
     async def _talk(self, connection: ServerConnection) -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from colorsys import hsv_to_rgb
 from dataclasses import dataclass
-from math import cos, pi
+from math import cos, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,15 +27,15 @@ if TYPE_CHECKING:
     from carom.body import Body
 
 _MAX_TEXTURE_SIDE = 4096
-# Of collision shapes: neighbouring links differ.
-_COLLISION_COLOURS = (
-    (0.36, 0.62, 0.80, 1.0),
-    (0.93, 0.66, 0.36, 1.0),
-    (0.52, 0.74, 0.48, 1.0),
-    (0.80, 0.52, 0.64, 1.0),
-    (0.62, 0.56, 0.80, 1.0),
-)
-_COLLISION_FLOOR = (0.82, 0.84, 0.86, 1.0)
+# Neighbouring numbers of bodies get colours far apart: each turns the hue by the golden ratio.
+_HUE_STEP = 0.61803398875
+_FIRST_HUE = 0.57
+# Links of a body differ in brightness.
+_SHADES = (0.80, 0.66, 0.90, 0.73)
+_SATURATION = 0.5
+_FLOOR = (0.82, 0.84, 0.86, 1.0)
+# What reaches farther than this is a floor [m].
+_FLOOR_SIZE = 9.0
 _NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
 # Sides of the polygons that stand for circles: round things that look small need fewer.
 _SEGMENTS = (48, 24, 12)
@@ -172,6 +173,9 @@ def _link(body: Body, link: int) -> dict[str, Any]:
     }
     if link != BASE:
         facts |= {"joint": spec.joint_name, "kind": spec.joint_type.value, "axis": spec.joint_axis}
+        lower, upper = body.joints[link].limits
+        if isfinite(lower) and isfinite(upper) and lower < upper:
+            facts["limits"] = (lower, upper)
     return facts
 
 
@@ -197,7 +201,6 @@ def _shape(
 
 
 def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
-    colour = _COLLISION_COLOURS[(link - BASE) % len(_COLLISION_COLOURS)]
     for shape in body.link_spec(link).collisions:
         levels, scale = _shared(shape.geometry, None)
         frame = compose(to_inertial, shape.frame)
@@ -205,7 +208,7 @@ def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Ite
             "link": link - BASE,
             "meshes": assets.meshes(levels),
             "texture": NO_TEXTURE,
-            "rgba": _COLLISION_FLOOR if isinstance(shape.geometry, Plane) else colour,
+            "rgba": _FLOOR if _is_floor(shape.geometry) else _collision_colour(body.id, link),
             "specular": (0.2, 0.2, 0.2),
             "twoSided": True,
             "position": frame.position,
@@ -213,6 +216,19 @@ def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Ite
             "scale": scale,
             "collision": True,
         }
+
+
+def _collision_colour(body: int, link: int) -> tuple[float, float, float, float]:
+    """A colour for each body, and a shade of it for each link."""
+    shade = _SHADES[(link - BASE) % len(_SHADES)]
+    red, green, blue = hsv_to_rgb((_FIRST_HUE + body * _HUE_STEP) % 1.0, _SATURATION, shade)
+    return (red, green, blue, 1.0)
+
+
+def _is_floor(geometry: Geometry) -> bool:
+    if isinstance(geometry, Box):
+        return sum(2.0 * half > _FLOOR_SIZE for half in geometry.half_extents) >= 2
+    return isinstance(geometry, Plane)
 
 
 def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[Levels, Vector3]:

@@ -2,33 +2,42 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import webbrowser
-from collections.abc import Callable
-from math import isfinite
+from collections.abc import Callable, Iterable
+from functools import partial
+from math import inf, isfinite
 from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
-from carom.viewer.board import Board
+from carom.viewer.access import Access
+from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
+from carom.viewer.chores import Chores
 from carom.viewer.controls import Controls
+from carom.viewer.details import NOTHING, Details, Wish
+from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
+from carom.viewer.drives import drive
 from carom.viewer.gate import Gate
 from carom.viewer.hands import Hands
-from carom.viewer.keys import Keyboard
+from carom.viewer.items import Slider
+from carom.viewer.keys import Keyboard, key_code
+from carom.viewer.leaving import ESCAPE, Leaving
+from carom.viewer.moments import Moments
 from carom.viewer.mouse import Mouse
+from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
-from carom.viewer.probes import Probes
+from carom.viewer.rays import Rays
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
+from carom.viewer.sleeping import Sleeping
+from carom.viewer.turnstile import Turnstile
 
 if TYPE_CHECKING:
     from carom.world import World
 
-_MOST_PLOTS = 16
 # How long a page that goes may keep the server from letting go of what it held [s].
 _PATIENCE = 1.0
 # How long a script waits for pages to draw what it wants to be seen [s].
@@ -42,13 +51,18 @@ class Viewer:
 
     Args:
         world: The world.
-        lock: Held by whoever steps the world, or adds and removes bodies. Without one the mouse cannot pull
-            bodies, and `Viewer.lock` has to be held while bodies come and go.
-        host: Address to listen on; this machine alone unless told otherwise.
+        lock: Held by whoever steps the world, or adds and removes bodies, and asks `held` before each step.
+            Without one the viewer guards the steps itself, by an observer of the world; `Viewer.lock` has
+            to be held while bodies come and go.
+        host: Address to listen on; this machine alone unless told otherwise. On any other, pages need a
+            token, which is part of `address`.
         port: Port to listen on; None for the usual one or, where that is taken, any.
         title: Of the page.
         width: Of the image in pixels, until a page tells what it has room for.
         height: Of the image.
+        token: What pages have to know that are not on this machine, or come through a proxy; random by
+            default.
+        names: Names by which a proxy asks for the page.
 
     Raises:
         OSError: The address cannot be listened on.
@@ -63,8 +77,12 @@ class Viewer:
         previews: What the last camera image of a script shows.
         gate: Whether the simulation is paused.
         is_open: False once a user has closed the viewer.
-        on_hold: Called, from the thread of the server, with whether steps have to ask `gate` first: while
-            the simulation is paused, and once the viewer is closed.
+        held: Steps have to ask `wait_for_turn` or `has_turn` first: the simulation is paused or slowed
+            down, its start has yet to be kept, or the viewer is closed.
+        on_hold: Called, from any thread, with `held` when it changes.
+        on_pause: Called, from any thread, with whether the simulation is paused when that changes.
+        on_profile: Called, from the thread of the server, with whether the user wants to know from now on
+            where the time goes.
     """
 
     def __init__(
@@ -77,9 +95,14 @@ class Viewer:
         title: str = "Carom",
         width: int = 1024,
         height: int = 768,
+        token: str | None = None,
+        names: Iterable[str] = (),
     ) -> None:
         self.is_open: bool = True
+        self.held: bool = True
         self.on_hold: Callable[[bool], None] = lambda held: None
+        self.on_pause: Callable[[bool], None] = lambda paused: None
+        self.on_profile: Callable[[bool], None] = lambda running: None
         self._board = Board()
         self._board.put("title", {"type": "title", "title": title})
         self.controls: Controls = Controls(self._board)
@@ -89,21 +112,21 @@ class Viewer:
         self.mouse: Mouse = Mouse()
         self.gate: Gate = Gate()
         self._pictures = Pictures()
-        # Pulling makes constraints, which only whoever steps can allow.
-        self._pulls = lock is not None
         self.lock: Any = RLock() if lock is None else lock
+        self._world = world
+        self._chores = Chores(self.lock)
+        self._moments = Moments(world, self._board)
+        self._leaving = Leaving(self._close_by_user)
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
-        self._world = world
         self._hands = Hands(world, self.lock)
-        self._probes = Probes(world)
-        # What each page wants to know besides: whether collision shapes, and which joints.
-        self._collisions: dict[int, bool] = {}
-        self._plotted: dict[int, set[tuple[int, int]]] = {}
+        self._details = Details(world, self.lock, self._board)
+        self._sleeping = Sleeping(world)
+        self._values: dict[str, float] = {}
         self.pause(False)
         self._answers: dict[str, Callable[[int, dict[str, Any]], None]] = {
-            "slider": lambda page, told: self.controls.move(int(told["slider"]), float(told["value"])),
-            "press": lambda page, told: self.controls.press(int(told["slider"])),
+            "slider": self._take_slider,
+            "press": self._take_press,
             "key": self._take_key,
             "blur": lambda page, told: self.keyboard.release_all(page),
             "mouse": self._take_mouse,
@@ -111,21 +134,40 @@ class Viewer:
             "size": self._take_size,
             "visible": lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
-            "want": self._take_wish,
-            "plot": self._take_plots,
+            "want": lambda page, told: self._want(page, Wish.told(told)),
+            "drive": self._take_drive,
+            "sleep": lambda page, told: self._chores.add(self._sleeping.toggle),
+            "profile": lambda page, told: self.on_profile(bool(told["running"])),
             "grasp": self._take_grasp,
             "pull": lambda page, told: self._hands.move(page, _vector(told["target"])),
             "let go": lambda page, told: self._hands.release(page),
             "pause": lambda page, told: self.pause(bool(told["paused"])),
             "step": lambda page, told: self.gate.let_through(),
+            "speed": self._take_speed,
+            "reset": lambda page, told: self._chores.add(self._moments.reset),
+            "mark": lambda page, told: self._chores.add(self._moments.mark),
+            "restore": lambda page, told: self._chores.add(partial(self._moments.restore, int(told["mark"]))),
             "close": lambda page, told: self._close_by_user(),
         }
-        self._server = PageServer(host, port, self._board, self._frame, self._receive, self._page_gone)
+        if lock is None:
+            self._turnstile: Turnstile | None = Turnstile(self)
+            world.observers.append(self._turnstile)
+        else:
+            self._turnstile = None
+        boards[world] = self._board
+        named = frozenset(name.lower() for name in names)
+        access = Access(host, names=named) if token is None else Access(host, token, named)
+        self._server = PageServer(access, port, self._board, self._frame, self._receive, self._page_gone)
 
     @property
     def address(self) -> str:
         """Where the page is."""
         return self._server.address
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self._world.time)
 
     @property
     def page_count(self) -> int:
@@ -142,8 +184,94 @@ class Viewer:
             self.gate.close()
         else:
             self.gate.open()
-        self.on_hold(paused)
+        self._update_hold()
         self._board.put("pause", {"type": "pause", "paused": paused})
+        self.on_pause(paused)
+
+    def set_speed(self, speed: float | None) -> None:
+        """Bounds the speed of the simulation.
+
+        Args:
+            speed: Simulated time by real time; None for as fast as the script goes.
+        """
+        self.gate.set_speed(speed)
+        self._update_hold()
+        self._board.put("speed", {"type": "speed", "speed": speed})
+
+    def wait_for_turn(self, *, listening: bool = False) -> bool:
+        """Waits until a step may be made.
+
+        Args:
+            listening: Return without a step when the user moves a slider or presses a key, too, so that a
+                script that asks for these sees them while it is paused.
+
+        Returns:
+            Whether to make the step.
+        """
+        if not self.gate.wait(listening=listening):
+            return False
+        if not self._moments.start_is_known:
+            with self.lock:
+                self._moments.keep_start()
+            self._update_hold()
+        self.gate.keep_pace(float(self._world.time))
+        return True
+
+    def has_turn(self) -> bool:
+        """Whether a step may be made now; it then counts as made."""
+        if not self.gate.passes():
+            return False
+        if not self._moments.start_is_known:
+            with self.lock:
+                self._moments.keep_start()
+            self._update_hold()
+        return True
+
+    def key_events(self) -> dict[int, int]:
+        """What happened to keys since the last call; after ESC has been told the viewer closes."""
+        events = self.keyboard.events()
+        self._leaving.told(events)
+        return events
+
+    def _update_hold(self) -> None:
+        held = (
+            self.gate.closed
+            or self.gate.speed is not None
+            or not self._moments.start_is_known
+            or not self.is_open
+            or self._leaving.pending
+        )
+        if held != self.held:
+            self.held = held
+            self.on_hold(held)
+
+    def plot(self, name: str, value: float) -> None:
+        """Plots a value of the script on all pages, under a name; call it again when it changes.
+
+        Raises:
+            ValueError: It is no finite number.
+        """
+        number = float(value)
+        if not isfinite(number):
+            raise ValueError(f"plot {name!r} is given {value!r}; it has to be a finite number")
+        self._values[str(name)] = number
+
+    def slider(self, name: str, lower: float, upper: float, start: float) -> Slider:
+        """Adds a slider to the panel; its `value` is where the user has put it.
+
+        Raises:
+            ValueError: A number is not finite, or the bounds are no interval with the start in it.
+        """
+        if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
+            raise ValueError(f"slider {name!r} goes from {lower} to {upper} and starts at {start}")
+        slider = Slider(name, float(lower), float(upper), float(start))
+        self.controls.add(max(self.controls.sliders, default=-1) + 1, slider)
+        return slider
+
+    @property
+    def rays(self) -> Rays:
+        """What has to be told of rays that are cast, while `rays.wanted`."""
+        return self._details.rays
 
     def draw_now(self) -> None:
         """Returns when all pages that can be seen have drawn the world as it is now.
@@ -154,7 +282,13 @@ class Viewer:
             self._pictures.wait(self._server.page_numbers, _DRAWING_PATIENCE)
 
     def open_browser(self) -> None:
-        """Opens the page where there is a display, unless one of the last run is still open."""
+        """Shows the page: below the cell of a notebook, or in the browser, if there is a display.
+
+        A page of the last run that is still open is left to show this one.
+        """
+        if in_notebook():
+            show(self._repr_html_())
+            return
         if not has_display():
             return
 
@@ -168,21 +302,27 @@ class Viewer:
 
     def _repr_html_(self) -> str:
         """The page, for notebooks."""
-        return f'<iframe src="{self.address}" style="width:100%;height:520px;border:0"></iframe>'
+        return frame(self._server.port, self._server.access.token)
 
     def close(self) -> None:
         """Ends it: pages say that the simulation is over."""
         self.is_open = False
+        self._leaving.cancel()
         self.gate.open()
+        if self._turnstile in self._world.observers:
+            self._world.observers.remove(self._turnstile)
         self._server.stop()
 
     def _frame(self) -> bytes | None:
         self.drawings.expire()
         self._hands.apply()
+        self._chores.do()
+        if not self.held and not self._moments.start_is_known:
+            self._update_hold()
         extras: dict[str, Any] = {"picture": self._pictures.asked}
-        if self._plotted:
-            extras["joints"] = self._probes.samples()
-        return self._feed.frame(extras)
+        if self._values:
+            extras["values"] = self._values.copy()
+        return self._feed.frame(extras, self._details.blocks())
 
     def _receive(self, page: int, told: dict[str, Any]) -> None:
         self._answers[told["type"]](page, told)
@@ -190,15 +330,40 @@ class Viewer:
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)
         self._pictures.forget(page)
-        self._collisions.pop(page, None)
-        self._plot(page, set())
-        self._feed.collisions = any(self._collisions.values())
+        self._want(page, NOTHING)
         self._hands.release(page)
         self._hands.apply(_PATIENCE)
+        if not self.page_count and self.gate.closed:
+            go_on = Timer(_RECONNECTION, self._go_on_unwatched)
+            go_on.daemon = True
+            go_on.start()
+
+    def _go_on_unwatched(self) -> None:
+        """Nobody is left who could end a pause; a page that is loaded again is back by now."""
+        if not self.page_count and self.gate.closed:
+            self.pause(False)
 
     def _take_key(self, page: int, told: dict[str, Any]) -> None:
-        change = self.keyboard.press if told["down"] else self.keyboard.release
-        change(page, str(told["key"]), str(told["code"]))
+        key, code, down = str(told["key"]), str(told["code"]), bool(told["down"])
+        change = self.keyboard.press if down else self.keyboard.release
+        change(page, key, code)
+        if down and key_code(key, code) == ESCAPE:
+            self._leaving.escape(listening=self.keyboard.is_asked or self.gate.listeners > 0)
+            self._update_hold()
+        self.gate.call_back()
+
+    def _take_speed(self, page: int, told: dict[str, Any]) -> None:
+        speed = told["speed"]
+        if speed is None or 0.0 < float(speed) < inf:
+            self.set_speed(None if speed is None else float(speed))
+
+    def _take_slider(self, page: int, told: dict[str, Any]) -> None:
+        self.controls.move(int(told["slider"]), float(told["value"]))
+        self.gate.call_back()
+
+    def _take_press(self, page: int, told: dict[str, Any]) -> None:
+        self.controls.press(int(told["slider"]))
+        self.gate.call_back()
 
     def _take_mouse(self, page: int, told: dict[str, Any]) -> None:
         x, y = float(told["x"]), float(told["y"])
@@ -211,49 +376,33 @@ class Viewer:
         x, y, z = _vector(told["target"])
         distance, yaw, pitch = (float(told[name]) for name in ("distance", "yaw", "pitch"))
         if all(map(isfinite, (x, y, z, distance, yaw, pitch))) and distance > 0.0:
-            self.camera.moved(distance, yaw, pitch, (x, y, z))
+            chosen = bool(told.get("chosen", True))
+            self.camera.moved(distance, yaw, pitch, (x, y, z), chosen=chosen)
 
     def _take_size(self, page: int, told: dict[str, Any]) -> None:
         width, height = int(told["width"]), int(told["height"])
         if min(width, height) > 0:
             self.camera.resized(width, height)
 
-    def _take_wish(self, page: int, told: dict[str, Any]) -> None:
-        self._collisions[page] = bool(told["collisions"])
-        self._feed.collisions = any(self._collisions.values())
+    def _want(self, page: int, wish: Wish) -> None:
+        self._details.want(page, wish)
+        self._feed.collisions = self._details.wish.collisions
 
-    def _take_plots(self, page: int, told: dict[str, Any]) -> None:
-        self._plot(page, {(int(body), int(joint)) for body, joint in told["joints"][:_MOST_PLOTS]})
-
-    def _plot(self, page: int, joints: set[tuple[int, int]]) -> None:
-        if joints:
-            self._plotted[page] = joints
-        else:
-            self._plotted.pop(page, None)
-        # Nobody may step while the observers of the world change.
-        with self.lock:
-            self._probes.watch(set().union(*self._plotted.values()))
+    def _take_drive(self, page: int, told: dict[str, Any]) -> None:
+        body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])
+        self._chores.add(lambda: drive(self._world, body, joint, target, place=self.gate.closed))
 
     def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
         point, target = _vector(told["point"]), _vector(told["target"])
-        if self._pulls:
-            self._hands.take(page, int(told["body"]), int(told["link"]), point, target)
+        self._hands.take(page, int(told["body"]), int(told["link"]), point, target)
 
     def _close_by_user(self) -> None:
         self.is_open = False
+        self._leaving.cancel()
         self.gate.open()
-        self.on_hold(True)
+        self._update_hold()
 
 
 def _vector(values: Any) -> Vector3:
     x, y, z = map(float, values)
     return (x, y, z)
-
-
-def has_display() -> bool:
-    """Whether a browser could show something here, and somebody would look."""
-    if "CI" in os.environ:
-        return False
-    if sys.platform in ("win32", "darwin"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -161,7 +161,7 @@ class BodyBatch:
             self._state["dof_motor"],
             dofs,
             self._scene.parameters.substep_time,
-            np.clip(targets, lower[places], upper[places]),
+            np.clip(np.asarray(targets, dtype=np.float64), lower[places], upper[places]),
             velocities,
             gains,
             velocity_gains,

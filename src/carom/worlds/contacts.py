@@ -81,8 +81,8 @@ def links_touching(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDA
 
     Args:
         engine: The worlds.
-        first: Rows of links, one after the other.
-        second: Rows of the others.
+        first: Rows of links, which follow each other.
+        second: Rows of the others, likewise.
 
     Returns:
         (worlds, links) booleans.
@@ -90,12 +90,10 @@ def links_touching(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDA
     contacts = engine.touch.contacts.numpy
     counts = contacts["count_contacts"][:, THERE]
     touching = np.zeros((len(counts), len(first)), dtype=bool)
-    most = int(counts.max(initial=0))
-    sides = contacts["contact_shapes"][:, :most, 2:4]
-    there = np.arange(most) < counts[:, None]
-    for own, other in ((0, 1), (1, 0)):
-        places = sides[..., own] - first[0]
-        chosen = there & (places >= 0) & (places < len(first)) & np.isin(sides[..., other], second)
-        worlds, points = np.nonzero(chosen)
-        touching[worlds, places[worlds, points]] = True
+    worlds, points = np.nonzero(np.arange(counts.max(initial=0)) < counts[:, None])
+    sides = contacts["contact_shapes"][worlds, points, 2:4]
+    for own, other in (sides.T, sides.T[::-1]):
+        places = own - first[0]
+        chosen = (places >= 0) & (places < len(first)) & (other >= second[0]) & (other <= second[-1])
+        touching[worlds[chosen], places[chosen]] = True
     return touching

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from carom.engine.engine import Engine
 from carom.world import World
+from carom.worlds.lone import copy_coordinates
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -42,8 +43,7 @@ def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray
     try:
         images = []
         for world in worlds:
-            positions = engine.arrays.state.numpy["position"][world]
-            scene.arrays.state.numpy["position"][0, : len(positions)] = positions
+            copy_coordinates(engine, int(world), scene)
             images.append(camera.capture(scene))
     finally:
         camera.mount(mounted)

@@ -25,6 +25,12 @@ def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_t
     return world
 
 
+def copy_coordinates(engine: Engine, number: int, world: World) -> None:
+    """Put the bodies of a world where they are in one of the worlds of an engine that has the same bodies."""
+    positions = engine.arrays.state.numpy["position"][number]
+    world.arrays.state.numpy["position"][0, : len(positions)] = positions
+
+
 def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:
     for name, array in source.numpy.items():
         target.numpy[name][0, : array.shape[1]] = array[number]

@@ -22,7 +22,7 @@ from carom.worlds.body import BodyBatch
 from carom.worlds.checks import Mask, broadcast, world_numbers
 from carom.worlds.contacts import ContactSummary, links_touching, summarise_contacts
 from carom.worlds.images import Images, take_images
-from carom.worlds.lone import lone_world
+from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.memory import check_memory
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
@@ -213,6 +213,22 @@ class Worlds:
             float(self.times[number]),
             float(self._unspent_times[number]),
         )
+
+    def copy_coordinates(self, number: int, world: World) -> None:
+        """Put the bodies of a `World` where they are in one of these, to ask it what these cannot be asked.
+
+        Args:
+            number: The one of these.
+            world: A world with the same bodies, such as that which these are copies of. Its velocities stay.
+
+        Raises:
+            IndexError: There is no such world.
+            ValueError: It has other bodies.
+        """
+        (row,) = world_numbers([number], self.count)
+        if world.arrays.used["position"] != self._engine.arrays.used["position"]:
+            raise ValueError("that world has other bodies")
+        copy_coordinates(self._engine, int(row), world)
 
     # Parameters
 

@@ -6,11 +6,11 @@ import os
 from math import pi
 from typing import Any
 
-import gymnasium
 import numpy as np
 
 import pybullet
 import pybullet_data
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.env_bases import BulletEnv
 
 CART, POLE = 0, 1

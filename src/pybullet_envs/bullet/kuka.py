@@ -10,10 +10,10 @@ from typing import Any
 import pybullet
 import pybullet_data
 
-_WRIST, _GRIPPER = 6, 7
-_LEFT_FINGER, _LEFT_TIP, _RIGHT_FINGER, _RIGHT_TIP = 8, 10, 11, 13
+WRIST, GRIPPER = 6, 7
+LEFT_FINGER, LEFT_TIP, RIGHT_FINGER, RIGHT_TIP = 8, 10, 11, 13
 # The bounds within which the wrist is sent [m].
-_REACH_X, _REACH_Y = (0.5, 0.65), (-0.17, 0.22)
+REACH_X, REACH_Y = (0.5, 0.65), (-0.17, 0.22)
 _DOWN = (0.0, -pi, 0.0)
 _STANCE = (
     *(0.006418, 0.413184, -0.011401, -1.589317, 0.005379, 1.137684, -0.006539),
@@ -62,8 +62,8 @@ class Kuka:
         self.useSimulation = 1
         self.useNullSpace = 21
         self.useOrientation = 1
-        self.kukaEndEffectorIndex = _WRIST
-        self.kukaGripperIndex = _GRIPPER
+        self.kukaEndEffectorIndex = WRIST
+        self.kukaGripperIndex = GRIPPER
         self.ll = [-0.967, -2, -2.96, 0.19, -2.96, -2.09, -3.05]
         self.ul = [0.967, 2, 2.96, 2.29, 2.96, 2.09, 3.05]
         self.jr = [5.8, 4, 5.8, 4, 5.8, 4, 6]
@@ -120,19 +120,19 @@ class Kuka:
         x, y, z = self.endEffectorPos
         # In place, since scripts keep the list.
         self.endEffectorPos[:] = [
-            min(max(x + dx, _REACH_X[0]), _REACH_X[1]),
-            min(max(y + dy, _REACH_Y[0]), _REACH_Y[1]),
+            min(max(x + dx, REACH_X[0]), REACH_X[1]),
+            min(max(y + dy, REACH_Y[0]), REACH_Y[1]),
             z + dz,
         ]
         self.endEffectorAngle += turn
-        self._go(self._joints_for(self.endEffectorPos))
+        self._go(self.joints_for(self.endEffectorPos))
         self._drive(self.kukaGripperIndex, self.endEffectorAngle, self.maxForce)
-        self._drive(_LEFT_FINGER, -finger, self.fingerAForce)
-        self._drive(_RIGHT_FINGER, finger, self.fingerBForce)
-        self._drive(_LEFT_TIP, 0.0, self.fingerTipForce)
-        self._drive(_RIGHT_TIP, 0.0, self.fingerTipForce)
+        self._drive(LEFT_FINGER, -finger, self.fingerAForce)
+        self._drive(RIGHT_FINGER, finger, self.fingerBForce)
+        self._drive(LEFT_TIP, 0.0, self.fingerTipForce)
+        self._drive(RIGHT_TIP, 0.0, self.fingerTipForce)
 
-    def _joints_for(self, place: Sequence[float]) -> tuple[float, ...]:
+    def joints_for(self, place: Sequence[float]) -> tuple[float, ...]:
         """Where the joints bring the wrist to a place."""
         options: dict[str, Any] = {}
         if self.useOrientation:

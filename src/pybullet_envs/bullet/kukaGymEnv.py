@@ -6,16 +6,24 @@ import os
 import time
 from typing import Any
 
-import gymnasium
 import numpy as np
 
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.bullet.kuka import Kuka
 from pybullet_envs.bullet.urdf_env import UrdfEnv
 
-_FINGER_OPEN = 0.3
-_CLOSING_STEPS, _LIFTING_STEPS = 100, 1000
+FINGER_OPEN = 0.3
+CLOSING_STEPS, LIFTING_STEPS = 100, 1000
+# Heights at which lifting ends [m].
+BLOCK_HIGH, WRIST_HIGH = 0.23, 0.5
+# How near the tray the gripper grasps [m].
+GRASP_DISTANCE = 0.005
+# How far the gripper sinks in a step [m].
+SINK = -0.002
+# How the wrist rises in a step while the fingers close, and then [m].
+CLOSING_RISE, LIFTING_RISE = 0.0001, 0.001
 # What the choices of the discrete action move: along x, along y, and the turn.
-_CHOICES = ((0, 0, 0), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1))
+CHOICES = ((0, 0, 0), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1))
 
 
 class KukaGymEnv(UrdfEnv):
@@ -73,7 +81,7 @@ class KukaGymEnv(UrdfEnv):
 
     def _actions(self) -> gymnasium.spaces.Space[Any]:
         if self._isDiscrete:
-            return gymnasium.spaces.Discrete(len(_CHOICES))
+            return gymnasium.spaces.Discrete(len(CHOICES))
         return gymnasium.spaces.Box(-1.0, 1.0, (3,), np.float32)
 
     def _observations(self) -> gymnasium.spaces.Box:
@@ -92,6 +100,10 @@ class KukaGymEnv(UrdfEnv):
         )
         self._p.setGravity(0, 0, -10)
         self._kuka = Kuka(self._urdfRoot, self._timeStep, self._p)
+        self._settle()
+
+    def _settle(self) -> None:
+        """Takes the step that is done before an episode."""
         self._p.stepSimulation()
 
     def _lay_table(self) -> None:
@@ -113,11 +125,11 @@ class KukaGymEnv(UrdfEnv):
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Moves the gripper on."""
         if self._isDiscrete:
-            x, y, turn = _CHOICES[int(action)]
+            x, y, turn = CHOICES[int(action)]
         else:
             x, y, turn = (float(value) for value in action)
         size = self._step_size
-        return self.step2([size * x, size * y, -0.002, self._turn_size * turn, _FINGER_OPEN])
+        return self.step2([size * x, size * y, SINK, self._turn_size * turn, FINGER_OPEN])
 
     def step2(self, action: list[float]) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Moves the gripper by an action as `Kuka.applyAction` takes it."""
@@ -140,7 +152,7 @@ class KukaGymEnv(UrdfEnv):
         """Whether the episode is over; grasps when the gripper comes to the tray."""
         if self.terminated or self._envStepCounter > self._maxSteps:
             return True
-        if not self._p.getClosestPoints(self._kuka.trayUid, self._kuka.kukaUid, 0.005):
+        if not self._p.getClosestPoints(self._kuka.trayUid, self._kuka.kukaUid, GRASP_DISTANCE):
             return False
         self.terminated = True
         self._grasp()
@@ -148,15 +160,15 @@ class KukaGymEnv(UrdfEnv):
 
     def _grasp(self) -> None:
         """Closes the fingers and lifts, until the block or the wrist is high."""
-        for step in range(_CLOSING_STEPS):
-            finger = _FINGER_OPEN * (1.0 - step / _CLOSING_STEPS)
-            self._kuka.applyAction([0, 0, 0.0001, 0, finger])
+        for step in range(CLOSING_STEPS):
+            finger = FINGER_OPEN * (1.0 - step / CLOSING_STEPS)
+            self._kuka.applyAction([0, 0, CLOSING_RISE, 0, finger])
             self._p.stepSimulation()
-        for _ in range(_LIFTING_STEPS):
-            self._kuka.applyAction([0, 0, 0.001, 0, 0.0])
+        for _ in range(LIFTING_STEPS):
+            self._kuka.applyAction([0, 0, LIFTING_RISE, 0, 0.0])
             self._p.stepSimulation()
             wrist = self._p.getLinkState(self._kuka.kukaUid, self._kuka.kukaEndEffectorIndex)[0]
-            if self._block_position()[2] > 0.23 or wrist[2] > 0.5:
+            if self._block_position()[2] > BLOCK_HIGH or wrist[2] > WRIST_HIGH:
                 return
 
     def _block_position(self) -> tuple[float, float, float]:

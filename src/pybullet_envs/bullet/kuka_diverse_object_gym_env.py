@@ -7,9 +7,9 @@ import os
 import time
 from typing import Any
 
-import gymnasium
 import numpy as np
 
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.bullet.kuka import Kuka
 from pybullet_envs.bullet.kukaGymEnv import KukaGymEnv
 

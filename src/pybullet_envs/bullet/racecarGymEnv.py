@@ -7,9 +7,9 @@ import time
 from math import cos, sin
 from typing import Any
 
-import gymnasium
 import numpy as np
 
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.bullet.racecar import Racecar
 from pybullet_envs.bullet.urdf_env import UrdfEnv
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import gymnasium
 import numpy as np
 
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.bullet.racecarGymEnv import RacecarGymEnv
 
 _NEAR, _FAR, _HEIGHT = 0.3, 1.0, 0.3

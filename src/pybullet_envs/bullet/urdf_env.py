@@ -5,10 +5,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-import gymnasium
 import numpy as np
 
 import pybullet_data
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.env_bases import BulletEnv
 
 

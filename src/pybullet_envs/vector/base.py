@@ -55,7 +55,11 @@ class BulletVectorEnv(WorldsEnv):
             camera=_camera_of(single) if render_mode is not None else None,
         )
         self.take(single)
-        single.close()
+        if not self._asks:
+            single.close()
+
+    _asks = False
+    """Whether the single environment is kept, to ask it for what there is for one world only."""
 
     @abstractmethod
     def take(self, single: Any) -> None:

@@ -114,25 +114,22 @@ class Middle:
         links: dict[int, list[int]] = {}
         for part in parts:
             links.setdefault(part.body, []).append(part.bodyPartIndex)
-        # Of each body its bases, then its links: sums are to come out the same to the last digit.
-        self._groups = []
-        for body, numbers in links.items():
-            inner = [number for number in numbers if number >= 0]
-            self._groups.append((worlds[body], len(numbers) - len(inner), np.array(inner, dtype=np.int64)))
-        count = sum(len(numbers) for numbers in links.values())
-        self._places = np.empty((count, worlds.count, 3))
+        # Of each body its base, then its links: sums are to come out the same to the last digit.
+        self._links = [(worlds[body], link) for body, own in links.items() for link in _base_first(own)]
+        self._total = np.empty((worlds.count, 2))
 
     def positions(self) -> Array:
-        """[m], (worlds, 3)."""
-        row = 0
-        for body, bases, links in self._groups:
-            self._places[row : row + bases] = body.base_poses[:, :3]
-            row += bases
-            if len(links):
-                poses = body.stepped_link_poses[:, links, :3]
-                self._places[row : row + len(links)] = poses.transpose(1, 0, 2)
-                row += len(links)
-        return self._places.mean(axis=0)
+        """Along x and y [m], (worlds, 2)."""
+        total = self._total
+        total[:] = 0.0
+        for body, link in self._links:
+            poses = body.base_poses if link < 0 else body.stepped_link_poses[:, link]
+            total += poses[:, :2]
+        return total / len(self._links)
+
+
+def _base_first(links: list[int]) -> list[int]:
+    return sorted(links, key=lambda link: link >= 0)
 
 
 def _run(places: Sequence[int]) -> slice | np.ndarray:

@@ -24,7 +24,7 @@ from carom.description import (
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import compose, inverse
 from carom.formats.mjcf.context import MjcfContext
-from carom.formats.mjcf.defaults import Attributes, class_defaults
+from carom.formats.mjcf.defaults import Attributes, class_defaults, limits_left_out
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.mjcf.geom import read_contact, read_geom
 from carom.formats.mjcf.joint import FREE, joint_position, read_joint
@@ -112,7 +112,7 @@ class ModelReader:
             context.next_number()
         child_class = element.attributes.get("childclass", scope.child_class)
         defaults = class_defaults(context, element, scope.child_class)
-        pose = read_pose(context, element, {**defaults, **element.attributes})
+        pose = read_pose(context, element, self._placing({**defaults, **element.attributes}, element))
         # What is inside is given in the body's frame, or like everything in that of the world.
         inner = Scope(child_class, inverse(pose) if context.compiler.global_frames else IDENTITY)
         own = compose(scope.into, pose)
@@ -121,6 +121,8 @@ class ModelReader:
         content = _Content()
         for child, within in _without_frames(context, element, inner):
             attributes_of = class_defaults(context, child, within.child_class)
+            if child.tag == "joint":
+                attributes_of = limits_left_out(context, child, within.child_class, attributes_of)
             attributes = {**attributes_of, **child.attributes}
             if child.tag == "joint":
                 kind = attributes.get("type")
@@ -166,6 +168,13 @@ class ModelReader:
             contact=content.contact,
         )
         return own
+
+    def _placing(self, attributes: Attributes, element: Element) -> Attributes:
+        """The attributes of a body that say where it is."""
+        if self.context.as_mujoco or "axisangle" not in attributes:
+            return attributes
+        self.context.warn(element, "axisangle does not turn bodies in PyBullet; left out")
+        return {name: text for name, text in attributes.items() if name != "axisangle"}
 
     def _add_link(self, element: Element, name: str | None) -> int:
         """A link, its name made up where it has none."""

@@ -58,6 +58,7 @@ class MjcfContext(FileContext):
         unnamed: Number of names made up so far.
         colours: Colours of geoms count.
         implicit: Capsules given by their ends are capsules, not PyBullet's swept spheres.
+        as_mujoco: `axisangle` turns bodies, and classes limit joints; PyBullet leaves both out.
     """
 
     def __init__(self, file: Path, root: Element, search: AssetSearch) -> None:
@@ -69,6 +70,7 @@ class MjcfContext(FileContext):
         self.unnamed: int = 0
         self.colours = False
         self.implicit = False
+        self.as_mujoco = True
 
     def error(self, element: Element, reason: str) -> DescriptionError:
         """An error at an element, with the file it stands in, its line and its place in the document."""

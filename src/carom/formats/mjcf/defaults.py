@@ -7,6 +7,7 @@ from carom.formats.robot.context import shown
 from carom.formats.xml_tree import Element
 
 MAIN = "main"
+_LIMITS = ("limited", "range")
 Attributes = dict[str, str]
 
 
@@ -38,3 +39,18 @@ def class_defaults(context: MjcfContext, element: Element, child_class: str | No
             raise context.error(element, f"there is no default class {shown(name)}")
         return {}
     return context.classes[name].get(element.tag, {})
+
+
+def limits_left_out(
+    context: MjcfContext, element: Element, child_class: str | None, defaults: Attributes
+) -> Attributes:
+    """The defaults of a joint without the limits that a named class gives it, unless these count.
+
+    They do also where a joint that says it is limited has no other: PyBullet ends the process there.
+    """
+    in_main = (element.attributes.get("class") or child_class or MAIN) == MAIN
+    if context.as_mujoco or in_main or element.attributes.get("limited") == "true":
+        return defaults
+    main = context.classes.get(MAIN, {}).get(element.tag, {})
+    kept = {name: text for name, text in defaults.items() if name not in _LIMITS}
+    return {**kept, **{name: main[name] for name in _LIMITS if name in main}}

@@ -24,7 +24,12 @@ _SILENT = ("option", "size", "visual", "statistic")
 
 
 def read_mjcf(
-    path: Path, *, colours: bool = False, implicit: bool = False, search: AssetSearch | None = None
+    path: Path,
+    *,
+    colours: bool = False,
+    implicit: bool = False,
+    as_mujoco: bool = True,
+    search: AssetSearch | None = None,
 ) -> list[PlacedRobot]:
     """Reads and checks an MJCF file.
 
@@ -38,6 +43,8 @@ def read_mjcf(
         colours: The colours of geoms count; otherwise they are white.
         implicit: Capsules given by their ends are capsules; otherwise they have the inertia that
             PyBullet gives to swept spheres.
+        as_mujoco: `axisangle` turns bodies, and named classes limit joints. Otherwise both are left out, as
+            PyBullet leaves them out.
         search: Where the file and what it refers to are looked for.
 
     Returns:
@@ -52,6 +59,7 @@ def read_mjcf(
     context = MjcfContext(file, root, search)
     context.colours = colours
     context.implicit = implicit
+    context.as_mujoco = as_mujoco
     _Inclusion(context).expand(root, file, (file,))
     for element in root.all("default"):
         read_defaults(context, element)

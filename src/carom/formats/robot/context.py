@@ -16,6 +16,8 @@ from carom.formats.xml_tree import Element
 
 _log = logging.getLogger(__name__)
 _LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_LEADING_BITS = re.compile(r"[+-]?0[xX][0-9a-fA-F]+|" + _LEADING_NUMBER.pattern)
+_LEAST_BITS = -(1 << 31)
 
 _LONGEST_SHOWN = 60
 
@@ -91,10 +93,20 @@ class FileContext:
         return None if text is None else self.parse_bits(element, attribute, text)
 
     def parse_bits(self, element: Element, attribute: str, text: str) -> int:
-        """32 bits, as a signed number."""
-        value = int(self.parse_number(element, attribute, text))
-        if not -(1 << 31) <= value < 1 << 32:
-            raise self.error(element, f"{attribute}={value} does not fit into 32 bits")
+        """32 bits, as a signed number.
+
+        As in PyBullet no bit is set by what is no number, such as the name of a group, and the highest alone
+        by what is too large.
+        """
+        match = _LEADING_BITS.match(text.strip())
+        if match is None:
+            self.warn(element, f"{attribute}={shown(text)} is no number, so it is read as 0, as in PyBullet")
+            return 0
+        digits = match.group()
+        value = int(digits, 16) if "x" in digits.lower() else _whole(float(digits))
+        if not _LEAST_BITS <= value < 1 << 32:
+            self.warn(element, f"{attribute}={shown(text)} does not fit into 32 bits; the highest is set")
+            return _LEAST_BITS
         return value if value < 1 << 31 else value - (1 << 32)
 
     def parse_number(self, element: Element, attribute: str, text: str) -> float:
@@ -199,6 +211,11 @@ class FileContext:
             for entry in bullet.all("user-data"):
                 pairs[self.required(entry, "key")] = "" if entry.text.isspace() else entry.text
         return pairs
+
+
+def _whole(value: float) -> int:
+    """A number without its fraction; infinity is beyond all 32-bit numbers."""
+    return int(value) if isfinite(value) else 1 << 32
 
 
 def shown(text: str) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from carom.errors import DescriptionError
 from carom.formats.robot.context import MAX_MAGNITUDE, FileContext
 from carom.formats.search import AssetSearch
+from carom.formats.shipped import advice
 
 _log = logging.getLogger(__name__)
 
@@ -23,7 +24,7 @@ def locate(path: Path, search: AssetSearch) -> Path:
     """
     found = search.find(path)
     if found is None:
-        raise DescriptionError(f"no such file: {path}", file=path)
+        raise DescriptionError(f"no such file: {path}{advice(path, search.places)}", file=path)
     return found.absolute()
 
 

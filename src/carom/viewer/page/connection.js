@@ -17,7 +17,8 @@ export class Connection {
   open() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     const folder = location.pathname.replace(/[^/]*$/, "");
-    const socket = new WebSocket(`${scheme}://${location.host}${folder}socket`);
+    // The address may hold a token, by which the page may come through a proxy or from another machine.
+    const socket = new WebSocket(`${scheme}://${location.host}${folder}socket${location.search}`);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => this.changed(true);
     socket.onmessage = (event) => this.receive(...decoded(event.data));

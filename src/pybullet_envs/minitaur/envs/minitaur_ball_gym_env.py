@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from math import atan2, cos, hypot, pi, sin
 
-import gymnasium
 import numpy as np
 
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, MinitaurGymEnv
 
 GOAL_DISTANCE_THRESHOLD = 0.8

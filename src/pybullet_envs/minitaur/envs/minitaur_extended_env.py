@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import gymnasium
 import numpy as np
 
+from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.minitaur.envs.leg_pose_env import NUM_LEGS, pose_of
 from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS
 from pybullet_envs.minitaur.envs.minitaur_reactive_env import MinitaurReactiveEnv

@@ -1,0 +1,44 @@
+"""Capsules that an MJCF file gives by their ends: in PyBullet swept spheres in the frame of the ends.
+
+They touch as capsules do, but their bounds lie along the axes of that frame and are 4 cm larger, and that
+frame decides whether such a shape is in place at the centre of mass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from carom.description import Capsule, Collision
+from carom.description.transform import NO_ROTATION, compose, inverse, rotation_matrix
+from carom.model.bounds import Bounds, shape_bounds
+
+FIRST_MARGIN = 0.04
+"""Margin of shapes that nobody gave another one [m]: swept spheres, and hulls while they are made."""
+
+
+def is_swept(collision: Collision) -> bool:
+    """Whether a shape is a swept sphere."""
+    return collision.ends_frame is not None and isinstance(collision.geometry, Capsule)
+
+
+def as_given(collision: Collision) -> Collision:
+    """A shape where the file has it; what is given by its ends is where they are given."""
+    return collision if collision.ends_frame is None else replace(collision, frame=collision.ends_frame)
+
+
+def bounds_between_ends(collision: Collision, margin: float) -> Bounds:
+    """Bounds of a capsule or cylinder along the axes of the frame in which its ends are given.
+
+    Args:
+        collision: The shape.
+        margin: Widens the bounds of a capsule [m].
+    """
+    assert collision.ends_frame is not None, "the shape is given by its ends"
+    within = compose(inverse(collision.ends_frame), collision.frame)
+    rotation = rotation_matrix(within.orientation)
+    geometry = collision.geometry
+    if not isinstance(geometry, Capsule):
+        return shape_bounds(geometry, implicit_cylinder=True).placed(rotation, within.position)
+    ball = geometry.radius
+    x, y, z = (0.5 * geometry.length * abs(row[2]) + ball for row in rotation)
+    return Bounds((0.0, 0.0, 0.0), (x, y, z)).grown(margin).placed(NO_ROTATION, within.position)

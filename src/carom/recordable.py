@@ -1,0 +1,50 @@
+"""Recording a world into a page that replays it."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
+
+class Recordable:
+    """How a world is recorded, and how it shows itself in notebooks."""
+
+    def _repr_html_(self) -> str:
+        tables = import_module("carom.tables")
+        return tables.world_table(self)
+
+    def record(
+        self,
+        path: str | Path,
+        *,
+        fps: float = 60.0,
+        title: str | None = None,
+        contacts: bool = True,
+        joints: bool = True,
+    ) -> AbstractContextManager[Any]:
+        """Record all steps into one HTML file that replays them, without a server or a network.
+
+            with world.record("fall.html"):
+                world.step(480)
+
+        Args:
+            path: The file; one that is there is replaced.
+            fps: Frames for each second of simulated time.
+            title: What the page is called; the name of the file by default.
+            contacts: Record contacts and their forces.
+            joints: Record positions, velocities and torques of joints.
+
+        Returns:
+            A `carom.viewer.replay.ReplayRecorder`: a context manager that writes the file when the context is
+            left, as its `stop()` does.
+
+        Raises:
+            ValueError: The rate is not positive.
+        """
+        # What shows a world is built upon it, so it is found by name when it is asked for.
+        replay = import_module("carom.viewer.replay")
+        return replay.ReplayRecorder(self, path, fps=fps, title=title, contacts=contacts, joints=joints)

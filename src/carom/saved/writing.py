@@ -1,0 +1,49 @@
+"""Writing a file whole: nobody ever sees half of it."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+from contextlib import suppress
+from pathlib import Path
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Writes a file beside its place and moves it there.
+
+    A symbolic link stays, and what it leads to is written. A file that is there keeps its permissions; a new
+    one has those that the umask leaves. What is no file, as `/dev/null`, is written to and never replaced.
+
+    Raises:
+        OSError: It cannot be written; a file that was there is as it was.
+    """
+    target = Path(os.path.realpath(path))
+    mode = 0o666
+    if target.exists():
+        if not target.is_file():
+            _write_into(target, data)
+            return
+        mode = target.stat().st_mode & 0o777
+    if not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(target.parent))
+    draft = target.parent / f".carom-{secrets.token_hex(8)}"
+    # Not by `tempfile`, whose files are for their owner alone.
+    descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        with os.fdopen(descriptor, "wb") as stream:
+            stream.write(data)
+        if target.exists():
+            draft.chmod(mode)
+        os.replace(draft, target)
+    except BaseException:
+        with suppress(OSError):
+            draft.unlink()
+        raise
+
+
+def _write_into(target: Path, data: bytes) -> None:
+    if not target.is_char_device():
+        raise OSError(f"{target} is neither a file nor a device to write to")
+    with target.open("wb") as stream:
+        stream.write(data)

@@ -1,0 +1,65 @@
+"""What was meant by a misspelt argument, said below the error that ends a script."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+_UNKNOWN = re.compile(r"^([\w.]+)\(\) got an unexpected keyword argument '(\w+)'")
+_PACKAGES = ("carom", "pybullet")
+_LIKENESS = 0.6
+
+Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]
+
+
+def suggestion(problem: BaseException) -> str | None:
+    """The argument that was meant; None for other problems, and where nothing is like it.
+
+    Looked up when a script has failed, so that no call pays for it.
+    """
+    found = _UNKNOWN.match(str(problem)) if isinstance(problem, TypeError) else None
+    if found is None:
+        return None
+    function = _function_called(found[1])
+    if function is None:
+        return None
+    from difflib import get_close_matches
+
+    names = [name for name in inspect.signature(function).parameters if name != "self"]
+    # Names that differ in their beginning alone are likelier meant than those as long.
+    near = get_close_matches(found[2], names, 1, _LIKENESS)
+    return f"Did you mean {near[0]!r}?" if near else f"Its arguments are {', '.join(names)}."
+
+
+def install() -> None:
+    """Adds suggestions to what Python prints when a script fails; doing so again changes nothing."""
+    if getattr(sys.excepthook, "suggests", False):
+        return
+    before: Hook = sys.excepthook
+
+    def hook(kind: type[BaseException], problem: BaseException, traceback: TracebackType | None) -> None:
+        before(kind, problem, traceback)
+        if said := suggestion(problem):
+            print(said, file=sys.stderr)
+
+    hook.suggests = True  # pyright: ignore[reportFunctionMemberAccess]
+    sys.excepthook = hook
+
+
+def _function_called(name: str) -> Callable[..., Any] | None:
+    """The function of one of our modules with a qualified name."""
+    for module_name in sorted(sys.modules):
+        if module_name.partition(".")[0] not in _PACKAGES:
+            continue
+        found: Any = sys.modules[module_name]
+        for part in name.split("."):
+            found = getattr(found, "__dict__", {}).get(part)
+            if found is None:
+                break
+        if callable(found):
+            return found
+    return None

@@ -1,0 +1,190 @@
+"""What pages want to know beside where everything is, and how they are told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from time import monotonic
+from typing import TYPE_CHECKING, Any, Literal
+
+from carom.model.body_spec import BASE
+from carom.viewer import readings
+from carom.viewer.board import Board
+from carom.viewer.rays import Rays
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+# How long a frame waits for a world that is stepping before it repeats the last details [s].
+_PATIENCE = 0.005
+# How often masses and constraints are looked at [s].
+_PERIOD = 0.25
+_MOST_LINKS = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What one page, or all together, want to know.
+
+    Attributes:
+        collisions: Collision shapes.
+        contacts: Contacts of each frame.
+        joints: Numbers of the bodies whose joints are read, or all.
+        links: Bodies and links whose motion is read.
+        dynamics: Masses and inertias.
+        constraints: Constraints that scripts have made.
+        rays: Rays that scripts cast.
+    """
+
+    collisions: bool = False
+    contacts: bool = False
+    joints: frozenset[int] | Literal["all"] = frozenset()
+    links: frozenset[tuple[int, int]] = frozenset()
+    dynamics: bool = False
+    constraints: bool = False
+    rays: bool = False
+
+    @classmethod
+    def told(cls, told: dict[str, Any]) -> Wish:
+        """That of a message from a page."""
+        joints = told.get("joints", [])
+        return cls(
+            joints="all" if joints == "all" else frozenset(int(body) for body in joints),
+            links=frozenset((int(body), int(link)) for body, link in told.get("links", [])[:_MOST_LINKS]),
+            **{
+                name: bool(told.get(name, False))
+                for name in ("collisions", "contacts", "dynamics", "constraints", "rays")
+            },
+        )
+
+    def __or__(self, other: Wish) -> Wish:
+        return Wish(
+            self.collisions or other.collisions,
+            self.contacts or other.contacts,
+            "all" if self.joints == "all" or other.joints == "all" else self.joints | other.joints,
+            self.links | other.links,
+            self.dynamics or other.dynamics,
+            self.constraints or other.constraints,
+            self.rays or other.rays,
+        )
+
+
+NOTHING = Wish()
+
+
+class Details:
+    """Reads what all pages together want to know. Belongs to one thread.
+
+    Args:
+        world: The world.
+        lock: Held by whoever steps or changes the world.
+        board: Where masses, constraints and rays are shown.
+
+    Attributes:
+        wish: What is wanted now.
+        rays: Those of scripts.
+    """
+
+    def __init__(self, world: World, lock: Any, board: Board) -> None:
+        self._world = world
+        self._world_lock = lock
+        self._board = board
+        self.wish: Wish = NOTHING
+        self.rays: Rays = Rays(board)
+        self._wishes: dict[int, Wish] = {}
+        self._joints = readings.JointReadings(world)
+        self._last: list[tuple[str, readings.Columns]] = []
+        self._due = 0.0
+        self._dynamics: dict[int, dict[str, Any]] = {}
+        self._constraints: list[dict[str, Any]] = []
+
+    def want(self, page: int, wish: Wish) -> None:
+        """A page wants to know this from now on."""
+        if wish == NOTHING:
+            self._wishes.pop(page, None)
+        else:
+            self._wishes[page] = wish
+        wanted = NOTHING
+        for each in self._wishes.values():
+            wanted |= each
+        if wanted.joints != self.wish.joints:
+            # Nobody may step while the observers of the world change.
+            with self._world_lock:
+                self._joints.watch(wanted.joints)
+        self.wish = wanted
+        self.rays.wanted = wanted.rays
+        self._due = 0.0
+
+    def blocks(self) -> list[tuple[str, readings.Columns]]:
+        """Numbers that follow the poses in a frame, by name."""
+        wish = self.wish
+        if wish.rays:
+            self.rays.show()
+        if not (wish.contacts or wish.joints or wish.links or wish.dynamics or wish.constraints):
+            return []
+        if not self._world_lock.acquire(timeout=_PATIENCE):
+            return self._last
+        try:
+            self._last = self._read(wish)
+            if monotonic() >= self._due:
+                self._due = monotonic() + _PERIOD
+                self._show_dynamics(wish.dynamics)
+                self._show_constraints(wish.constraints)
+        finally:
+            self._world_lock.release()
+        return self._last
+
+    def _read(self, wish: Wish) -> list[tuple[str, readings.Columns]]:
+        blocks = []
+        if wish.contacts:
+            blocks.append(("contacts", readings.contacts(self._world)))
+        if wish.joints:
+            blocks.append(("joints", self._joints.rows()))
+        if wish.links:
+            blocks.append(("links", readings.links(self._world, sorted(wish.links))))
+        return blocks
+
+    def _show_dynamics(self, wanted: bool) -> None:
+        facts = {number: _dynamics(body) for number, body in self._world.bodies.items()} if wanted else {}
+        for number in self._dynamics.keys() - facts.keys():
+            self._board.take_down(("dynamics", number), {"type": "no dynamics", "dynamics": number})
+        for number, known in facts.items():
+            if self._dynamics.get(number) != known:
+                self._board.put(("dynamics", number), known)
+        self._dynamics = facts
+
+    def _show_constraints(self, wanted: bool) -> None:
+        constraints = _constraints(self._world) if wanted else []
+        if constraints != self._constraints:
+            self._constraints = constraints
+            self._board.put("constraints", {"type": "constraints", "constraints": constraints})
+
+
+def _dynamics(body: Body) -> dict[str, Any]:
+    links = []
+    for link in range(BASE, body.joint_count):
+        dynamics = body.dynamics(link)
+        inertia = [value if isfinite(value) else 0.0 for value in dynamics.inertia]
+        links.append({"mass": dynamics.mass, "inertia": inertia})
+    return {"type": "dynamics", "dynamics": body.id, "body": body.id, "links": links}
+
+
+def _constraints(world: World) -> list[dict[str, Any]]:
+    return [
+        {
+            "constraint": tie.id,
+            "kind": tie.kind.name.lower(),
+            "parent": {
+                "body": tie.parent.id,
+                "link": tie.parent_link + 1,
+                "position": tie.parent_frame.position,
+            },
+            "child": {
+                "body": -1 if tie.child is None else tie.child.id,
+                "link": tie.child_link + 1,
+                "position": tie.child_frame.position,
+            },
+        }
+        for tie in world.user_constraints.all
+    ]

@@ -1,0 +1,41 @@
+"""Driving joints from a page, without code. Its functions are called while nobody steps the world."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from carom.joint_motor import aim_at_position
+from carom.model.codes import JointCode
+
+if TYPE_CHECKING:
+    from carom.world import World
+
+_GAIN, _VELOCITY_GAIN = 0.1, 1.0
+# Greatest force of the drive where the file states no effort [N m or N].
+_FORCE = 500.0
+# Greatest speed of a driven joint [rad/s or m/s]: a slider is moved faster than a robot should.
+_SPEED = 2.0
+
+
+def drive(world: World, body_id: int, joint: int, target: float, *, place: bool) -> None:
+    """Moves a joint to where a page's slider is; what does not exist or cannot be driven is left alone.
+
+    Args:
+        world: The world.
+        body_id: Number of the body.
+        joint: Index of the joint.
+        target: Its position [rad or m].
+        place: Put it there at once, as nothing is moving; else its motor moves it.
+    """
+    body = world.bodies.get(body_id)
+    if body is None or not 0 <= joint < body.joint_count or not isfinite(target):
+        return
+    if body.joint_types[joint] not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+        return
+    if place:
+        body.set_joint_state(joint, [target], [0.0])
+    row = body.velocity_index[joint]
+    force = body.link_spec(joint).effort or _FORCE
+    step = world.parameters.substep_time
+    aim_at_position(world.motor, slice(row, row + 1), step, target, 0.0, _GAIN, _VELOCITY_GAIN, force, _SPEED)

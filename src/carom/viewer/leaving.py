@@ -1,0 +1,54 @@
+"""How a user ends a simulation: by the close button at once, by ESC after the script has seen the key."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Timer
+
+ESCAPE = 27
+# How long a script that asks for keys may take to see ESC before the window closes anyway [s].
+_PATIENCE = 1.0
+
+
+class Leaving:
+    """Ends a simulation when the user presses ESC. Safe to use from all threads.
+
+    PyBullet closes its window within a frame of ESC, and a loop that asks for the keys sees the key
+    before. Here that is no matter of luck: a script that asks for keys is given the key first.
+
+    Args:
+        close: Ends the simulation; called once or more.
+    """
+
+    def __init__(self, close: Callable[[], None]) -> None:
+        self._close = close
+        self._timer: Timer | None = None
+
+    @property
+    def pending(self) -> bool:
+        """Whether ESC has been pressed, and the script has yet to see it."""
+        return self._timer is not None
+
+    def escape(self, *, listening: bool) -> None:
+        """The user has pressed ESC.
+
+        Args:
+            listening: The script asks for keys.
+        """
+        if not listening:
+            self._close()
+        elif self._timer is None:
+            self._timer = Timer(_PATIENCE, self._close)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def told(self, events: dict[int, int]) -> None:
+        """The script has been told of these keys."""
+        if self._timer is not None and ESCAPE in events:
+            self._timer.cancel()
+            self._close()
+
+    def cancel(self) -> None:
+        """The simulation has ended otherwise."""
+        if self._timer is not None:
+            self._timer.cancel()

@@ -1,0 +1,60 @@
+"""The page inside a notebook: found by the browser, wherever the notebook runs."""
+
+from __future__ import annotations
+
+import html
+import json
+import sys
+from typing import Any
+from uuid import uuid4
+
+from carom.viewer.page_files import page_files
+
+HEIGHT = 520
+_UNREACHABLE = """<p style="font: 14px system-ui, sans-serif">The simulation cannot be reached from here. It
+has ended, or the notebook server has no proxy: <code>pip install jupyter-server-proxy</code> and restart it.
+What needs no connection is a recording: <code>with world.record("run.html") as replay: ...</code> and
+<code>replay</code> as the last line of a cell.</p>"""
+
+
+def frame(port: int, token: str, height: int = HEIGHT) -> str:
+    """HTML that shows the page of a server on the machine of the kernel.
+
+    Args:
+        port: Of the server.
+        token: Of the server.
+        height: Of the frame [pixels].
+    """
+    identifier = f"carom-{uuid4().hex}"
+    facts = json.dumps({"id": identifier, "port": port, "token": token, "unreachable": _UNREACHABLE})
+    script = page_files()["notebook.js"].decode().replace("FACTS", facts.replace("</", "<\\/"))
+    style = f"width:100%;height:{height}px;border:0"
+    address = f"http://127.0.0.1:{port}/?token={token}"
+    # The address is for those who show HTML and run no scripts.
+    return (
+        f'<iframe id="{identifier}" src="{address}" style="{style}" allow="fullscreen"></iframe>'
+        f"<script>{script}</script>"
+    )
+
+
+def replay_frame(page: str, height: int = HEIGHT) -> str:
+    """HTML that shows a replay, whose page is inside it."""
+    return f'<iframe srcdoc="{html.escape(page)}" style="width:100%;height:{height}px;border:0"></iframe>'
+
+
+def in_notebook() -> bool:
+    """Whether this process is the kernel of a notebook."""
+    shell = _shell()
+    return shell is not None and hasattr(shell, "kernel")
+
+
+def show(markup: str) -> None:
+    """Shows HTML below the present cell."""
+    from importlib import import_module
+
+    import_module("IPython.display").display({"text/html": markup}, raw=True)
+
+
+def _shell() -> Any:
+    ipython = sys.modules.get("IPython")
+    return None if ipython is None else ipython.get_ipython()

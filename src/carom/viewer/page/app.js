@@ -1,0 +1,299 @@
+// The page at work: brings messages to what they are for, and draws.
+
+import { Bodies } from "./panel/bodies.js";
+import { Camera } from "./view/camera.js";
+import { Drawings } from "./view/drawings.js";
+import { Grasp, pick } from "./view/picking.js";
+import { History, nameOf } from "./time/history.js";
+import { Keys } from "./panel/keys.js";
+import { Labels, labelJoints } from "./view/labels.js";
+import { Options } from "./panel/options.js";
+import { Overlays } from "./view/overlays.js";
+import { Panel } from "./panel/panel.js";
+import { Player } from "./time/player.js";
+import { Plots } from "./panel/plots.js";
+import { Pointer } from "./view/pointer.js";
+import { Previews } from "./panel/previews.js";
+import { Readings } from "./view/readings.js";
+import { Renderer } from "./view/renderer.js";
+import { Saving } from "./time/saving.js";
+import { Scene } from "./view/scene.js";
+import { Timeline } from "./time/timeline.js";
+import { Toggles } from "./panel/toggles.js";
+import { Viewpoint } from "./panel/viewpoint.js";
+
+/** After so long without a change nothing is going on [ms]. */
+const STILL_MS = 500;
+/** Simulated time after which the view is no longer moved to bodies that come [s]. */
+const SETTLED = 1;
+
+export class App {
+  /**
+   * @param {(message: object) => void} send tells the simulation
+   * @param {(text: ?string) => void} say shows a notice
+   */
+  constructor(send, say) {
+    this.send = send;
+    this.canvas = document.getElementById("view");
+    const labels = document.getElementById("labels");
+    this.renderer = new Renderer(this.canvas);
+    this.scene = new Scene(this.renderer.gl, this.renderer.byProcessor);
+    this.camera = new Camera();
+    this.options = new Options();
+    this.readings = new Readings();
+    this.history = new History();
+    this.player = new Player(this.history, (header, payload) => this.show(header, payload));
+    this.drawings = new Drawings(this.renderer.gl, labels);
+    this.labels = new Labels(labels);
+    this.overlays = new Overlays(this.scene, this.options, this.readings);
+    this.panel = new Panel(send, this.options);
+    this.toggles = new Toggles(this.options, () => this.optionsChanged());
+    this.timeline = new Timeline(this.player, send);
+    this.plots = new Plots(this.scene, this.history, this.player, () => this.tellWants());
+    this.bodies = new Bodies(this.scene, this.readings, send);
+    this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
+    this.previews = new Previews();
+    this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), say);
+    this.keys = new Keys(this);
+    this.bindMouse();
+    this.bodies.selectionChanged = (body, link) => this.select(body, link);
+    this.saving.changed = () => this.changed();
+    this.answers = this.makeAnswers();
+    this.stale = true;
+    this.cameraToTell = false;
+    /** Number of the picture that the script waits for, once it is to be drawn, and the last one asked for. */
+    this.awaited = null;
+    this.told = 0;
+    document.addEventListener("visibilitychange", () => this.tellVisibility());
+    for (const element of document.querySelectorAll("details")) element.addEventListener("toggle", () => this.tellWants());
+    this.startDrawing();
+  }
+
+  bindMouse() {
+    const pointer = new Pointer(this.canvas, this.camera, this.send, () => this.cameraMoved());
+    pointer.hoverChanged = () => this.options.names && this.changed();
+    pointer.grasp = new Grasp(this.scene, this.camera, this.options, this.send);
+    pointer.clicked = (x, y) => {
+      const found = pick(this.scene, this.options, this.camera.eye, this.camera.ray(x, y));
+      this.bodies.select(found?.body ?? null, found?.link ?? null);
+      if (found) document.getElementById("bodies").open = true;
+    };
+    this.pointer = pointer;
+  }
+
+  makeAnswers() {
+    const { scene, drawings, panel, overlays } = this;
+    return {
+      title: (header) => panel.showTitle(header),
+      mesh: (header, payload) => scene.addMesh(header, payload),
+      "no mesh": (header) => scene.removeMesh(header),
+      texture: (header, payload) => scene.addTexture(header, payload),
+      "no texture": (header) => scene.removeTexture(header),
+      body: (header) => this.bodiesChanged(scene.addBody(header)),
+      "no body": (header) => this.bodiesChanged(scene.removeBody(header)),
+      dynamics: (header) => scene.addDynamics(header),
+      "no dynamics": (header) => scene.removeDynamics(header),
+      layout: (header) => this.bodiesChanged((scene.layout = header)),
+      "no layout": () => {},
+      frame: (header, payload) => this.showFrame(header, payload),
+      constraints: (header) => (overlays.constraints = header.constraints),
+      "no constraints": () => (overlays.constraints = []),
+      rays: (_, payload) => overlays.takeRays(payload),
+      "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
+      previews: (header, payload) => {
+        this.previews.take(header, payload);
+        this.previews.show(this.options);
+      },
+      line: (header) => drawings.add(header),
+      text: (header) => drawings.add(header),
+      points: (header, payload) => drawings.add(header, payload),
+      "no item": (header) => drawings.remove(header),
+      slider: (header) => panel.addSlider(header),
+      "no slider": (header) => panel.removeSlider(header),
+      pause: (header) => panel.showPause(header),
+      speed: (header) => panel.showSpeed(header),
+      mark: (header) => this.timeline.addMark(header),
+      "no mark": (header) => this.timeline.removeMark(header),
+      camera: (header) => {
+        this.camera.set(header);
+        if (header.chosen) this.viewpoint.undecided = false;
+      },
+      options: (header) => {
+        this.options.take(header);
+        this.scriptOptions = header;
+        this.optionsChanged();
+      },
+    };
+  }
+
+  /** A simulation begins to tell everything from the beginning. */
+  begin() {
+    for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
+    for (const part of [this.overlays, this.timeline, this.plots, this.player]) part.clear();
+    this.bodies.select(null);
+    [this.awaited, this.told] = [null, 0];
+    this.viewpoint.undecided = true;
+    this.viewpoint.fitted = null;
+    this.tellVisibility();
+    this.tellSize();
+    this.tellWants();
+    this.changed();
+  }
+
+  /** A message has come: it is remembered, and shown unless the past is. */
+  receive(header, payload) {
+    this.history.take(header, payload);
+    if (header.type === "frame") this.plotFrame(header, payload);
+    const name = nameOf(header);
+    const fleeting = header.type === "frame" || (name !== null && !name.startsWith("slider"));
+    if (fleeting && !this.player.live) return;
+    if (name !== null) this.player.stageNow(name, header.type.startsWith("no ") ? null : this.history.ledger.newest(name));
+    this.show(header, payload);
+    if (header.type === "frame") this.timeline.show();
+  }
+
+  show(header, payload) {
+    this.answers[header.type]?.(header, payload);
+    this.changed();
+  }
+
+  plotFrame(header, payload) {
+    if (this.plots.plotted.size === 0 && !header.values) return;
+    const readings = new Readings();
+    readings.take(header, payload);
+    this.plots.take(header, payload, readings);
+  }
+
+  showFrame(header, payload) {
+    this.scene.place(header, payload);
+    this.readings.take(header, payload);
+    this.panel.showTime(header);
+    if (document.getElementById("bodies").open) this.bodies.show();
+    if (!header.past && header.picture !== undefined && header.picture !== this.told) this.awaited = this.told = header.picture;
+    if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.undecided = false;
+    if (this.viewpoint.lookAtFirst()) this.cameraToTell = true;
+  }
+
+  bodiesChanged() {
+    this.plots.offer();
+    this.bodies.offer();
+  }
+
+  changed() {
+    this.stale = true;
+  }
+
+  select(body, link) {
+    this.overlays.selection = body === null ? null : { body, link };
+    this.viewpoint.selection = this.overlays.selection;
+    this.camera.followed = null;
+    this.tellWants();
+    this.changed();
+  }
+
+  optionsChanged() {
+    this.camera.yUp = this.options.yUp;
+    this.camera.update();
+    this.panel.showOptions();
+    this.toggles.show();
+    this.previews.show(this.options);
+    this.tellWants();
+    this.changed();
+  }
+
+  cameraMoved() {
+    this.viewpoint.undecided = false;
+    this.cameraToTell = true;
+    this.changed();
+  }
+
+  /** Tells the simulation what has to come with frames for what is shown. */
+  tellWants() {
+    if (!this.bodies) return;
+    const { wants } = this.options;
+    const plotted = this.plots.wants;
+    const { selected, link } = this.bodies;
+    const joints = wants.joints ? "all" : [...plotted.joints, ...(selected === null ? [] : [selected])];
+    const links = [...plotted.links, ...(selected === null ? [] : [[selected, (link ?? 0) - 1]])];
+    const dynamics = wants.dynamics || selected !== null;
+    this.send({ type: "want", ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links });
+  }
+
+  tellSize() {
+    this.send({ type: "size", width: this.camera.width, height: this.camera.height });
+  }
+
+  tellVisibility() {
+    this.send({ type: "visible", visible: !document.hidden });
+  }
+
+  /** What a saved replay is told beside what was recorded. */
+  facts() {
+    return { camera: this.camera.state(), options: this.scriptOptions };
+  }
+
+  startDrawing() {
+    this.moved = 0;
+    this.drawn = false;
+    this.last = this.since = performance.now();
+    this.frames = 0;
+    requestAnimationFrame((now) => this.draw(now));
+  }
+
+  draw(now) {
+    requestAnimationFrame((now) => this.draw(now));
+    const passed = now - this.last;
+    if (this.drawn) this.renderer.pace(passed);
+    this.last = now;
+    this.drawn = false;
+    this.player.tick(passed / 1000);
+    if (this.stale) this.moved = now;
+    this.renderer.still = now - this.moved > STILL_MS;
+    if (this.renderer.resize()) this.changed();
+    this.fitCanvas();
+    if (this.cameraToTell) {
+      this.cameraToTell = false;
+      this.send({ type: "camera", ...this.camera.state(), chosen: !this.viewpoint.undecided });
+    }
+    this.frames += 1;
+    if (now - this.since > 500) {
+      this.panel.showFps((this.frames * 1000) / (now - this.since));
+      [this.frames, this.since] = [0, now];
+    }
+    if (!this.stale) return;
+    this.stale = false;
+    if (this.options.rendering) this.drawScene();
+    if (this.awaited !== null) this.send({ type: "drawn", picture: this.awaited });
+    this.awaited = null;
+  }
+
+  fitCanvas() {
+    const { camera, canvas } = this;
+    if (camera.width === canvas.clientWidth && camera.height === canvas.clientHeight) return;
+    camera.resize(canvas.clientWidth, canvas.clientHeight);
+    this.tellSize();
+    this.changed();
+  }
+
+  drawScene() {
+    this.drawn = true;
+    const { scene, camera, options, drawings, pointer } = this;
+    this.viewpoint.follow();
+    const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
+    const lines = this.overlays.draw(drawings, pointer.grasp.line(), named);
+    this.renderer.draw(scene, camera, options, { lines, clouds: drawings.clouds, signs: drawings.signs });
+    drawings.placeLabels(scene, camera);
+    drawings.showName(scene, named, pointer.hovered);
+    this.labels.begin();
+    if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
+    this.labels.end();
+    this.toggles.showScales(this.overlays.scales);
+    this.viewpoint.show();
+    this.plots.draw();
+    this.saving.drawn();
+  }
+
+  underMouse() {
+    return pick(this.scene, this.options, this.camera.eye, this.camera.ray(...this.pointer.hovered));
+  }
+}

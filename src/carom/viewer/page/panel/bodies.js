@@ -1,0 +1,143 @@
+// The list of bodies, and what there is to know of the selected one; sliders drive its joints.
+
+import { makeSlider } from "./slider.js";
+
+const MOVABLE = /revolute|continuous|prismatic/;
+/** Reach of the slider of a joint without limits [rad or m]. */
+const FULL_TURN = Math.PI;
+const SLIDE = 1;
+
+export class Bodies {
+  /**
+   * @param {Scene} scene
+   * @param {Readings} readings
+   * @param {(message: object) => void} send
+   */
+  constructor(scene, readings, send) {
+    Object.assign(this, { scene, readings, send });
+    this.list = document.getElementById("bodies-list");
+    this.card = document.getElementById("body-card");
+    this.selected = null;
+    this.link = null;
+    this.sliders = new Map();
+    this.known = "";
+    /** Called with body and link (or null) once another one is selected. */
+    this.selectionChanged = () => {};
+  }
+
+  /** Lists the bodies there are. */
+  offer() {
+    const bodies = [...this.scene.bodies.values()];
+    const known = JSON.stringify(bodies.map(({ body, name, links }) => [body, name, links.length]));
+    if (known === this.known) return;
+    this.known = known;
+    document.getElementById("bodies-count").textContent = bodies.length;
+    this.list.replaceChildren(
+      ...bodies.slice(0, MOST_LISTED).map(({ body, name }) => {
+        const button = Object.assign(document.createElement("button"), { textContent: `${body}  ${name}` });
+        button.dataset.body = body;
+        button.addEventListener("click", () => this.select(body === this.selected ? null : body));
+        return button;
+      }),
+    );
+    if (this.selected !== null && !this.scene.bodies.has(this.selected)) this.select(null);
+    else this.mark();
+  }
+
+  mark() {
+    for (const button of this.list.children) button.classList.toggle("on", Number(button.dataset.body) === this.selected);
+  }
+
+  select(body, link = null) {
+    this.selected = body;
+    this.link = link;
+    this.mark();
+    this.build();
+    this.selectionChanged(body, link);
+  }
+
+  build() {
+    this.sliders.clear();
+    this.card.replaceChildren();
+    const body = this.scene.bodies.get(this.selected);
+    this.card.hidden = !body;
+    if (!body) return;
+    const title = Object.assign(document.createElement("h2"), { textContent: `${body.name} (body ${body.body})` });
+    this.facts = document.createElement("dl");
+    this.card.append(title, this.facts);
+    body.links.forEach((link, index) => {
+      if (MOVABLE.test(link.kind ?? "")) this.card.append(this.jointSlider(body.body, index - 1, link));
+    });
+    this.show();
+  }
+
+  jointSlider(body, joint, link) {
+    const control = makeSlider(`joint-${body}-${joint}`, link.joint, (value) => {
+      this.send({ type: "drive", body, joint, target: value });
+    });
+    const now = Object.assign(document.createElement("small"), { className: "now" });
+    control.element.append(now);
+    const reach = link.kind === "prismatic" ? SLIDE : FULL_TURN;
+    const [lower, upper] = link.limits ?? [-reach, reach];
+    const unit = link.kind === "prismatic" ? ["m", "m/s", "N"] : ["rad", "rad/s", "N·m"];
+    this.sliders.set(`${body},${joint}`, { ...control, now, lower, upper, unit, set: false });
+    return control.element;
+  }
+
+  /** Brings the numbers of the selected body up to date. */
+  show() {
+    const body = this.scene.bodies.get(this.selected);
+    if (!body) return;
+    const index = this.link ?? 0;
+    const pose = this.scene.linkPose(body.body, index);
+    const dynamics = this.scene.dynamics.get(body.body)?.links;
+    const facts = [["link", body.links[index].name]];
+    if (dynamics) {
+      const total = dynamics.reduce((sum, { mass }) => sum + mass, 0);
+      facts.push(["mass", `${dynamics[index].mass.toPrecision(4)} kg of ${total.toPrecision(4)} kg`]);
+    }
+    if (pose) {
+      facts.push(["position", numbers(pose.position, 4)]);
+      facts.push(["orientation", numbers(pose.orientation, 4)]);
+      facts.push(["roll pitch yaw", `${numbers(eulerDegrees(pose.orientation), 1)} °`]);
+    }
+    const reading = this.readings.links.get(`${body.body},${index - 1}`);
+    if (reading) {
+      facts.push(["velocity", `${numbers(reading.velocity, 3)} m/s`]);
+      facts.push(["turning", `${numbers(reading.rate, 3)} rad/s`]);
+    }
+    const text = facts.flat().join("\n");
+    if (text !== this.shown) {
+      this.shown = text;
+      this.facts.replaceChildren(
+        ...facts.flatMap(([name, value]) => [
+          Object.assign(document.createElement("dt"), { textContent: name }),
+          Object.assign(document.createElement("dd"), { textContent: value }),
+        ]),
+      );
+    }
+    for (const [key, slider] of this.sliders) this.showJoint(slider, this.readings.joints.get(key));
+  }
+
+  showJoint(slider, reading) {
+    if (!reading) return;
+    const [length, speed, force] = slider.unit;
+    slider.now.textContent = `${reading.position.toFixed(3)} ${length}, ${reading.velocity.toFixed(2)} ${speed}, ${reading.torque.toFixed(2)} ${force}`;
+    const aim = Number.isNaN(reading.target) ? reading.position : reading.target;
+    slider.show({ lower: slider.lower, upper: slider.upper, value: Math.min(Math.max(aim, slider.lower), slider.upper) });
+  }
+}
+
+/** More than this are too many to look through. */
+const MOST_LISTED = 500;
+
+function numbers(values, digits) {
+  return values.map((value) => (value + 0).toFixed(digits)).join("  ");
+}
+
+function eulerDegrees([x, y, z, w]) {
+  const roll = Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));
+  const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x))));
+  const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+  return [roll, pitch, yaw].map((angle) => (angle * 180) / Math.PI);
+}

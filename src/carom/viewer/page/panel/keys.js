@@ -1,0 +1,64 @@
+// Keys go to the script, and some change the view as they do in PyBullet's window.
+
+/** Keys that show or hide something. */
+const SHORTCUTS = {
+  a: "bounds",
+  c: "contacts",
+  g: "panel",
+  j: "frames",
+  k: "constraints",
+  l: "limits",
+  s: "shadows",
+  v: "visuals",
+  w: "wireframe",
+};
+/** Keys that would make the browser do something else than the script wants. */
+const KEPT_FROM_THE_BROWSER = /^(Arrow.*|Page.*|Home|End|Tab|Backspace| |F([1-46-9]|1[03-5]))$/;
+const TYPING = "input:not([type=range]):not([type=checkbox]), textarea, select";
+
+export class Keys {
+  /** @param {App} app */
+  constructor(app) {
+    this.app = app;
+    this.acts = {
+      d: () => app.send({ type: "sleep" }),
+      i: () => app.panel.togglePause(),
+      o: () => app.send({ type: "step" }),
+      p: () => app.send({ type: "profile", running: true }),
+      F1: () => app.saving.toggleFilm(),
+    };
+    window.addEventListener("keydown", (event) => this.down(event));
+    window.addEventListener("keyup", (event) => this.up(event));
+    // Whoever takes the keyboard away will not tell when keys go up.
+    window.addEventListener("blur", () => this.leave());
+  }
+
+  down(event) {
+    const { target, key } = event;
+    const element = target instanceof HTMLElement ? target : null;
+    if (element?.matches(TYPING) || event.isComposing) return;
+    const command = event.ctrlKey || event.metaKey;
+    const onControl = element?.matches("input, button, summary");
+    if (KEPT_FROM_THE_BROWSER.test(key) && !command && !onControl) event.preventDefault();
+    if (event.repeat) return;
+    this.app.send({ type: "key", key, code: event.code, down: true });
+    if (!this.app.options.shortcuts || command || event.altKey) return;
+    const name = SHORTCUTS[key];
+    if (name) {
+      this.app.options[name] = !this.app.options[name];
+      // In PyBullet's window the grid goes and comes with the rest.
+      if (name === "panel") this.app.options.grid = this.app.options.panel;
+      this.app.optionsChanged();
+    } else this.acts[key]?.();
+  }
+
+  up(event) {
+    this.app.send({ type: "key", key: event.key, code: event.code, down: false });
+    if (event.key === "p") this.app.send({ type: "profile", running: false });
+  }
+
+  leave() {
+    this.app.send({ type: "blur" });
+    this.app.send({ type: "profile", running: false });
+  }
+}

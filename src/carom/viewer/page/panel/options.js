@@ -1,0 +1,99 @@
+// What is shown and how: set by scripts (configureDebugVisualizer), by the panel and by keys.
+
+/** Numbers of PyBullet's COV_ENABLE_* flags. */
+const FLAG = {
+  panel: 1,
+  shadows: 2,
+  wireframe: 3,
+  rendering: 7,
+  shortcuts: 9,
+  picking: 10,
+  rgbPreview: 13,
+  depthPreview: 14,
+  segmentationPreview: 15,
+  reflections: 16,
+};
+
+export class Options {
+  constructor() {
+    this.panel = true;
+    this.shadows = true;
+    this.wireframe = false;
+    this.rendering = true;
+    this.shortcuts = true;
+    this.picking = true;
+    this.rgbPreview = true;
+    this.depthPreview = true;
+    this.segmentationPreview = true;
+    this.reflections = false;
+    this.names = false;
+    this.colours = new Map();
+    this.grid = true;
+    this.frames = false;
+    this.bounds = false;
+    this.collisions = false;
+    this.visuals = true;
+    this.transparent = false;
+    this.contacts = false;
+    this.forces = false;
+    this.cones = false;
+    this.axes = false;
+    this.torques = false;
+    this.limits = false;
+    this.positions = false;
+    this.masses = false;
+    this.inertias = false;
+    this.constraints = false;
+    this.rays = false;
+    this.yUp = false;
+    this.background = null;
+    this.lightPosition = [-3, -2.2, 6];
+    this.shadowIntensity = 0.85;
+    this.shadowResolution = 2048;
+    this.shadowWorldSize = null;
+    this.told = {};
+    /** Grows when the script changes something. */
+    this.version = 0;
+  }
+
+  /** Whether shapes are drawn: those that collide, or those that are there to be seen. */
+  shows(collision) {
+    return collision === this.collisions && (collision || this.visuals);
+  }
+
+  /** What frames have to tell for what is shown. */
+  get wants() {
+    return {
+      collisions: this.collisions,
+      contacts: this.contacts || this.forces || this.cones,
+      joints: this.torques || this.limits || this.positions,
+      dynamics: this.masses || this.inertias,
+      constraints: this.constraints,
+      rays: this.rays,
+    };
+  }
+
+  /** The colour a script has given to a link in wireframe, if any. */
+  wireColour(body, link) {
+    return this.colours.get(`${body},${link}`);
+  }
+
+  /** Takes over what the script has changed, and leaves what the user has. */
+  take(message) {
+    this.version += 1;
+    for (const [name, flag] of Object.entries(FLAG)) {
+      const value = message.flags?.[flag];
+      if (value !== undefined && value !== this.told[name]) this[name] = this.told[name] = value;
+    }
+    this.colours = new Map((message.colours ?? []).map(([body, link, colour]) => [`${body},${link}`, colour]));
+    if (message.names !== undefined) this.names = message.names;
+    this.yUp = message.up_axis === 1;
+    this.background = message.background ?? null;
+    if (message.light_position && message.light_position.some((x) => x !== 0)) {
+      this.lightPosition = message.light_position;
+    }
+    this.shadowIntensity = message.shadow_map_intensity ?? this.shadowIntensity;
+    this.shadowResolution = message.shadow_map_resolution ?? this.shadowResolution;
+    this.shadowWorldSize = message.shadow_map_world_size ? message.shadow_map_world_size / 2 : null;
+  }
+}

@@ -1,0 +1,102 @@
+// The panel: time and speed, and the sliders and buttons of the script.
+
+import { makeSlider } from "./slider.js";
+
+export class Panel {
+  constructor(send, options) {
+    this.send = send;
+    this.options = options;
+    this.root = document.getElementById("panel");
+    this.sliders = document.getElementById("sliders");
+    this.controls = new Map();
+    document.getElementById("close").addEventListener("click", () => send({ type: "close" }));
+    document.getElementById("fold").addEventListener("click", () => this.fold(!this.folded));
+    this.pause = document.getElementById("pause");
+    this.step = document.getElementById("step");
+    this.speed = document.getElementById("speed");
+    this.paused = false;
+    this.pause.addEventListener("click", () => this.togglePause());
+    this.step.addEventListener("click", () => send({ type: "step" }));
+    document.getElementById("reset").addEventListener("click", () => send({ type: "reset" }));
+    this.speed.addEventListener("change", () => {
+      send({ type: "speed", speed: this.speed.value === "" ? null : Number(this.speed.value) });
+    });
+    this.fold(window.innerWidth < 420);
+    this.showOptions();
+  }
+
+  /** Shows the title alone, or all of it. */
+  fold(folded) {
+    this.folded = folded;
+    this.root.classList.toggle("folded", folded);
+    const button = document.getElementById("fold");
+    button.textContent = folded ? "▾" : "▴";
+    button.title = folded ? "Unfold the panel" : "Fold the panel";
+  }
+
+  togglePause() {
+    this.send({ type: "pause", paused: !this.paused });
+  }
+
+  showOptions() {
+    this.root.hidden = !this.options.panel;
+    document.getElementById("timeline").hidden = !this.options.panel;
+  }
+
+  showPause({ paused }) {
+    this.paused = paused;
+    this.pause.textContent = paused ? "Continue" : "Pause";
+    this.step.disabled = !paused;
+  }
+
+  showSpeed({ speed }) {
+    this.speed.value = speed ?? "";
+  }
+
+  showTime({ time, rate }) {
+    document.getElementById("clock").textContent = time.toFixed(3);
+    if (rate !== undefined) document.getElementById("rate").textContent = rate.toFixed(2);
+  }
+
+  showFps(fps) {
+    document.getElementById("fps").textContent = fps.toFixed(0);
+  }
+
+  showTitle({ title }) {
+    document.title = title;
+    document.getElementById("title").textContent = title;
+  }
+
+  addSlider(message) {
+    const known = this.controls.get(message.slider);
+    if (known) known.show(message);
+    else this.controls.set(message.slider, message.button ? this.makeButton(message) : this.makeSlider(message));
+  }
+
+  removeSlider({ slider }) {
+    this.controls.get(slider)?.element.remove();
+    this.controls.delete(slider);
+  }
+
+  clear() {
+    for (const slider of [...this.controls.keys()]) this.removeSlider({ slider });
+  }
+
+  makeButton({ slider, name }) {
+    const element = Object.assign(document.createElement("div"), { className: "slider" });
+    const button = Object.assign(document.createElement("button"), { textContent: name });
+    button.addEventListener("click", () => this.send({ type: "press", slider }));
+    element.append(button);
+    this.sliders.append(element);
+    return { element, show() {} };
+  }
+
+  makeSlider(message) {
+    const control = makeSlider(`slider-${message.slider}`, message.name, (value) => {
+      this.send({ type: "slider", slider: message.slider, value });
+    });
+    this.sliders.append(control.element);
+    control.show(message);
+    return control;
+  }
+}

@@ -1,0 +1,154 @@
+// Charts of what joints, bodies, contacts, sensors and scripts do over time.
+
+import { Chart } from "./chart.js";
+import { download } from "../time/download.js";
+import { sourcesOf } from "./sources.js";
+import { POSE_FLOATS } from "../view/scene.js";
+import { Readings } from "../view/readings.js";
+
+/** More samples than these of one plot are thinned out no further but forgotten. */
+const MOST_SAMPLES = 20000;
+
+export class Plots {
+  /** @param {() => void} wantsChanged called once other numbers are needed from the simulation */
+  constructor(scene, history, player, wantsChanged) {
+    Object.assign(this, { scene, history, player, wantsChanged });
+    this.select = document.getElementById("joint");
+    this.root = document.getElementById("charts");
+    this.plotted = new Map();
+    this.sources = new Map();
+    this.valueNames = new Set();
+    this.known = "";
+    this.select.addEventListener("change", () => {
+      if (this.select.value) this.add(this.sources.get(this.select.value));
+      this.select.value = "";
+    });
+  }
+
+  /** Offers what there is. */
+  offer() {
+    const groups = sourcesOf(this.scene, this.valueNames);
+    const known = JSON.stringify(Object.values(groups).map((group) => group.map(({ key, title }) => [key, title])));
+    if (known === this.known) return;
+    this.known = known;
+    this.sources = new Map(Object.values(groups).flatMap((group) => group.map((source) => [source.key, source])));
+    const options = Object.entries(groups).filter(([, group]) => group.length > 0).map(([title, group]) => {
+      const element = Object.assign(document.createElement("optgroup"), { label: title });
+      element.append(...group.slice(0, 500).map(({ key, title }) => new Option(title, key)));
+      return element;
+    });
+    this.select.replaceChildren(new Option("Plot…", ""), ...options);
+    document.getElementById("plots").hidden = this.sources.size === 0;
+    for (const key of [...this.plotted.keys()]) if (!this.sources.has(key)) this.remove(key);
+  }
+
+  /** What the plots need to be told of. */
+  get wants() {
+    const wants = { joints: [], links: [], contacts: false };
+    for (const { source } of this.plotted.values()) {
+      wants.joints.push(...(source.wants.joints ?? []));
+      wants.links.push(...(source.wants.links ?? []));
+      wants.contacts ||= !!source.wants.contacts;
+    }
+    return wants;
+  }
+
+  add(source) {
+    if (!source || this.plotted.has(source.key)) return;
+    const root = Object.assign(document.createElement("div"), { className: "chart" });
+    const header = document.createElement("header");
+    const buttons = document.createElement("span");
+    for (const [text, title, act] of [
+      ["CSV", "Save these numbers", () => this.save(source.key)],
+      ["✕", "Remove", () => this.remove(source.key)],
+    ]) {
+      const button = Object.assign(document.createElement("button"), { textContent: text, title });
+      button.addEventListener("click", act);
+      buttons.append(button);
+    }
+    header.append(source.title, buttons);
+    root.append(header);
+    const charts = source.charts.map(({ name, traces }) => new Chart(name, traces));
+    for (const chart of charts) {
+      chart.changed = () => this.draw();
+      root.append(chart.canvas);
+    }
+    this.root.append(root);
+    const plot = { source, root, charts, samples: [] };
+    this.plotted.set(source.key, plot);
+    this.refill(plot);
+    this.wantsChanged();
+  }
+
+  /** Takes what the past knows of a new plot. */
+  refill(plot) {
+    const readings = new Readings();
+    for (const { header, payload } of this.history.frames.slice(-MOST_SAMPLES)) {
+      readings.take(header, payload);
+      this.sample(plot, header, payload, readings);
+    }
+    this.draw();
+  }
+
+  remove(key) {
+    this.plotted.get(key)?.root.remove();
+    this.plotted.delete(key);
+    this.wantsChanged();
+  }
+
+  clear() {
+    for (const plot of this.plotted.values()) plot.samples.length = 0;
+    this.valueNames.clear();
+  }
+
+  /** Takes over what a frame tells. */
+  take(header, payload, readings) {
+    for (const name of Object.keys(header.values ?? {})) this.takeName(name);
+    for (const plot of this.plotted.values()) this.sample(plot, header, payload, readings);
+  }
+
+  /** What a script plots is shown without being asked for. */
+  takeName(name) {
+    if (this.valueNames.has(name)) return;
+    this.valueNames.add(name);
+    this.offer();
+    this.add(this.sources.get(`value ${name}`));
+  }
+
+  sample({ source, root, charts, samples }, header, payload, readings) {
+    const values = source.read({ readings, pose: this.poseIn(header, payload) });
+    if (!values) return;
+    const { time } = header;
+    if (samples.length && time < samples.at(-1).time) samples.length = 0;
+    if (samples.length && time === samples.at(-1).time) return;
+    samples.push({ time, values });
+    if (samples.length > MOST_SAMPLES) samples.splice(0, MOST_SAMPLES / 10);
+    charts.forEach(({ name }, index) => (root.dataset[name.replace(/\W.*/, "")] = values[index][0]));
+  }
+
+  poseIn({ layout }, payload) {
+    return (body, link) => {
+      const at = layout === this.scene.layout.layout ? this.scene.poseAt(body, link) : -1;
+      if (at < 0 || 4 * (at + POSE_FLOATS) > payload.byteLength) return null;
+      const [x, y, z, ...orientation] = new Float32Array(payload, 4 * at, POSE_FLOATS);
+      return { position: [x, y, z], orientation };
+    };
+  }
+
+  draw() {
+    const { player, history } = this;
+    const cursor = player.live || history.count === 0 ? null : history.frames[player.index].header.time;
+    for (const { charts, samples } of this.plotted.values()) {
+      charts.forEach((chart, index) => chart.draw(samples, index, cursor));
+    }
+  }
+
+  /** Saves a plot as a table: time and a column for each line. */
+  save(key) {
+    const { source, samples } = this.plotted.get(key);
+    const columns = source.charts.flatMap(({ name, traces }) => traces.map((trace) => `${name} ${trace.name}`.trim()));
+    const lines = samples.map(({ time, values }) => [time, ...values.flat()].map((value) => value ?? "").join(","));
+    const quoted = ["time [s]", ...columns].map((name) => `"${name}"`).join(",");
+    download(new Blob([`${[quoted, ...lines].join("\n")}\n`], { type: "text/csv" }), `${source.title}.csv`);
+  }
+}

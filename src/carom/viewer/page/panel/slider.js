@@ -1,0 +1,46 @@
+// A slider with its value beside it, which can be typed, and a button that sets it back.
+
+/**
+ * @param {string} id of the slider's element
+ * @param {string} name
+ * @param {(value: number) => void} moved called with where the user has put it
+ * @returns {{element: HTMLElement, show: (facts: {lower: number, upper: number, value: number}) => void}}
+ */
+export function makeSlider(id, name, moved) {
+  const element = Object.assign(document.createElement("div"), { className: "slider" });
+  const label = Object.assign(document.createElement("label"), { textContent: name, htmlFor: id });
+  const typed = Object.assign(document.createElement("input"), { type: "number", step: "any", title: `Value of ${name}` });
+  const reset = Object.assign(document.createElement("button"), { textContent: "↺", className: "reset", title: `Reset ${name}` });
+  const range = Object.assign(document.createElement("input"), { type: "range", step: "any", id });
+  const header = Object.assign(document.createElement("div"), { className: "line" });
+  header.append(label, typed, reset);
+  element.append(header, range);
+  let start = null;
+  let digits = 3;
+  let held = false;
+  const read = () => {
+    if (document.activeElement !== typed) typed.value = Number(range.value).toFixed(digits);
+    reset.disabled = start === null || Math.abs(Number(range.value) - start) < 1e-12;
+  };
+  const set = (value) => {
+    range.value = value;
+    read();
+    moved(Number(range.value));
+  };
+  range.addEventListener("pointerdown", () => (held = true));
+  for (const kind of ["pointerup", "pointercancel"]) window.addEventListener(kind, () => (held = false));
+  range.addEventListener("input", () => set(range.value));
+  typed.addEventListener("change", () => typed.value !== "" && set(Number(typed.value)));
+  typed.addEventListener("keydown", (event) => event.key === "Enter" && typed.blur());
+  typed.addEventListener("blur", read);
+  reset.addEventListener("click", () => set(start));
+  const show = ({ lower, upper, value }) => {
+    // While the user moves it, what comes back is where it was.
+    if (held) return;
+    start ??= value;
+    digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(upper - lower || 1))));
+    [range.min, range.max, range.value] = [lower, upper, value];
+    read();
+  };
+  return { element, show };
+}

@@ -1,0 +1,73 @@
+// What can be plotted, and how its numbers are read from a frame.
+
+import { composed } from "../view/maths.js";
+
+const MOVABLE = /revolute|continuous|prismatic/;
+const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
+
+/** Everything there is to plot now: groups of sources by title. */
+export function sourcesOf(scene, valueNames) {
+  const groups = { Joints: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
+  for (const body of scene.bodies.values()) {
+    body.links.forEach((link, index) => {
+      if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, index - 1, link));
+      if (index > 0) groups["Force-torque sensors"].push(sensorSource(body, index - 1, link));
+    });
+    groups.Bodies.push(bodySource(scene, body));
+    groups["Contact forces"].push(contactSource(body));
+  }
+  for (const name of valueNames) groups.Values.push(valueSource(name));
+  return groups;
+}
+
+function jointSource({ body, name }, joint, link) {
+  const read = ({ readings }) => {
+    const row = readings.joints.get(`${body},${joint}`);
+    if (!row) return null;
+    const known = (value) => (Number.isNaN(value) ? null : value);
+    return [
+      [row.position, known(row.target)],
+      [row.velocity, known(row.targetVelocity)],
+      [row.torque, known(row.applied)],
+    ];
+  };
+  const charts = ["position", "velocity", "torque"].map((quantity) => ({ name: quantity, traces: [{ name: "" }, { name: "target", target: true }] }));
+  return { key: `${body},${joint}`, title: `${name} · ${link.joint}`, charts, read, wants: { joints: [body] } };
+}
+
+function bodySource(scene, { body, name, links }) {
+  const read = ({ readings, pose }) => {
+    const where = pose(body, 0);
+    if (!where) return null;
+    const { position } = composed(where, links[0]);
+    const motion = readings.links.get(`${body},-1`);
+    return [position, motion?.velocity ?? [null, null, null], motion?.rate ?? [null, null, null]];
+  };
+  const charts = ["position [m]", "velocity [m/s]", "turning [rad/s]"].map((quantity) => ({ name: quantity, traces: XYZ }));
+  return { key: `body ${body}`, title: `${name} (body ${body})`, charts, read, wants: { links: [[body, -1]] } };
+}
+
+function contactSource({ body, name }) {
+  const read = ({ readings }) => {
+    const forces = readings.contacts.filter(({ a, b }) => a[0] === body || b[0] === body);
+    const pressure = forces.reduce((sum, contact) => sum + contact.pressure, 0);
+    const friction = forces.reduce((sum, contact) => sum + Math.hypot(...contact.friction), 0);
+    return [[pressure, friction]];
+  };
+  const charts = [{ name: "force [N]", traces: [{ name: "normal" }, { name: "friction" }] }];
+  return { key: `contact ${body}`, title: `${name} (body ${body})`, charts, read, wants: { contacts: true } };
+}
+
+function sensorSource({ body, name }, joint, link) {
+  const read = ({ readings }) => {
+    const row = readings.links.get(`${body},${joint}`);
+    return row ? [row.force, row.moment] : null;
+  };
+  const charts = ["force [N]", "moment [N·m]"].map((quantity) => ({ name: quantity, traces: XYZ }));
+  return { key: `sensor ${body},${joint}`, title: `${name} · ${link.joint}`, charts, read, wants: { links: [[body, joint]] } };
+}
+
+function valueSource(name) {
+  const read = ({ readings }) => (name in readings.values ? [[readings.values[name]]] : null);
+  return { key: `value ${name}`, title: name, charts: [{ name, traces: [{ name: "" }] }], read, wants: {} };
+}

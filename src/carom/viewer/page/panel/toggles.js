@@ -1,0 +1,76 @@
+// The switches: what is shown on this page.
+
+const GROUPS = [
+  [
+    "Scene",
+    ["shadows", "Shadows", "S"],
+    ["wireframe", "Wireframe", "W"],
+    ["visuals", "Visual shapes", "V"],
+    ["collisions", "Collision shapes", ""],
+    ["transparent", "Transparent", ""],
+    ["grid", "Grid", ""],
+    ["frames", "Link frames", "J"],
+    ["bounds", "Bounds", "A"],
+    ["names", "Names", ""],
+  ],
+  [
+    "Contacts",
+    ["contacts", "Points", "C"],
+    ["forces", "Forces", ""],
+    ["cones", "Friction cones", ""],
+    ["rays", "Rays", ""],
+  ],
+  [
+    "Joints and links",
+    ["axes", "Joint axes", ""],
+    ["torques", "Torques", ""],
+    ["positions", "Positions", ""],
+    ["limits", "Limits", "L"],
+    ["constraints", "Constraints", "K"],
+    ["masses", "Centres of mass", ""],
+    ["inertias", "Inertia boxes", ""],
+  ],
+];
+
+export class Toggles {
+  constructor(options, optionsChanged) {
+    this.options = options;
+    this.boxes = new Map();
+    const root = document.getElementById("toggles");
+    for (const [title, ...switches] of GROUPS) {
+      root.append(Object.assign(document.createElement("h2"), { textContent: title }));
+      const group = Object.assign(document.createElement("div"), { className: "toggles" });
+      for (const [name, text, key] of switches) group.append(this.makeSwitch(name, text, key, optionsChanged));
+      root.append(group);
+    }
+    this.scale = Object.assign(document.createElement("small"), { id: "scale" });
+    root.append(this.scale);
+    this.show();
+  }
+
+  makeSwitch(name, text, key, optionsChanged) {
+    const label = document.createElement("label");
+    const box = Object.assign(document.createElement("input"), { type: "checkbox", name });
+    box.addEventListener("change", () => {
+      this.options[name] = box.checked;
+      optionsChanged();
+    });
+    label.append(box, text);
+    if (key) label.append(Object.assign(document.createElement("kbd"), { textContent: key }));
+    this.boxes.set(name, box);
+    return label;
+  }
+
+  show() {
+    for (const [name, box] of this.boxes) box.checked = this.options[name];
+  }
+
+  /** Says what the length of arrows stands for. */
+  showScales({ force, torque }) {
+    const parts = [];
+    if ((this.options.forces || this.options.cones) && force) parts.push(`force: 1 m = ${force} N`);
+    if (this.options.torques && torque) parts.push(`torque: 1 m = ${torque} N·m or N`);
+    const text = parts.join(", ");
+    if (this.scale.textContent !== text) this.scale.textContent = text;
+  }
+}

@@ -1,0 +1,77 @@
+// Where the camera is: presets, following, and the numbers for resetDebugVisualizerCamera.
+
+import { add, turned } from "../view/maths.js";
+import { boundsOfBody, boundsOfScene } from "../view/bounds.js";
+import { PRESETS } from "../view/camera.js";
+
+export class Viewpoint {
+  /**
+   * @param {Camera} camera
+   * @param {Scene} scene
+   * @param {Options} options
+   * @param {() => void} moved called once the user has moved the camera
+   */
+  constructor(camera, scene, options, moved) {
+    Object.assign(this, { camera, scene, options, moved });
+    this.numbers = document.getElementById("camera-numbers");
+    this.following = document.getElementById("follow");
+    this.selection = null;
+    /** Whether the scene is still to be brought into view, because nobody has said where to look from. */
+    this.undecided = true;
+    const presets = document.getElementById("presets");
+    for (const name of Object.keys(PRESETS)) {
+      const button = Object.assign(document.createElement("button"), { textContent: name });
+      button.addEventListener("click", () => this.change(() => camera.preset(name)));
+      presets.append(button);
+    }
+    document.getElementById("fit").addEventListener("click", () => this.change(() => this.fit()));
+    this.following.addEventListener("change", () => (camera.followed = null));
+    document.getElementById("copy-camera").addEventListener("click", () => this.copy());
+  }
+
+  change(act) {
+    act();
+    this.undecided = false;
+    this.moved();
+  }
+
+  /** Brings the selected body, or everything, into view. */
+  fit() {
+    const body = this.selection && this.scene.bodies.get(this.selection.body);
+    const collisions = this.options.collisions;
+    const bounds = (body && boundsOfBody(this.scene, body, collisions)) ?? boundsOfScene(this.scene, collisions);
+    if (bounds) this.camera.fit(bounds);
+    return bounds !== null;
+  }
+
+  /** Looks at the scene once it is there, unless the script or the user has said where to look from. */
+  lookAtFirst() {
+    if (!this.undecided || this.scene.bodies.size === 0 || this.scene.poses.length === 0) return false;
+    const bounds = boundsOfScene(this.scene, false);
+    if (!bounds) return false;
+    const key = JSON.stringify([...this.scene.bodies.keys()]);
+    // While bodies are loaded one after the other the view follows.
+    if (key === this.fitted) return false;
+    this.fitted = key;
+    this.camera.fit(bounds);
+    return true;
+  }
+
+  /** Moves the camera along with what is followed. */
+  follow() {
+    if (!this.following.checked) return;
+    const { body, link } = this.selection ?? {};
+    const pose = body === undefined ? null : this.scene.inertialPose(body, link ?? 0);
+    this.camera.follow(pose && add(pose.position, turned(pose.orientation, [0, 0, 0])));
+  }
+
+  show() {
+    const { distance, yaw, pitch, target } = this.camera;
+    const text = `${distance.toFixed(2)}, ${yaw.toFixed(1)}, ${pitch.toFixed(1)}, [${target.map((x) => x.toFixed(2)).join(", ")}]`;
+    if (this.numbers.textContent !== text) this.numbers.textContent = text;
+  }
+
+  copy() {
+    navigator.clipboard?.writeText(`p.resetDebugVisualizerCamera(${this.numbers.textContent})`).catch(() => {});
+  }
+}

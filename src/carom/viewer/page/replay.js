@@ -1,0 +1,25 @@
+// A page that plays a recording it carries itself.
+
+import { decoded } from "./time/recording.js";
+
+/**
+ * @param {string} text the recording in base 64
+ * @param {App} app
+ */
+export async function playRecording(text, app) {
+  document.body.classList.add("replay");
+  const bytes = await (await fetch(`data:application/octet-stream;base64,${text}`)).arrayBuffer();
+  const { facts, messages } = await decoded(bytes);
+  app.panel.showTitle({ title: facts.title });
+  for (const [header, payload] of messages) app.history.take(header, payload);
+  if (facts.camera) {
+    app.camera.set(facts.camera);
+    app.viewpoint.undecided = false;
+  }
+  if (facts.options) {
+    app.options.take(facts.options);
+    app.optionsChanged();
+  }
+  app.player.seek(app.history.start);
+  app.plots.offer();
+}

@@ -1,0 +1,113 @@
+// The last frames of a simulation, and everything that was shown beside them.
+
+import { Ledger } from "./ledger.js";
+
+/** Memory that frames and the scene may take. */
+export const BUDGET_BYTES = 128 * 2 ** 20;
+/** What a frame takes beside its numbers. */
+const FRAME_BYTES = 200;
+/** Time between frames where simulated time stands still or goes back [s]. */
+const LEAST_INTERVAL = 1 / 60;
+/** How many frames pass between two looks at the memory. */
+const TIDY_EVERY = 64;
+/** Kinds of messages that belong to a moment; others say how things are now. */
+const SINGLE = new Set(["layout", "constraints", "rays"]);
+const NUMBERED = { body: "body", mesh: "mesh", texture: "texture", slider: "slider", dynamics: "dynamics", line: "item", text: "item", points: "item" };
+
+export class History {
+  constructor(budget = BUDGET_BYTES) {
+    this.budget = budget;
+    this.clear();
+  }
+
+  clear() {
+    this.ledger = new Ledger();
+    this.frames = [];
+    /** How many frames have been forgotten: the number of the first that is kept. */
+    this.first = 0;
+    this.bytes = 0;
+    this.version = (this.version ?? 0) + 1;
+  }
+
+  get count() {
+    return this.frames.length;
+  }
+
+  /** Seconds from the first frame that was ever kept, at the first and at the last there is. */
+  get start() {
+    return this.frames[0]?.clock ?? 0;
+  }
+
+  get end() {
+    return this.frames.at(-1)?.clock ?? 0;
+  }
+
+  /** Takes note of a message. */
+  take(header, payload) {
+    if (header.type === "frame") return this.takeFrame(header, payload);
+    const name = nameOf(header);
+    if (name === null) return;
+    const moment = this.first + this.frames.length;
+    if (header.type.startsWith("no ")) this.ledger.remove(name, moment);
+    else this.ledger.put(name, { header, payload }, moment);
+  }
+
+  takeFrame(header, payload) {
+    const last = this.frames.at(-1);
+    if (last && last.header.time === header.time && sameBytes(last.payload, payload)) return;
+    const passed = last ? header.time - last.header.time : 0;
+    const clock = last ? last.clock + (passed > 0 ? passed : LEAST_INTERVAL) : 0;
+    this.frames.push({ header, payload, clock });
+    this.bytes += payload.byteLength + FRAME_BYTES;
+    if (this.frames.length % TIDY_EVERY === 0) this.tidy();
+  }
+
+  /** Forgets the oldest frames as far as the budget asks for it. */
+  tidy() {
+    let drop = 0;
+    while (this.bytes + this.ledger.bytes > this.budget && drop < this.frames.length - 1) {
+      this.bytes -= this.frames[drop].payload.byteLength + FRAME_BYTES;
+      drop += 1;
+    }
+    if (drop === 0) return;
+    this.frames.splice(0, drop);
+    this.first += drop;
+    this.ledger.forget(this.first);
+  }
+
+  /** Index of the last frame that is not later than a time of the clock. */
+  indexAt(clock) {
+    let [low, high] = [0, this.frames.length - 1];
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.frames[middle].clock <= clock + 1e-9) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  /** What was shown beside a frame: versions by name. */
+  sceneAt(index) {
+    return this.ledger.at(this.first + index);
+  }
+}
+
+/** The name under which a message is kept; null if it is not. */
+export function nameOf(header) {
+  const type = header.type.replace(/^no /, "");
+  if (SINGLE.has(type)) return type;
+  const kind = NUMBERED[type] ?? (type === "item" ? "item" : undefined);
+  return kind === undefined ? null : `${kind} ${header[kind]}`;
+}
+
+/** The message that takes back what a name stands for. */
+export function removalOf(name) {
+  const [kind, number] = name.split(" ");
+  return number === undefined ? { type: `no ${kind}` } : { type: `no ${kind}`, [kind]: Number(number) };
+}
+
+function sameBytes(a, b) {
+  if (a.byteLength !== b.byteLength) return false;
+  const [x, y] = [new Uint32Array(a), new Uint32Array(b)];
+  return x.every((value, i) => value === y[i]);
+}

@@ -1,0 +1,142 @@
+// Which moment is shown: the newest, or one of the past, standing or running.
+
+import { removalOf } from "./history.js";
+
+const NOTHING = new ArrayBuffer(0);
+
+export class Player {
+  /**
+   * @param {History} history
+   * @param {(header: object, payload: ArrayBuffer) => void} show brings a message to what it is for
+   */
+  constructor(history, show) {
+    this.history = history;
+    this.show = show;
+    /** The newest moment is shown, and whatever comes. */
+    this.live = true;
+    this.running = false;
+    this.speed = 1;
+    this.looping = false;
+    /** The moment that is shown, as a time of the history's clock [s]. */
+    this.clock = 0;
+    /** Versions that are on the stage, by name. */
+    this.staged = new Map();
+    this.changed = () => {};
+  }
+
+  clear() {
+    this.live = true;
+    this.running = false;
+    this.staged = new Map();
+    this.changed();
+  }
+
+  /** Number of the frame that is shown. */
+  get index() {
+    return this.live ? this.history.count - 1 : this.history.indexAt(this.clock);
+  }
+
+  /** Shows a moment of the past, and stays there. */
+  seek(clock) {
+    if (this.history.count === 0) return;
+    this.live = false;
+    this.clock = Math.min(Math.max(clock, this.history.start), this.history.end);
+    this.stage();
+    this.changed();
+  }
+
+  /** Goes some frames forwards or back, and stays there. */
+  step(frames) {
+    const { history } = this;
+    if (history.count === 0) return;
+    this.running = false;
+    const index = Math.min(Math.max(this.index + frames, 0), history.count - 1);
+    this.seek(history.frames[index].clock);
+  }
+
+  /** Plays from the shown moment on; from the beginning if that is the last one. */
+  play() {
+    if (this.history.count === 0) return;
+    const from = this.live || this.clock >= this.history.end ? this.history.start : this.clock;
+    this.running = true;
+    this.seek(from);
+  }
+
+  pause() {
+    this.running = false;
+    this.changed();
+  }
+
+  /** Goes on with what happens now. */
+  goLive() {
+    this.running = false;
+    this.live = true;
+    if (this.history.count) {
+      this.clock = this.history.end;
+      this.stage();
+    }
+    this.changed();
+  }
+
+  /** Lets time pass [s]; returns whether another moment is shown. */
+  tick(seconds) {
+    if (this.live || !this.running) return false;
+    const { start, end } = this.history;
+    let clock = this.clock + seconds * this.speed;
+    if (clock > end) {
+      if (!this.looping) this.running = false;
+      clock = this.looping ? start : end;
+    }
+    this.seek(clock);
+    return true;
+  }
+
+  /** Brings the stage to the shown moment. */
+  stage() {
+    const { history } = this;
+    const index = this.index;
+    // What has come since the last frame is shown, too.
+    this.setScene(history.sceneAt(this.live ? history.count : index));
+    const { header, payload, clock } = history.frames[index];
+    const next = this.live ? undefined : history.frames[index + 1];
+    const share = next ? (this.clock - clock) / (next.clock - clock) : 0;
+    if (share > 1e-6 && next.header.layout === header.layout && next.header.time > header.time) {
+      const time = header.time + share * (next.header.time - header.time);
+      this.show({ ...header, time, past: true }, blended(payload, next.payload, share, header.poses));
+    } else this.show({ ...header, past: !this.live }, payload);
+  }
+
+  setScene(versions) {
+    const gone = [...this.staged.keys()].filter((name) => !versions.has(name));
+    for (const name of gone.reverse()) this.show(removalOf(name), NOTHING);
+    const fresh = [...versions].filter(([name, version]) => this.staged.get(name) !== version.message);
+    fresh.sort(([, a], [, b]) => a.from - b.from);
+    for (const [, { message }] of fresh) this.show(message.header, message.payload);
+    this.staged = new Map([...versions].map(([name, { message }]) => [name, message]));
+  }
+
+  /** A message is shown as it arrives. */
+  stageNow(name, message) {
+    if (message === null) this.staged.delete(name);
+    else this.staged.set(name, message);
+  }
+}
+
+/** Poses between two frames; what follows the poses is that of the first. */
+function blended(a, b, share, poses) {
+  const result = new Float32Array(a.slice(0));
+  const other = new Float32Array(b);
+  for (let at = 0; at < poses * 7; at += 7) {
+    for (let i = 0; i < 3; i++) result[at + i] += share * (other[at + i] - result[at + i]);
+    let [dot, size] = [0, 0];
+    for (let i = 3; i < 7; i++) dot += result[at + i] * other[at + i];
+    const sign = dot < 0 ? -share : share;
+    for (let i = 3; i < 7; i++) {
+      result[at + i] = (1 - share) * result[at + i] + sign * other[at + i];
+      size += result[at + i] ** 2;
+    }
+    size = Math.sqrt(size) || 1;
+    for (let i = 3; i < 7; i++) result[at + i] /= size;
+  }
+  return result.buffer;
+}

@@ -1,0 +1,103 @@
+// Saving what is seen: a picture, a film, or a page that replays it all.
+
+import { download } from "./download.js";
+import { removalOf } from "./history.js";
+import { encoded } from "./recording.js";
+
+const FILM_FPS = 30;
+const FILM_BITS = 8_000_000;
+const FILM_KINDS = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"];
+/** Where the page that plays a recording expects it. */
+const PLACE = "RECORDING";
+
+export class Saving {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {History} history
+   * @param {() => string} title names the files
+   * @param {() => object} facts what a replay is told beside what was recorded
+   * @param {(text: ?string) => void} say
+   */
+  constructor(canvas, history, title, facts, say) {
+    Object.assign(this, { canvas, history, title, facts, say });
+    this.pictureWanted = false;
+    this.film = null;
+    this.filmButton = document.getElementById("film");
+    document.getElementById("picture").addEventListener("click", () => this.askForPicture());
+    this.filmButton.addEventListener("click", () => this.toggleFilm());
+    document.getElementById("save").addEventListener("click", () => this.saveReplay());
+    this.changed = () => {};
+  }
+
+  askForPicture() {
+    this.pictureWanted = true;
+    this.changed();
+  }
+
+  /** Called right after a picture has been drawn, as long as it is there. */
+  drawn() {
+    if (!this.pictureWanted) return;
+    this.pictureWanted = false;
+    const picture = document.createElement("canvas");
+    [picture.width, picture.height] = [this.canvas.width, this.canvas.height];
+    const context = picture.getContext("2d");
+    context.drawImage(this.canvas, 0, 0);
+    this.write(context, this.canvas.width / this.canvas.clientWidth);
+    picture.toBlob((blob) => download(blob, `${this.title()}.png`));
+  }
+
+  /** Writes the texts over the view into a picture. */
+  write(context, ratio) {
+    for (const span of document.querySelectorAll("#labels span:not([hidden])")) {
+      const { left, bottom } = span.getBoundingClientRect();
+      const style = getComputedStyle(span);
+      context.font = `${style.fontWeight} ${parseFloat(style.fontSize) * ratio}px ${style.fontFamily}`;
+      context.fillStyle = style.color;
+      context.fillText(span.textContent, left * ratio, (bottom - 4) * ratio);
+    }
+  }
+
+  toggleFilm() {
+    if (this.film) this.film.stop();
+    else this.startFilm();
+  }
+
+  startFilm() {
+    const kind = FILM_KINDS.find((kind) => MediaRecorder.isTypeSupported(kind));
+    const film = new MediaRecorder(this.canvas.captureStream(FILM_FPS), { mimeType: kind, videoBitsPerSecond: FILM_BITS });
+    const parts = [];
+    film.ondataavailable = ({ data }) => parts.push(data);
+    film.onstop = () => {
+      this.film = null;
+      this.filmButton.classList.remove("on");
+      download(new Blob(parts, { type: kind }), `${this.title()}.${kind.startsWith("video/mp4") ? "mp4" : "webm"}`);
+    };
+    film.start();
+    this.film = film;
+    this.filmButton.classList.add("on");
+    this.changed();
+  }
+
+  /** Saves a page that replays what is remembered, without a network. */
+  async saveReplay() {
+    if (this.history.count === 0) return;
+    this.say("Saving…");
+    try {
+      const response = await fetch("replay.html");
+      if (!response.ok) throw new Error(`the server answered ${response.status}`);
+      const page = await response.text();
+      const bytes = await encoded(this.history, { title: this.title(), ...this.facts() }, removalOf);
+      download(new Blob([page.replace(PLACE, () => base64(bytes))], { type: "text/html" }), `${this.title()}.html`);
+      this.say(null);
+    } catch (error) {
+      this.say(`The replay could not be saved: ${error.message}`);
+    }
+  }
+}
+
+function base64(buffer) {
+  const bytes = new Uint8Array(buffer);
+  let text = "";
+  for (let at = 0; at < bytes.length; at += 0x8000) text += String.fromCharCode(...bytes.subarray(at, at + 0x8000));
+  return btoa(text);
+}

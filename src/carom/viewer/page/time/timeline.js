@@ -1,0 +1,94 @@
+// The bar below the view: scrub, play back, loop, mark, and go on live.
+
+const NEAR = 8;
+
+export class Timeline {
+  /**
+   * @param {Player} player
+   * @param {(message: object) => void} send tells the simulation; does nothing in a replay
+   */
+  constructor(player, send) {
+    this.player = player;
+    this.send = send;
+    this.root = document.getElementById("timeline");
+    this.scrubber = document.getElementById("scrub");
+    this.label = document.getElementById("moment");
+    this.playing = document.getElementById("play");
+    this.live = document.getElementById("live");
+    this.loop = document.getElementById("loop");
+    this.ticks = document.getElementById("ticks");
+    /** Marks by number: where they are on the clock, and whether the simulation can go back to them. */
+    this.marks = new Map();
+    this.bind();
+    player.changed = () => this.show();
+  }
+
+  bind() {
+    const { player } = this;
+    this.scrubber.addEventListener("input", () => {
+      player.running = false;
+      player.seek(Number(this.scrubber.value));
+    });
+    this.playing.addEventListener("click", () => (player.running ? player.pause() : player.play()));
+    this.live.addEventListener("click", () => player.goLive());
+    this.loop.addEventListener("click", () => {
+      player.looping = !player.looping;
+      this.show();
+    });
+    const extras = document.getElementById("extras");
+    document.getElementById("more").addEventListener("click", () => extras.classList.toggle("open"));
+    document.getElementById("back").addEventListener("click", () => player.step(-1));
+    document.getElementById("forth").addEventListener("click", () => player.step(1));
+    document.getElementById("mark").addEventListener("click", () => this.send({ type: "mark" }));
+    const speed = document.getElementById("playback");
+    speed.addEventListener("change", () => (player.speed = Number(speed.value)));
+  }
+
+  clear() {
+    for (const mark of [...this.marks.keys()]) this.removeMark({ mark });
+  }
+
+  addMark({ mark, time }) {
+    const frames = this.player.history.frames;
+    const frame = frames.findLast((frame) => frame.header.time <= time + 1e-9) ?? frames.at(-1);
+    const button = Object.assign(document.createElement("button"), { className: "tick" });
+    button.title = `Marked at ${time.toFixed(3)} s: click to look, double-click to go on from there`;
+    const clock = frame?.clock ?? 0;
+    button.addEventListener("click", () => this.player.seek(clock));
+    button.addEventListener("dblclick", () => {
+      this.send({ type: "restore", mark });
+      this.player.goLive();
+    });
+    this.ticks.append(button);
+    this.marks.set(mark, { clock, button });
+    this.show();
+  }
+
+  removeMark({ mark }) {
+    this.marks.get(mark)?.button.remove();
+    this.marks.delete(mark);
+  }
+
+  /** Brings the bar up to date. */
+  show() {
+    const { player } = this;
+    const { history } = player;
+    const clock = player.live ? history.end : player.clock;
+    if (history.count === 0) return;
+    [this.scrubber.min, this.scrubber.max] = [history.start, Math.max(history.end, history.start + 1e-3)];
+    this.scrubber.value = clock;
+    const { time } = history.frames[Math.max(player.index, 0)].header;
+    this.label.textContent = player.live ? `${time.toFixed(2)} s` : `${time.toFixed(3)} s, ${(clock - history.end).toFixed(2)}`;
+    this.playing.textContent = player.running ? "❚❚" : "▶";
+    this.playing.title = player.running ? "Stop" : "Play what has been seen";
+    this.live.classList.toggle("on", player.live);
+    this.loop.classList.toggle("on", player.looping);
+    this.root.classList.toggle("past", !player.live);
+    const span = Math.max(history.end - history.start, 1e-6);
+    for (const { clock: at, button } of this.marks.values()) {
+      button.hidden = at < history.start;
+      // The handle of a slider does not reach its ends.
+      button.style.left = `calc(${NEAR}px + ${(at - history.start) / span} * (100% - ${2 * NEAR}px))`;
+    }
+  }
+}

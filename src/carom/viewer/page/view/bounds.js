@@ -1,0 +1,58 @@
+// How far things reach: boxes around links, bodies and the whole scene.
+
+import { add, turned } from "./maths.js";
+
+/** What reaches farther than this is a floor or a backdrop, and not what one looks at [m]. */
+const FLOOR = 9;
+
+/** Lower and upper corner around a link, in the world; null where nothing is to be seen of it. */
+export function boundsOfLink(scene, body, link, collisions) {
+  const pose = scene.inertialPose(body.body, link);
+  const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions);
+  if (!pose || shapes.length === 0) return null;
+  const box = emptyBox();
+  for (const shape of shapes) {
+    const mesh = scene.meshes.get(shape.meshes[0][0]);
+    if (!mesh) continue;
+    for (let corner = 0; corner < 8; corner++) {
+      const local = [0, 1, 2].map((i) => (corner & (1 << i) ? mesh.bounds.upper : mesh.bounds.lower)[i] * shape.scale[i]);
+      extend(box, add(pose.position, turned(pose.orientation, add(shape.position, turned(shape.orientation, local)))));
+    }
+  }
+  return box[0][0] <= box[1][0] ? box : null;
+}
+
+/** The same around a body, or around those of its links that a function picks. */
+export function boundsOfBody(scene, body, collisions, picked = () => true) {
+  const box = emptyBox();
+  body.links.forEach((_, link) => {
+    const bounds = picked(link) && boundsOfLink(scene, body, link, collisions);
+    if (bounds && !isFloor(bounds)) bounds.forEach((corner) => extend(box, corner));
+  });
+  return box[0][0] <= box[1][0] ? box : null;
+}
+
+/** The same around everything but floors. */
+export function boundsOfScene(scene, collisions) {
+  const box = emptyBox();
+  for (const body of scene.bodies.values()) boundsOfBody(scene, body, collisions)?.forEach((corner) => extend(box, corner));
+  return box[0][0] <= box[1][0] ? box : null;
+}
+
+export function isFloor([lower, upper]) {
+  return [0, 1, 2].filter((i) => upper[i] - lower[i] > FLOOR).length >= 2;
+}
+
+function emptyBox() {
+  return [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
+}
+
+function extend([lower, upper], point) {
+  for (let i = 0; i < 3; i++) {
+    lower[i] = Math.min(lower[i], point[i]);
+    upper[i] = Math.max(upper[i], point[i]);
+  }
+}

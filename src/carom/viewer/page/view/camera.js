@@ -1,0 +1,143 @@
+// The camera: it circles a target, as PyBullet's does. Angles in degrees.
+
+import { add, cross, dot, multiply, perspective, scale, subtract, unit, viewMatrix } from "./maths.js";
+
+const NEAR = 0.01;
+const FAR = 1000;
+const DEGREES_PER_PIXEL = 0.3;
+const STEEPEST = 89.9;
+
+/** The sphere around what is looked at, as part of the distance that just shows it; and the least sphere [m]. */
+const FIT_MARGIN = 1.5;
+const LEAST_FIT = 0.15;
+/** Yaw and pitch. */
+export const PRESETS = {
+  corner: [50, -35],
+  front: [90, 0],
+  back: [-90, 0],
+  left: [180, 0],
+  right: [0, 0],
+  top: [0, -STEEPEST],
+  below: [0, STEEPEST],
+};
+
+export class Camera {
+  constructor() {
+    this.distance = 5;
+    this.yaw = 50;
+    this.pitch = -35;
+    this.target = [0, 0, 0];
+    /** Where the point is that the camera moves along with; null if there is none. */
+    this.followed = null;
+    this.yUp = false;
+    this.width = 1;
+    this.height = 1;
+    this.update();
+  }
+
+  set(camera) {
+    for (const name of ["distance", "yaw", "pitch", "target"]) this[name] = camera[name];
+    this.update();
+  }
+
+  resize(width, height) {
+    this.width = width;
+    this.height = height;
+    this.update();
+  }
+
+  orbit(dx, dy) {
+    this.yaw -= dx * DEGREES_PER_PIXEL;
+    this.pitch = Math.max(-STEEPEST, Math.min(STEEPEST, this.pitch - dy * DEGREES_PER_PIXEL));
+    this.update();
+  }
+
+  /** Moves the target so that what is there follows the mouse. */
+  pan(dx, dy) {
+    const perPixel = (2 * this.distance) / this.height;
+    const shift = add(scale(this.right, -dx * perPixel), scale(this.up, dy * perPixel));
+    this.target = add(this.target, shift);
+    this.update();
+  }
+
+  zoom(factor) {
+    this.distance = Math.max(0.02, Math.min(500, this.distance * factor));
+    this.update();
+  }
+
+  update() {
+    const yaw = (this.yaw * Math.PI) / 180;
+    const pitch = (this.pitch * Math.PI) / 180;
+    const [s, c] = [Math.sin(yaw), Math.cos(yaw)];
+    const [sp, cp] = [Math.sin(pitch), Math.cos(pitch)];
+    if (this.yUp) {
+      this.forward = [cp * s, sp, cp * c];
+      this.right = [-c, 0, s];
+    } else {
+      this.forward = [-cp * s, cp * c, sp];
+      this.right = [c, s, 0];
+    }
+    this.up = cross(this.right, this.forward);
+    this.eye = subtract(this.target, scale(this.forward, this.distance));
+    this.view = viewMatrix(this.eye, this.right, this.up, this.forward);
+    this.projection = perspective(this.width / this.height, NEAR, FAR);
+    this.matrix = multiply(this.projection, this.view);
+  }
+
+  /** Looks at a box so that all of it is in view; the direction stays. */
+  fit([lower, upper]) {
+    this.target = lower.map((x, i) => 0.5 * (x + upper[i]));
+    const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
+    // The field of view is 90 degrees from edge to edge of the shorter side.
+    const narrow = Math.min(1, this.width / Math.max(this.height, 1));
+    this.distance = (FIT_MARGIN * radius) / narrow;
+    this.update();
+  }
+
+  /** Looks from one of the sides. */
+  preset(name) {
+    [this.yaw, this.pitch] = PRESETS[name];
+    this.update();
+  }
+
+  /** Moves along with a point that something is followed by. */
+  follow(point) {
+    if (this.followed && point) {
+      this.target = add(this.target, subtract(point, this.followed));
+      this.update();
+    }
+    this.followed = point;
+  }
+
+  /** Direction of unit length from the eye through a pixel. */
+  ray(x, y) {
+    const right = ((2 * x) / this.width - 1) * (this.width / this.height);
+    const up = 1 - (2 * y) / this.height;
+    return unit(add(this.forward, add(scale(this.right, right), scale(this.up, up))));
+  }
+
+  /** Pixel of a point and its distance along the view, or null for what is behind the eye. */
+  pixel(point) {
+    const offset = subtract(point, this.eye);
+    const depth = dot(offset, this.forward);
+    if (depth < NEAR) return null;
+    const x = (dot(offset, this.right) / depth) * (this.height / this.width);
+    const y = dot(offset, this.up) / depth;
+    return [((x + 1) / 2) * this.width, ((1 - y) / 2) * this.height, depth];
+  }
+
+  /** The camera as it is seen in the ground through the origin, and what it sees there. */
+  mirrored() {
+    const axis = this.yUp ? 1 : 2;
+    const flip = (vector) => vector.map((value, i) => (i === axis ? -value : value));
+    const matrix = this.matrix.map((value, i) => (i >> 2 === axis ? -value : value));
+    const { width, height, yUp, distance } = this;
+    const [eye, forward, right, up] = [this.eye, this.forward, this.right, this.up].map(flip);
+    return { eye, forward, right, up, matrix, width, height, yUp, distance };
+  }
+
+  state() {
+    const { distance, yaw, pitch, target } = this;
+    return { distance, yaw, pitch, target };
+  }
+}

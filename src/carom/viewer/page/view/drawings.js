@@ -1,0 +1,119 @@
+// What scripts draw: lines, points and texts, on links or in the world.
+
+import { add, turned } from "./maths.js";
+import { Sign } from "./sign.js";
+
+const WORLD_AXES = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+const TEXT_PIXELS = 15;
+
+export class Drawings {
+  constructor(gl, overlay) {
+    this.gl = gl;
+    this.overlay = overlay;
+    this.items = new Map();
+    this.clouds = [];
+    this.signs = [];
+    this.name = Object.assign(document.createElement("span"), { className: "hover", hidden: true });
+    overlay.append(this.name);
+  }
+
+  add(header, payload) {
+    this.remove(header);
+    const item = { ...header };
+    if (header.type === "points") Object.assign(item, this.cloud(header, payload));
+    if (header.type === "text" && header.orientation) item.sign = new Sign(this.gl, header);
+    else if (header.type === "text") item.label = this.label(header);
+    this.items.set(header.item, item);
+    this.list();
+  }
+
+  remove({ item }) {
+    const known = this.items.get(item);
+    if (!known) return;
+    known.label?.remove();
+    known.sign?.dispose();
+    if (known.buffer) {
+      this.gl.deleteBuffer(known.buffer);
+      this.gl.deleteVertexArray(known.array);
+    }
+    this.items.delete(item);
+    this.list();
+  }
+
+  /** Keeps apart what the renderer asks for at every picture. */
+  list() {
+    const items = [...this.items.values()];
+    this.clouds = items.filter((item) => item.type === "points");
+    this.signs = items.flatMap((item) => item.sign ?? []);
+  }
+
+  clear() {
+    for (const item of [...this.items.values()]) this.remove(item);
+  }
+
+  cloud({ body, link, count, size }, payload) {
+    const gl = this.gl;
+    const array = gl.createVertexArray();
+    const buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, payload, gl.STATIC_DRAW);
+    for (const place of [0, 1]) {
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, 3, gl.FLOAT, false, 0, place * count * 12);
+    }
+    gl.bindVertexArray(null);
+    const axes = (scene) => {
+      const pose = scene.linkPose(body, link);
+      return pose && [...WORLD_AXES.map((axis) => turned(pose.orientation, axis)), pose.position];
+    };
+    return { array, buffer, count, size, axes };
+  }
+
+  label({ text, colour, size }) {
+    const label = document.createElement("span");
+    label.textContent = text;
+    label.style.color = `rgb(${colour.map((part) => Math.round(255 * part)).join()})`;
+    label.style.fontSize = `${TEXT_PIXELS * size}px`;
+    this.overlay.append(label);
+    return label;
+  }
+
+  /** Adds the lines that scripts have drawn. */
+  addLines(lines, scene) {
+    for (const item of this.items.values()) {
+      if (item.type !== "line") continue;
+      const pose = scene.linkPose(item.body, item.link);
+      if (pose) lines.line(inFrame(pose, item.start), inFrame(pose, item.end), item.colour, item.width);
+    }
+  }
+
+  /** Shows the names of the link under the mouse. */
+  showName(scene, named, pixel) {
+    this.name.hidden = !named;
+    if (!named) return;
+    const body = scene.bodies.get(named.body);
+    const link = body.links[named.link];
+    this.name.textContent = [body.name, link.name, link.joint && `joint ${named.link - 1} ${link.joint}`].filter(Boolean).join(" · ");
+    this.name.style.transform = `translate(${pixel[0] + 14}px, ${pixel[1] + 14}px)`;
+  }
+
+  /** Puts texts where they belong on the page. */
+  placeLabels(scene, camera) {
+    for (const item of this.items.values()) {
+      if (!item.label) continue;
+      const pose = scene.linkPose(item.body, item.link);
+      const pixel = pose && camera.pixel(inFrame(pose, item.position));
+      item.label.hidden = !pixel;
+      if (pixel) item.label.style.transform = `translate(${pixel[0]}px, ${pixel[1]}px) translateY(-100%)`;
+    }
+  }
+}
+
+function inFrame(pose, point) {
+  return add(pose.position, turned(pose.orientation, point));
+}

@@ -1,0 +1,141 @@
+// What the view adds to the scene: frames, bounds, the selection, masses, constraints and rays.
+
+import { add, scale, turned } from "./maths.js";
+import { boundsOfBody, boundsOfLink } from "./bounds.js";
+import { addContacts, addJoints } from "./forces.js";
+import { Lines } from "./lines.js";
+
+const AXES = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+const AXIS_COLOURS = [
+  [0.86, 0.16, 0.14],
+  [0.13, 0.62, 0.22],
+  [0.16, 0.36, 0.86],
+];
+const FRAME_LENGTH = 0.1;
+const PULL = [0.95, 0.62, 0.1];
+const BOUNDS = [0.9, 0.45, 0.1];
+const SELECTED = [0.1, 0.45, 0.85];
+const MASS = [0.75, 0.1, 0.6];
+const INERTIA = [0.55, 0.2, 0.75];
+const TIE = [0.1, 0.65, 0.6];
+const HIT = [0.95, 0.25, 0.15];
+const MISS = [0.2, 0.75, 0.3];
+const BEYOND = [0.6, 0.65, 0.7];
+
+export class Overlays {
+  constructor(scene, options, readings) {
+    Object.assign(this, { scene, options, readings });
+    this.lines = new Lines();
+    this.constraints = [];
+    this.rays = new Float32Array(0);
+    /** Body and link that are selected; link null for all of the body. */
+    this.selection = null;
+    /** What a metre of an arrow stands for: newtons and newton metres. */
+    this.scales = { force: 0, torque: 0 };
+  }
+
+  clear() {
+    this.constraints = [];
+    this.rays = new Float32Array(0);
+    this.selection = null;
+    this.scales = { force: 0, torque: 0 };
+  }
+
+  takeRays(payload) {
+    this.rays = new Float32Array(payload);
+  }
+
+  /**
+   * All lines of a picture.
+   *
+   * @param {?number[][]} pull start and end of what the mouse pulls
+   * @param {?{body: number, link: number}} named the link whose frame is shown
+   */
+  draw(drawings, pull, named) {
+    const { lines, scene, options } = this;
+    lines.clear();
+    if (pull) lines.line(...pull, PULL, 2.5);
+    if (named) this.addFrame(named.body, named.link);
+    drawings.addLines(lines, scene);
+    if (options.frames) this.eachLink((body, link) => this.addFrame(body.body, link));
+    if (options.bounds) this.eachLink((body, link) => this.addBounds(boundsOfLink(scene, body, link, options.collisions), BOUNDS));
+    this.addSelection();
+    this.addMasses();
+    if (options.constraints) this.addConstraints();
+    if (options.rays) this.addRays();
+    addContacts(this);
+    addJoints(this);
+    return lines;
+  }
+
+  eachLink(visit) {
+    for (const body of this.scene.bodies.values()) body.links.forEach((link, index) => visit(body, index, link));
+  }
+
+  addFrame(body, link) {
+    const pose = this.scene.linkPose(body, link);
+    if (!pose) return;
+    AXES.forEach((axis, i) => {
+      const tip = add(pose.position, turned(pose.orientation, scale(axis, FRAME_LENGTH)));
+      this.lines.line(pose.position, tip, AXIS_COLOURS[i], 2);
+    });
+  }
+
+  addBounds(bounds, colour) {
+    if (bounds) this.lines.box(...bounds, (corner) => corner, colour);
+  }
+
+  addSelection() {
+    const body = this.selection && this.scene.bodies.get(this.selection.body);
+    if (!body) return;
+    this.addBounds(boundsOfBody(this.scene, body, this.options.collisions), SELECTED);
+    if (this.selection.link !== null) this.addFrame(body.body, this.selection.link);
+  }
+
+  addMasses() {
+    const { masses, inertias } = this.options;
+    if (!masses && !inertias) return;
+    this.eachLink((body, link) => {
+      const pose = this.scene.inertialPose(body.body, link);
+      const dynamics = this.scene.dynamics.get(body.body)?.links[link];
+      if (!pose || !dynamics || dynamics.mass <= 0) return;
+      const half = halfExtents(dynamics);
+      if (masses) this.lines.star(pose.position, Math.max(0.01, 0.5 * Math.max(...half)), MASS, 2.5);
+      const place = (corner) => add(pose.position, turned(pose.orientation, corner));
+      if (inertias) this.lines.box(scale(half, -1), half, place, INERTIA, 1.5);
+    });
+  }
+
+  addConstraints() {
+    for (const tie of this.constraints) {
+      const [a, b] = [tie.parent, tie.child].map(({ body, link, position }) => {
+        const pose = this.scene.inertialPose(body, link);
+        return pose && add(pose.position, turned(pose.orientation, position));
+      });
+      if (!a || !b) continue;
+      this.lines.line(a, b, TIE, 2.5);
+      for (const end of [a, b]) this.lines.star(end, 0.02, TIE);
+    }
+  }
+
+  addRays() {
+    for (let at = 0; at + 10 <= this.rays.length; at += 10) {
+      const [start, end, normal] = [0, 3, 6].map((i) => [...this.rays.subarray(at + i, at + i + 3)]);
+      const fraction = this.rays[at + 9];
+      const point = start.map((x, i) => x + fraction * (end[i] - x));
+      this.lines.line(start, point, fraction < 1 ? HIT : MISS, 1.5);
+      if (fraction >= 1) continue;
+      this.lines.line(point, end, BEYOND, 1);
+      this.lines.line(point, add(point, scale(normal, 0.05)), AXIS_COLOURS[2], 2);
+    }
+  }
+}
+
+/** Half the edges of the box of even density that has this mass and these principal moments of inertia. */
+function halfExtents({ mass, inertia: [x, y, z] }) {
+  return [y + z - x, z + x - y, x + y - z].map((sum) => Math.sqrt((1.5 * Math.max(sum, 0)) / mass));
+}

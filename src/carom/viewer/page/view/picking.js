@@ -1,0 +1,112 @@
+// What is under the mouse, and taking hold of it.
+
+import { add, dot, scale, subtract, turned } from "./maths.js";
+
+/** The nearest shape along a ray: its body, link, distance, and where it was hit. Null if there is none. */
+export function pick(scene, options, eye, direction) {
+  let nearest = null;
+  for (const group of scene.groups) {
+    if (!options.shows(group.collision)) continue;
+    for (const { body, shape } of group.members) {
+      const pose = scene.inertialPose(body.body, shape.link);
+      if (!pose) continue;
+      const back = inverse(pose.orientation);
+      const own = inverse(shape.orientation);
+      // Into the frame of the link, then of the shape, then of its mesh.
+      const start = turned(own, subtract(turned(back, subtract(eye, pose.position)), shape.position));
+      const along = turned(own, turned(back, direction));
+      const from = start.map((x, i) => x / shape.scale[i]);
+      const way = along.map((x, i) => x / shape.scale[i]);
+      const distance = hit(group.mesh, from, way, nearest?.distance ?? Infinity);
+      if (distance === null) continue;
+      const point = add(eye, scale(direction, distance));
+      const local = turned(back, subtract(point, pose.position));
+      nearest = { body: body.body, link: shape.link, distance, point, local };
+    }
+  }
+  return nearest;
+}
+
+/** Smallest factor of `way`, below `limit`, at which a ray meets a mesh. */
+function hit(mesh, from, way, limit) {
+  if (!meetsBounds(mesh.bounds, from, way, limit)) return null;
+  const { positions, indices } = mesh;
+  let best = limit;
+  for (let t = 0; t < indices.length; t += 3) {
+    const [a, b, c] = [3 * indices[t], 3 * indices[t + 1], 3 * indices[t + 2]];
+    const [ux, uy, uz] = [0, 1, 2].map((i) => positions[b + i] - positions[a + i]);
+    const [vx, vy, vz] = [0, 1, 2].map((i) => positions[c + i] - positions[a + i]);
+    const px = way[1] * vz - way[2] * vy;
+    const py = way[2] * vx - way[0] * vz;
+    const pz = way[0] * vy - way[1] * vx;
+    const det = ux * px + uy * py + uz * pz;
+    if (Math.abs(det) < 1e-20) continue;
+    const [sx, sy, sz] = [0, 1, 2].map((i) => from[i] - positions[a + i]);
+    const u = (sx * px + sy * py + sz * pz) / det;
+    if (u < 0 || u > 1) continue;
+    const qx = sy * uz - sz * uy;
+    const qy = sz * ux - sx * uz;
+    const qz = sx * uy - sy * ux;
+    const v = (way[0] * qx + way[1] * qy + way[2] * qz) / det;
+    if (v < 0 || u + v > 1) continue;
+    const distance = (vx * qx + vy * qy + vz * qz) / det;
+    if (distance > 0 && distance < best) best = distance;
+  }
+  return best < limit ? best : null;
+}
+
+function meetsBounds({ lower, upper }, from, way, limit) {
+  let [enter, leave] = [0, limit];
+  for (let i = 0; i < 3; i++) {
+    if (way[i] === 0) {
+      if (from[i] < lower[i] || from[i] > upper[i]) return false;
+      continue;
+    }
+    const [a, b] = [(lower[i] - from[i]) / way[i], (upper[i] - from[i]) / way[i]];
+    enter = Math.max(enter, Math.min(a, b));
+    leave = Math.min(leave, Math.max(a, b));
+  }
+  return enter <= leave;
+}
+
+const inverse = ([x, y, z, w]) => [-x, -y, -z, w];
+
+/** Holds a point of a body, and pulls it in the plane through that point that faces the viewer. */
+export class Grasp {
+  constructor(scene, camera, options, send) {
+    Object.assign(this, { scene, camera, options, send });
+    this.held = null;
+  }
+
+  get busy() {
+    return this.held !== null;
+  }
+
+  begin(x, y) {
+    if (!this.options.picking) return;
+    const direction = this.camera.ray(x, y);
+    const found = pick(this.scene, this.options, this.camera.eye, direction);
+    if (!found || !this.scene.bodies.get(found.body).links[found.link].moves) return;
+    const { body, link, local, point } = found;
+    this.held = { body, link, local, target: point, depth: found.distance * dot(direction, this.camera.forward) };
+    this.send({ type: "grasp", body, link: link - 1, point: local, target: point });
+  }
+
+  move(x, y) {
+    const direction = this.camera.ray(x, y);
+    const distance = this.held.depth / dot(direction, this.camera.forward);
+    this.held.target = add(this.camera.eye, scale(direction, distance));
+    this.send({ type: "pull", target: this.held.target });
+  }
+
+  end() {
+    if (this.held) this.send({ type: "let go" });
+    this.held = null;
+  }
+
+  /** Start and end of the line from where the body is held to where it is pulled. */
+  line() {
+    const pose = this.held && this.scene.inertialPose(this.held.body, this.held.link);
+    return pose ? [add(pose.position, turned(pose.orientation, this.held.local)), this.held.target] : null;
+  }
+}

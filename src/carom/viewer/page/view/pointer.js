@@ -1,0 +1,88 @@
+// The mouse: it moves the camera, selects and pulls bodies, and tells the script. Left pulls what it is on, or turns; the
+// middle button or Shift and left move, right or the wheel zooms; with Ctrl or Alt the left button always turns,
+// as in PyBullet's window.
+
+/** A mouse that moves less than this with a button down has clicked. */
+const CLICK_PIXELS = 3;
+
+export class Pointer {
+  constructor(canvas, camera, send, cameraMoved) {
+    this.canvas = canvas;
+    this.camera = camera;
+    this.send = send;
+    this.cameraMoved = cameraMoved;
+    this.at = null;
+    this.hovered = null;
+    this.button = null;
+    /** Called when the mouse is somewhere else. */
+    this.hoverChanged = () => {};
+    /** Takes hold of what is under the mouse; see picking.js. */
+    this.grasp = null;
+    /** Called with the pixel of a click that is no drag. */
+    this.clicked = () => {};
+    /** Where the left button went down, until the mouse has moved: a click or a drag. */
+    this.pressed = null;
+    canvas.addEventListener("pointerdown", (event) => this.down(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => this.up(event));
+    canvas.addEventListener("pointerleave", () => {
+      this.hovered = null;
+      this.hoverChanged();
+    });
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+  }
+
+  down(event) {
+    this.canvas.focus();
+    this.canvas.setPointerCapture(event.pointerId);
+    this.at = [event.offsetX, event.offsetY];
+    this.button = event.button;
+    this.tell(event, { button: event.button, down: true });
+    if (event.button === 0 && !event.ctrlKey && !event.altKey && !event.shiftKey) this.pressed = this.at;
+  }
+
+  move(event) {
+    const [x, y] = [event.offsetX, event.offsetY];
+    this.hovered = [x, y];
+    this.hoverChanged();
+    this.tell(event, {});
+    if (this.at === null) return;
+    if (this.pressed) {
+      if (Math.hypot(x - this.pressed[0], y - this.pressed[1]) < CLICK_PIXELS) return;
+      this.grasp?.begin(...this.pressed);
+      this.pressed = null;
+    }
+    const [dx, dy] = [x - this.at[0], y - this.at[1]];
+    this.at = [x, y];
+    if (this.grasp?.busy) {
+      this.grasp.move(x, y);
+      this.hoverChanged();
+      return;
+    }
+    if (this.button === 0 && !event.shiftKey) this.camera.orbit(dx, dy);
+    else if (this.button === 2) this.camera.zoom(Math.exp(dy * 0.01));
+    else this.camera.pan(dx, dy);
+    this.cameraMoved();
+  }
+
+  up(event) {
+    if (this.at === null) return;
+    if (this.pressed) this.clicked(...this.pressed);
+    this.pressed = null;
+    this.at = null;
+    this.tell(event, { button: event.button, down: false });
+    this.grasp?.end();
+  }
+
+  wheel(event) {
+    event.preventDefault();
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+    this.camera.zoom(Math.exp(event.deltaY * lines * 0.001));
+    this.cameraMoved();
+  }
+
+  tell(event, more) {
+    this.send({ type: "mouse", x: event.offsetX, y: event.offsetY, ...more });
+  }
+}

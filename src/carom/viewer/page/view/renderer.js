@@ -1,0 +1,323 @@
+// Draws a scene.
+
+import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
+import { Picture, Program, ShadowMap } from "./gpu.js";
+import { LINE_FLOATS } from "./lines.js";
+import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, SURFACE, WIRE } from "./shaders.js";
+
+const GRID_EXTENT = 60;
+/** Far things fade from about this distance on, or this many times the camera's distance [m]. */
+const HAZE = 90;
+const HAZE_BY_DISTANCE = 16;
+/** Pictures that take longer than this make the next ones coarser, if so many in a row do [ms]. */
+const SLOW_MS = 70;
+const SLOW_PICTURES = 6;
+const LEAST_SHARPNESS = 0.33;
+/** At first, where the processor draws. */
+const MODEST_SHARPNESS = 0.5;
+/** Side of the shadow map where the processor draws. */
+const SMALL_SHADOWS = 1024;
+
+/** Whether there is no graphics card: every pixel then costs time that the simulation needs. */
+function drawnByTheProcessor() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) return false;
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+export class Renderer {
+  constructor(canvas) {
+    const slow = drawnByTheProcessor();
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: !slow, powerPreference: "high-performance" });
+    if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
+    this.canvas = canvas;
+    this.gl = gl;
+    this.surface = new Program(gl, SURFACE);
+    this.shadow = new Program(gl, SHADOW);
+    this.wire = new Program(gl, WIRE);
+    this.sky = new Program(gl, SKY);
+    this.grid = new Program(gl, GRID);
+    this.lines = new Program(gl, LINES);
+    this.points = new Program(gl, POINTS);
+    this.sign = new Program(gl, SIGN);
+    this.surface.sampler("image", 0);
+    this.surface.sampler("shadows", 1);
+    this.surface.sampler("reflection", 2);
+    this.nothing = gl.createVertexArray();
+    this.lineBuffer = gl.createBuffer();
+    this.lineArray = this.makeLineArray();
+    this.map = new ShadowMap(gl, 2048);
+    this.reflection = new Picture(gl);
+    this.byProcessor = slow;
+    this.sharpness = slow ? MODEST_SHARPNESS : 1;
+    // Without smooth edges, pictures there is time for are made with more pixels.
+    this.stillSharpness = slow ? 2 : 1;
+    this.slow = 0;
+    /** Nothing moves: there is time for a sharp picture. */
+    this.still = false;
+  }
+
+  /** Takes note of how long a picture took [ms]; slow machines get coarser ones. */
+  pace(duration) {
+    if (this.still) return;
+    this.slow = duration > SLOW_MS ? this.slow + 1 : 0;
+    if (this.slow >= SLOW_PICTURES && this.sharpness > LEAST_SHARPNESS) {
+      this.sharpness = Math.max(LEAST_SHARPNESS, this.sharpness * 0.75);
+      this.slow = 0;
+    }
+  }
+
+  /** Fits the picture to the window; true if its size has changed. */
+  resize() {
+    const ratio = Math.min(window.devicePixelRatio, 2) * (this.still ? this.stillSharpness : this.sharpness);
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
+    if (this.canvas.width === width && this.canvas.height === height) return false;
+    this.canvas.width = width;
+    this.canvas.height = height;
+    return true;
+  }
+
+  /**
+   * @param {Scene} scene
+   * @param {Camera} camera
+   * @param {Options} options
+   * @param {{lines: Lines, clouds: object[], signs: Sign[]}} drawings
+   */
+  draw(scene, camera, options, drawings) {
+    const gl = this.gl;
+    scene.regroup(options);
+    scene.fill(options, camera.eye, this.canvas.height / 2);
+    const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
+    const light = this.light(camera, options);
+    const shadows = options.shadows && !options.wireframe;
+    if (shadows) this.drawShadows(shown, light, options);
+    const reflecting = options.reflections && !options.wireframe;
+    const shading = {
+      toLight: light.direction,
+      lightCamera: light.matrix,
+      shadowStrength: shadows ? options.shadowIntensity : 0,
+      shadowTexel: 1 / this.map.size,
+      softShadows: this.byProcessor && !this.still ? 0 : 1,
+      shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
+    };
+    if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    const common = this.seenFrom(camera, options);
+    this.drawSky(camera, common);
+    gl.enable(gl.DEPTH_TEST);
+    if (options.wireframe) this.drawWires(shown, camera);
+    else {
+      const mirror = { reflecting: reflecting ? 1 : 0, reflectionSize: [this.canvas.width, this.canvas.height] };
+      const uniforms = { ...common, ...shading, ...mirror, aboveGround: 0 };
+      this.drawSurfaces(shown, scene, uniforms, reflecting ? this.reflection.texture : null);
+    }
+    if (options.grid) this.drawGrid(camera, common);
+    this.drawSigns(drawings.signs, scene, camera);
+    if (!options.wireframe) this.drawClear(shown, scene, camera);
+    this.drawPoints(drawings.clouds, scene, camera);
+    this.drawLines(drawings.lines, camera);
+    gl.disable(gl.DEPTH_TEST);
+  }
+
+  /** What all programs have to know of a view. */
+  seenFrom(camera, options) {
+    return {
+      eye: camera.eye,
+      upward: camera.yUp ? [0, 1, 0] : [0, 0, 1],
+      backdrop: options.background ?? [0, 0, 0],
+      plainBackdrop: options.background ? 1 : 0,
+      haze: Math.max(HAZE, camera.distance * HAZE_BY_DISTANCE),
+      camera: camera.matrix,
+    };
+  }
+
+  /** Draws what the ground mirrors. */
+  drawReflection(groups, scene, mirrored, options, shading) {
+    const gl = this.gl;
+    this.reflection.begin(this.canvas.width, this.canvas.height);
+    const common = this.seenFrom(mirrored, options);
+    this.drawSky(mirrored, common);
+    gl.enable(gl.DEPTH_TEST);
+    // In a mirror the corners of a triangle go round the other way.
+    gl.frontFace(gl.CW);
+    this.drawSurfaces(groups, scene, { ...common, ...shading, reflecting: 0, aboveGround: 1 }, null);
+    gl.frontFace(gl.CCW);
+  }
+
+  /** Draws what cannot be seen through. */
+  drawSurfaces(groups, scene, uniforms, reflection) {
+    const gl = this.gl;
+    this.surface.use(uniforms);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, this.map.texture);
+    gl.activeTexture(gl.TEXTURE2);
+    gl.bindTexture(gl.TEXTURE_2D, reflection);
+    for (const group of groups) if (!group.clear) this.drawSolid(group, scene);
+  }
+
+  light(camera, options) {
+    const direction = unit(options.lightPosition);
+    const side = unit(cross(Math.abs(direction[2]) < 0.99 ? [0, 0, 1] : [1, 0, 0], direction));
+    const up = cross(direction, side);
+    const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.distance * 1.6));
+    // The map moves in whole texels, so that edges of shadows do not crawl when the camera moves.
+    const texel = (2 * extent) / this.map.size;
+    const centre = add(camera.target, scale(camera.forward, Math.min(0, extent - camera.distance)));
+    const snapped = [side, up].map((axis) => {
+      const along = axis[0] * centre[0] + axis[1] * centre[1] + axis[2] * centre[2];
+      return scale(axis, Math.round(along / texel) * texel - along);
+    });
+    const reach = 4 * extent + 10;
+    const eye = add(add(add(centre, snapped[0]), snapped[1]), scale(direction, reach));
+    const view = viewMatrix(eye, side, up, scale(direction, -1));
+    return { direction, extent: extent / reach, matrix: multiply(orthographic(extent, 0, 2 * reach), view) };
+  }
+
+  drawShadows(groups, light, options) {
+    const gl = this.gl;
+    const wanted = this.byProcessor ? Math.min(options.shadowResolution, SMALL_SHADOWS) : options.shadowResolution;
+    if (this.map.wanted !== wanted) {
+      this.map.dispose();
+      this.map = new ShadowMap(gl, wanted);
+      this.map.wanted = wanted;
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.map.target);
+    gl.viewport(0, 0, this.map.size, this.map.size);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1.5, 2);
+    this.shadow.use({ camera: light.matrix });
+    for (const group of groups) {
+      if (!group.clear) this.drawGroup(group);
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+  }
+
+  drawSky(camera, common) {
+    const gl = this.gl;
+    gl.disable(gl.DEPTH_TEST);
+    gl.bindVertexArray(this.nothing);
+    const { forward, right, up } = camera;
+    const aspect = camera.width / camera.height;
+    this.sky.use({ ...common, forward, rightward: right, overhead: up, aspect });
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  drawGroup(group) {
+    const gl = this.gl;
+    if (group.twoSided) gl.disable(gl.CULL_FACE);
+    else gl.enable(gl.CULL_FACE);
+    group.draw();
+    gl.disable(gl.CULL_FACE);
+  }
+
+  drawSolid(group, scene) {
+    const gl = this.gl;
+    const texture = scene.textures.get(group.texture);
+    this.surface.set("textured", texture ? 1 : 0);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, texture ?? null);
+    this.drawGroup(group);
+  }
+
+  drawClear(groups, scene, camera) {
+    const gl = this.gl;
+    const clear = groups.filter((group) => group.clear);
+    if (clear.length === 0) return;
+    const depth = (group) => group.middle.reduce((sum, x, i) => sum + (x - camera.eye[i]) * camera.forward[i], 0);
+    clear.sort((a, b) => depth(b) - depth(a));
+    this.surface.use({});
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+    for (const group of clear) this.drawSolid(group, scene);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+  }
+
+  drawWires(groups, camera) {
+    this.wire.use({ camera: camera.matrix });
+    for (const group of groups) group.drawEdges();
+  }
+
+  drawGrid(camera, common) {
+    const gl = this.gl;
+    const extent = Math.max(GRID_EXTENT, camera.distance * 8);
+    const [across, along] = camera.yUp ? [[1, 0, 0], [0, 0, 1]] : [[1, 0, 0], [0, 1, 0]];
+    const centre = camera.eye.map((x, i) => x * (across[i] + along[i]));
+    this.grid.use({ ...common, centre, across, along, extent });
+    gl.bindVertexArray(this.nothing);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+    // A floor at the same height covers the grid.
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(2, 8);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+  }
+
+  makeLineArray() {
+    const gl = this.gl;
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
+    let at = 0;
+    [3, 3, 3, 1].forEach((size, place) => {
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, size, gl.FLOAT, false, LINE_FLOATS * 4, at);
+      gl.vertexAttribDivisor(place, 1);
+      at += size * 4;
+    });
+    gl.bindVertexArray(null);
+    return array;
+  }
+
+  drawLines({ used: lines }, camera) {
+    if (lines.length === 0) return;
+    const gl = this.gl;
+    this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height] });
+    gl.bindVertexArray(this.lineArray);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
+    gl.bufferData(gl.ARRAY_BUFFER, lines, gl.DYNAMIC_DRAW);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.length / LINE_FLOATS);
+  }
+
+  drawSigns(signs, scene, camera) {
+    const gl = this.gl;
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.bindVertexArray(this.nothing);
+    gl.activeTexture(gl.TEXTURE0);
+    for (const sign of signs) {
+      const edges = sign.edges(scene);
+      if (edges === null) continue;
+      this.sign.use({ camera: camera.matrix, ...edges });
+      gl.bindTexture(gl.TEXTURE_2D, sign.texture);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    }
+    gl.disable(gl.BLEND);
+  }
+
+  drawPoints(clouds, scene, camera) {
+    const gl = this.gl;
+    const ratio = this.canvas.width / camera.width;
+    for (const cloud of clouds) {
+      const axes = cloud.axes(scene);
+      if (axes === null) continue;
+      const [axisX, axisY, axisZ, origin] = axes;
+      this.points.use({ camera: camera.matrix, axisX, axisY, axisZ, origin, size: Math.max(1, cloud.size * ratio) });
+      gl.bindVertexArray(cloud.array);
+      gl.drawArrays(gl.POINTS, 0, cloud.count);
+    }
+  }
+}

@@ -1,0 +1,304 @@
+// The programs of the graphics card.
+
+/** Light, sky and haze, the same for everything. Colours are mixed in linear light. */
+const COMMON = `
+precision highp float;
+uniform vec3 eye;
+uniform vec3 upward;
+uniform vec3 toLight;
+uniform vec3 backdrop;
+uniform float plainBackdrop;
+uniform float haze;
+
+// A gamma of 2, which costs a fraction of one of 2.2 where the processor draws.
+vec3 linear(vec3 c) { return c * c; }
+vec3 display(vec3 c) { return sqrt(clamp(c, 0.0, 1.0)); }
+
+vec3 sky(vec3 direction) {
+  if (plainBackdrop > 0.5) return linear(backdrop);
+  float height = dot(direction, upward);
+  vec3 zenith = vec3(0.30, 0.48, 0.72), horizon = vec3(0.76, 0.84, 0.91), ground = vec3(0.52, 0.56, 0.61);
+  vec3 above = mix(horizon, zenith, sqrt(clamp(height, 0.0, 1.0)));
+  return height >= 0.0 ? above : mix(horizon, ground, sqrt(clamp(-height * 2.5, 0.0, 1.0)));
+}
+
+vec3 hazy(vec3 colour, vec3 point) {
+  vec3 offset = point - eye;
+  float amount = 1.0 - exp(-dot(offset, offset) / (haze * haze));
+  // Far things fade into what is behind them at the horizon.
+  vec3 level = offset - upward * dot(offset, upward);
+  return mix(colour, sky(normalize(level + 1e-6)), amount);
+}
+`;
+
+const INSTANCE = `
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) in vec3 axisX;
+layout(location = 4) in vec3 axisY;
+layout(location = 5) in vec3 axisZ;
+layout(location = 6) in vec3 origin;
+layout(location = 7) in vec4 rgba;
+layout(location = 8) in vec3 specular;
+uniform mat4 camera;
+vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * position.z + origin; }
+`;
+
+export const SURFACE = {
+  vertex: `#version 300 es
+${INSTANCE}
+uniform mat4 lightCamera;
+out vec3 point;
+out vec3 facing;
+out vec2 texel;
+out vec4 colour;
+out vec3 shine;
+out vec3 shadowPoint;
+void main() {
+  point = placed();
+  // Normals scale the other way round.
+  vec3 squared = vec3(dot(axisX, axisX), dot(axisY, axisY), dot(axisZ, axisZ));
+  vec3 n = normal / max(squared, vec3(1e-20));
+  facing = axisX * n.x + axisY * n.y + axisZ * n.z;
+  texel = uv;
+  colour = rgba;
+  shine = specular;
+  shadowPoint = (lightCamera * vec4(point, 1.0)).xyz * 0.5 + 0.5;
+  gl_Position = camera * vec4(point, 1.0);
+}`,
+  fragment: `#version 300 es
+${COMMON}
+precision highp sampler2DShadow;
+in vec3 point;
+in vec3 facing;
+in vec2 texel;
+in vec4 colour;
+in vec3 shine;
+in vec3 shadowPoint;
+uniform sampler2D image;
+uniform float textured;
+uniform sampler2DShadow shadows;
+uniform float shadowStrength;
+uniform float shadowTexel;
+uniform float shadowBias;
+// Edges of shadows are smoothed; else each pixel looks at one place.
+uniform float softShadows;
+// Only what is above the ground; else everything.
+uniform float aboveGround;
+// What the ground mirrors, if it does, and the size of that picture in pixels.
+uniform sampler2D reflection;
+uniform vec2 reflectionSize;
+uniform float reflecting;
+out vec4 result;
+
+float lit(float slope) {
+  if (shadowStrength <= 0.0) return 1.0;
+  vec3 p = shadowPoint;
+  vec2 edge = min(p.xy, 1.0 - p.xy);
+  float inside = smoothstep(0.0, 0.05, min(edge.x, edge.y));
+  if (inside <= 0.0 || p.z >= 1.0) return 1.0;
+  float bias = shadowBias * (1.0 + 2.0 * slope);
+  if (softShadows < 0.5) return 1.0 - shadowStrength * inside * (1.0 - texture(shadows, vec3(p.xy, p.z - bias)));
+  float sum = 0.0;
+  for (int i = -1; i <= 1; i++)
+    for (int j = -1; j <= 1; j++)
+      sum += texture(shadows, vec3(p.xy + vec2(i, j) * shadowTexel, p.z - bias));
+  return 1.0 - shadowStrength * inside * (1.0 - sum / 9.0);
+}
+
+void main() {
+  float level = dot(point, upward);
+  if (aboveGround > 0.5 && level < 0.002) discard;
+  vec3 base = linear(colour.rgb);
+  if (textured > 0.5) base *= linear(texture(image, texel).rgb);
+  vec3 toEye = normalize(eye - point);
+  vec3 n = facing;
+  if (dot(n, n) < 1e-12) n = cross(dFdx(point), dFdy(point));
+  n = normalize(n);
+  if (!gl_FrontFacing) n = -n;
+  float towards = dot(n, toLight);
+  float sun = towards > 0.0 ? lit(1.0 - towards) : 0.0;
+  float height = dot(n, upward) * 0.5 + 0.5;
+  vec3 ambient = mix(vec3(0.28, 0.27, 0.26), vec3(0.44, 0.47, 0.52), height);
+  vec3 light = ambient + vec3(0.60, 0.58, 0.54) * max(towards, 0.0) * sun;
+  vec3 halfway = normalize(toLight + toEye);
+  float gleam = max(dot(n, halfway), 0.0);
+  gleam *= gleam; gleam *= gleam; gleam *= gleam; gleam *= gleam;
+  gleam *= gleam * gleam * 0.22 * sun;
+  float rim = 1.0 - max(dot(n, toEye), 0.0);
+  rim *= rim * rim * rim * 0.06;
+  vec3 seen = base * light + shine * gleam + shine * rim * sky(reflect(-toEye, n));
+  result = vec4(display(hazy(seen, point)), colour.a);
+  if (reflecting > 0.5 && abs(level) < 0.002 && dot(n, upward) > 0.99) {
+    // A floor lets the mirror under it through as far as it is transparent; an opaque one is polished.
+    vec3 mirrored = texture(reflection, gl_FragCoord.xy / reflectionSize).rgb;
+    result = vec4(mix(result.rgb, mirrored, max(1.0 - colour.a, 0.2)), 1.0);
+  }
+}`,
+};
+
+export const SHADOW = {
+  vertex: `#version 300 es
+${INSTANCE}
+void main() { gl_Position = camera * vec4(placed(), 1.0); }`,
+  fragment: `#version 300 es
+precision mediump float;
+void main() {}`,
+};
+
+export const WIRE = {
+  vertex: `#version 300 es
+${INSTANCE}
+out vec4 colour;
+void main() {
+  colour = rgba;
+  gl_Position = camera * vec4(placed(), 1.0);
+}`,
+  fragment: `#version 300 es
+precision mediump float;
+in vec4 colour;
+out vec4 result;
+void main() { result = vec4(colour.rgb * 0.72, 1.0); }`,
+};
+
+export const SKY = {
+  vertex: `#version 300 es
+uniform vec3 forward;
+uniform vec3 rightward;
+uniform vec3 overhead;
+uniform float aspect;
+out vec3 direction;
+void main() {
+  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+  direction = forward + rightward * corner.x * aspect + overhead * corner.y;
+  gl_Position = vec4(corner, 1.0, 1.0);
+}`,
+  fragment: `#version 300 es
+${COMMON}
+in vec3 direction;
+out vec4 result;
+void main() { result = vec4(display(sky(normalize(direction))), 1.0); }`,
+};
+
+/** Lines every metre, and finer ones near by, on the ground through the origin. */
+export const GRID = {
+  vertex: `#version 300 es
+uniform mat4 camera;
+uniform vec3 centre;
+uniform vec3 across;
+uniform vec3 along;
+uniform float extent;
+out vec3 point;
+out vec2 place;
+void main() {
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+  point = centre + (across * corner.x + along * corner.y) * extent;
+  place = vec2(dot(point, across), dot(point, along));
+  gl_Position = camera * vec4(point, 1.0);
+}`,
+  fragment: `#version 300 es
+${COMMON}
+uniform float extent;
+uniform vec3 centre;
+in vec3 point;
+in vec2 place;
+out vec4 result;
+float lines(float spacing) {
+  vec2 at = place / spacing, width = fwidth(at);
+  vec2 off = abs(fract(at - 0.5) - 0.5) / max(width, vec2(1e-6));
+  // Lines closer together than pixels would flicker.
+  return (1.0 - min(min(off.x, off.y), 1.0)) * (1.0 - smoothstep(0.1, 0.5, max(width.x, width.y)));
+}
+void main() {
+  float strength = max(lines(1.0) * 0.55, max(lines(10.0) * 0.8, lines(0.1) * 0.16));
+  vec3 colour = vec3(0.18, 0.23, 0.28);
+  vec2 width = fwidth(place);
+  vec2 axis = 1.0 - min(abs(place) / max(width * 1.5, vec2(1e-6)), 1.0);
+  if (axis.y > 0.05) { colour = vec3(0.70, 0.10, 0.08); strength = max(strength, axis.y); }
+  if (axis.x > 0.05) { colour = vec3(0.08, 0.42, 0.12); strength = max(strength, axis.x); }
+  float fade = 1.0 - smoothstep(0.3, 1.0, length(point - centre) / extent);
+  result = vec4(display(colour), strength * fade);
+}`,
+};
+
+/** A line as wide as asked for, in pixels: a rectangle that faces the viewer. */
+export const LINES = {
+  vertex: `#version 300 es
+layout(location = 0) in vec3 start;
+layout(location = 1) in vec3 end;
+layout(location = 2) in vec3 tint;
+layout(location = 3) in float width;
+uniform mat4 camera;
+uniform vec2 pixels;
+out vec3 colour;
+void main() {
+  colour = tint;
+  vec4 a = camera * vec4(start, 1.0), b = camera * vec4(end, 1.0);
+  float nearest = 0.01;
+  if (a.w < nearest && b.w < nearest) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+  if (a.w < nearest) a = mix(a, b, (nearest - a.w) / (b.w - a.w));
+  if (b.w < nearest) b = mix(b, a, (nearest - b.w) / (a.w - b.w));
+  vec2 along = (b.xy / b.w - a.xy / a.w) * pixels;
+  along = length(along) > 1e-6 ? normalize(along) : vec2(1.0, 0.0);
+  bool far = gl_VertexID >= 2;
+  float side = (gl_VertexID & 1) == 0 ? -1.0 : 1.0;
+  vec4 corner = far ? b : a;
+  vec2 shift = vec2(-along.y, along.x) * side * max(width, 1.0) / pixels;
+  gl_Position = vec4(corner.xy + shift * corner.w, corner.z - 1e-5 * corner.w, corner.w);
+}`,
+  fragment: `#version 300 es
+precision mediump float;
+in vec3 colour;
+out vec4 result;
+void main() { result = vec4(colour, 1.0); }`,
+};
+
+export const POINTS = {
+  vertex: `#version 300 es
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 tint;
+uniform mat4 camera;
+uniform vec3 axisX;
+uniform vec3 axisY;
+uniform vec3 axisZ;
+uniform vec3 origin;
+uniform float size;
+out vec3 colour;
+void main() {
+  colour = tint;
+  gl_Position = camera * vec4(axisX * position.x + axisY * position.y + axisZ * position.z + origin, 1.0);
+  gl_PointSize = size;
+}`,
+  fragment: `#version 300 es
+precision mediump float;
+in vec3 colour;
+out vec4 result;
+void main() {
+  if (length(gl_PointCoord - 0.5) > 0.5) discard;
+  result = vec4(colour, 1.0);
+}`,
+};
+
+/** Text on a rectangle in the world. */
+export const SIGN = {
+  vertex: `#version 300 es
+uniform mat4 camera;
+uniform vec3 corner;
+uniform vec3 across;
+uniform vec3 upright;
+out vec2 texel;
+void main() {
+  texel = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  gl_Position = camera * vec4(corner + across * texel.x + upright * texel.y, 1.0);
+}`,
+  fragment: `#version 300 es
+precision mediump float;
+uniform sampler2D image;
+in vec2 texel;
+out vec4 result;
+void main() {
+  result = texture(image, texel);
+  if (result.a < 0.02) discard;
+}`,
+};

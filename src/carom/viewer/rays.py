@@ -1,0 +1,49 @@
+"""The rays that a script has cast of late."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.viewer.board import Board
+
+if TYPE_CHECKING:
+    from carom.ray_cast import Points, RayHit
+
+RAY_COLUMNS = 10
+_MOST_RAYS = 5000
+
+
+class Rays:
+    """Rays on the board, as long as a page wants to see them. Safe to use from all threads.
+
+    Attributes:
+        wanted: A page shows rays; else nobody need tell of them.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self.wanted: bool = False
+        self._cast: deque[tuple[float, ...]] = deque(maxlen=_MOST_RAYS)
+
+    def tell(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
+        """A script has cast rays.
+
+        Args:
+            starts: Their starts in world axes [m].
+            ends: Their ends.
+            hits: Body, link, fraction of the ray, position and normal of what each has hit.
+        """
+        for start, end, (_, _, fraction, _, normal) in zip(starts, ends, hits, strict=True):
+            self._cast.append((*start, *end, *normal, fraction))
+
+    def show(self) -> None:
+        """Puts the rays on the board that were cast since the last time; without any the old ones stay."""
+        if not self._cast:
+            return
+        rays = [self._cast.popleft() for _ in range(len(self._cast))]
+        payload = np.array(rays, dtype="<f4").tobytes()
+        self._board.put("rays", {"type": "rays", "count": len(rays)}, payload)

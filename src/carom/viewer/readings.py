@@ -1,0 +1,161 @@
+"""What a frame tells beside poses: contacts, joints, and the motion of links, in columns of numbers.
+
+`page/view/readings.js` has the same columns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.model.body_spec import BASE
+from carom.model.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION, MOTOR_VELOCITY, JointCode
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+Columns = NDArray[np.float32]
+
+CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
+# More contacts than these are more than anybody can look at.
+_MOST_CONTACTS = 5000
+_GREATEST_FRICTION = 10.0
+_ONE_FREEDOM = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+
+
+def contacts(world: World) -> Columns:
+    """The contacts of the last step.
+
+    Returns:
+        (contacts, 16): body a, link a (0: the base), body b, link b, point on b (3) [m], normal on b
+        towards a (3), force along it on a [N], friction on a (3) [N], friction coefficient, distance [m].
+    """
+    table = world.touch.contacts.numpy
+    count = min(world.touch.contact_count, _MOST_CONTACTS)
+    links = table["contact_shapes"][0, :count, 2:4].copy()
+    places = np.array(world.link_places, dtype=np.float32).reshape(-1, 2)
+    places[:, 1] += 1.0
+    if count == 0 or links.max(initial=-1) >= len(places) or links.min(initial=0) < 0:
+        return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
+    forces = table["contact_impulse"][0, :count] / world.parameters.substep_time
+    lateral = world.touch.shapes.table.numpy["link_lateral_friction"][0]
+    coefficient = np.minimum(lateral[links[:, 0]] * lateral[links[:, 1]], _GREATEST_FRICTION)
+    directions = (table["contact_direction1"][0, :count], table["contact_direction2"][0, :count])
+    friction = sum(forces[:, 1 + i, None] * directions[i] for i in range(2))
+    return np.column_stack(
+        (
+            places[links[:, 0]],
+            places[links[:, 1]],
+            table["contact_point_b"][0, :count],
+            table["contact_normal"][0, :count],
+            forces[:, 0],
+            friction,
+            coefficient,
+            table["contact_distance"][0, :count],
+        )
+    ).astype(np.float32)
+
+
+def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
+    """How links move, and what their joints' force-torque sensors read.
+
+    Args:
+        world: The world.
+        wanted: Numbers of bodies, and links; -1 is the base. Those that do not exist are left out.
+
+    Returns:
+        (links, 14): body, link, velocity of the centre of mass (3) [m/s], angular velocity (3) [rad/s],
+        force (3) [N] and moment (3) [N m] of the sensor.
+    """
+    rows = []
+    fresh: set[int] = set()
+    for number, link in wanted:
+        body = world.bodies.get(number)
+        if body is None or not BASE <= link < body.joint_count:
+            continue
+        if number not in fresh:
+            world.update_link_velocities(body)
+            fresh.add(number)
+        row = body.first_link + 1 + link
+        rows.append((number, link, *world.link_velocity[row], *world.joint_reaction[row]))
+    return np.array(rows, dtype=np.float32).reshape(-1, LINK_COLUMNS)
+
+
+class JointReadings:
+    """What joints do, and what they are told to; one of `World.observers` while any are wanted.
+
+    Args:
+        world: The world.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._wanted: frozenset[int] | Literal["all"] = frozenset()
+        # Steps clear what they have applied.
+        self._applied = np.zeros(0)
+
+    @property
+    def any_wanted(self) -> bool:
+        """Whether joints are read."""
+        return bool(self._wanted)
+
+    def watch(self, bodies: frozenset[int] | Literal["all"]) -> None:
+        """Reads the joints of these bodies from now on. Nobody may step meanwhile."""
+        observers = self._world.observers
+        if bodies and self not in observers:
+            observers.append(self)
+        elif not bodies and self in observers:
+            observers.remove(self)
+        self._wanted = bodies
+
+    def before_step(self) -> None:
+        """Keeps the torques that scripts have applied for the step."""
+        self._applied = self._world.joint_torque.copy()
+
+    def after_step(self) -> None:
+        """Nothing: joints are read when pages have time for them."""
+
+    def rows(self) -> Columns:
+        """What the joints do now; those that are fixed, or turn about several axes, are left out.
+
+        Returns:
+            (joints, 8): body, joint, position [rad or m], velocity, torque or force of the motor and the
+            script together, and the targets of position, velocity and torque; NaN where there is none.
+        """
+        world = self._world
+        bodies = [
+            body for number, body in world.bodies.items() if self._wanted == "all" or number in self._wanted
+        ]
+        places = [
+            (body.id, joint, body.position_index[joint], body.velocity_index[joint])
+            for body in bodies
+            for joint in _movable(body)
+        ]
+        if not places:
+            return np.zeros((0, JOINT_COLUMNS), dtype=np.float32)
+        number, joint, position, velocity = np.array(places).T
+        motor = world.motor[velocity]
+        active = motor[:, MOTOR_MAX_IMPULSE] > 0.0
+        applied = np.zeros(len(places))
+        if velocity.max() < len(self._applied):
+            applied = self._applied[velocity]
+        return np.column_stack(
+            (
+                number,
+                joint,
+                world.position[position],
+                world.velocity[velocity],
+                world.motor_impulse[velocity] / world.parameters.substep_time + applied,
+                np.where(active & (motor[:, MOTOR_KP] != 0.0), motor[:, MOTOR_POSITION], np.nan),
+                np.where(active & (motor[:, MOTOR_KD] != 0.0), motor[:, MOTOR_VELOCITY], np.nan),
+                np.where(applied != 0.0, applied, np.nan),
+            )
+        ).astype(np.float32)
+
+
+def _movable(body: Body) -> list[int]:
+    return [joint for joint, code in enumerate(body.joint_types) if code in _ONE_FREEDOM]

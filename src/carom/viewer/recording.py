@@ -1,0 +1,117 @@
+"""Recordings: what a page was told, packed into one piece of bytes.
+
+A recording is compressed by zlib. Inside are the length of an index as a little-endian integer of four bytes,
+the index in JSON, and the numbers of its records one after the other. A record is a *message* about the scene
+(its header, and how many bytes follow), or a run of *frames* that have all but their times and numbers in
+common. The numbers of a run are floats of four bytes, each frame as the differences in bits from the one
+before it, sorted by byte, then by column, then by frame: what hardly changes becomes zeros, which pack well.
+
+`page/time/recording.js` reads and writes the same.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any
+from zlib import compress, decompress
+
+import numpy as np
+from numpy.typing import NDArray
+
+FORMAT = 1
+_UINT = np.dtype("<u4")
+
+
+class Recording:
+    """Messages to a page, in the order they came."""
+
+    def __init__(self) -> None:
+        self._records: list[dict[str, Any]] = []
+        self._parts: list[bytes] = []
+        self._run: list[bytes] = []
+        self._times: list[float] = []
+        self._shared: dict[str, Any] = {}
+        self.frame_count: int = 0
+
+    def add(self, header: dict[str, Any], payload: bytes) -> None:
+        """Takes in the next message."""
+        if header["type"] != "frame":
+            self._end_run()
+            self._records.append({"message": header, "bytes": len(payload)})
+            self._parts.append(payload)
+            return
+        shared = {name: value for name, value in header.items() if name not in ("time", "rate", "picture")}
+        if self._run and (shared != self._shared or len(payload) != len(self._run[0])):
+            self._end_run()
+        self._shared = shared
+        self._run.append(payload)
+        self._times.append(header["time"])
+        self.frame_count += 1
+
+    def packed(self, **facts: Any) -> bytes:
+        """All of it.
+
+        Args:
+            **facts: What to tell of it: `title`, `camera`, `options`.
+        """
+        self._end_run()
+        index = json.dumps({"format": FORMAT, **facts, "records": self._records}, separators=(",", ":"))
+        text = index.encode()
+        return compress(b"".join((struct.pack("<I", len(text)), text, *self._parts)), 9)
+
+    def _end_run(self) -> None:
+        if not self._run:
+            return
+        frames = np.array([np.frombuffer(payload, _UINT) for payload in self._run])
+        record = {
+            "frames": len(frames),
+            "floats": frames.shape[1],
+            "header": self._shared,
+            "times": self._times,
+        }
+        self._records.append(record)
+        self._parts.append(_planes(frames))
+        self._run, self._times = [], []
+
+
+def unpacked(recording: bytes) -> tuple[dict[str, Any], list[tuple[dict[str, Any], bytes]]]:
+    """What is told of a recording, and its messages in order, as headers and payloads.
+
+    Raises:
+        ValueError: It has another format.
+    """
+    plain = decompress(recording)
+    (length,) = struct.unpack_from("<I", plain)
+    facts = json.loads(plain[4 : 4 + length])
+    if facts["format"] != FORMAT:
+        raise ValueError(f"the recording has format {facts['format']}; only {FORMAT} is known")
+    messages: list[tuple[dict[str, Any], bytes]] = []
+    at = 4 + length
+    for record in facts.pop("records"):
+        if "message" in record:
+            size = record["bytes"]
+            messages.append((record["message"], plain[at : at + size]))
+        else:
+            count, floats = record["frames"], record["floats"]
+            size = _UINT.itemsize * count * floats
+            frames = _from_planes(plain[at : at + size], count, floats)
+            messages.extend(
+                ({**record["header"], "time": time}, frame.tobytes())
+                for time, frame in zip(record["times"], frames, strict=True)
+            )
+        at += size
+    return facts, messages
+
+
+def _planes(frames: NDArray[np.uint32]) -> bytes:
+    changes = frames.copy()
+    changes[1:] ^= frames[:-1]
+    columns = np.ascontiguousarray(changes.T)
+    return np.ascontiguousarray(columns.view(np.uint8).reshape(-1, _UINT.itemsize).T).tobytes()
+
+
+def _from_planes(planes: bytes, count: int, floats: int) -> NDArray[np.uint32]:
+    bytes_ = np.frombuffer(planes, np.uint8).reshape(_UINT.itemsize, -1).T
+    columns = np.ascontiguousarray(bytes_).view(_UINT).reshape(floats, count)
+    return np.bitwise_xor.accumulate(columns.T, axis=0)

@@ -1,0 +1,169 @@
+"""Recording a world into one HTML file that replays it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import RLock
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from carom.checks import positive
+from carom.viewer.board import Board, boards
+from carom.viewer.details import Details, Wish
+from carom.viewer.messages import decoded
+from carom.viewer.notebook import replay_frame
+from carom.viewer.recording import Recording
+from carom.viewer.replay_page import replay_of
+from carom.viewer.scene_feed import SceneFeed
+
+if TYPE_CHECKING:
+    from carom.world import World
+
+_PAGE = 1
+# Times are sums of time steps: how far a frame may be early [of the time between two].
+_EARLY = 1e-6
+# What belongs to a moment; the rest says how a live page is to look.
+_OF_BODIES = frozenset({"body", "mesh", "texture", "layout", "dynamics", "constraints"})
+_OF_SCRIPTS = frozenset({"line", "text", "points", "item", "slider"})
+
+
+class ReplayRecorder:
+    """Records a world into an HTML file; get one from `World.record`. One of `World.observers`.
+
+    It is a context manager, and writes the file when the context is left.
+
+    Args:
+        world: The world.
+        path: The file; one that is there is replaced.
+        fps: Frames for each second of simulated time.
+        title: What the page is called; the name of the file by default.
+        contacts: Record contacts and their forces.
+        joints: Record positions, velocities and torques of joints.
+
+    Raises:
+        ValueError: The rate is not positive.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        path: str | Path,
+        *,
+        fps: float = 60.0,
+        title: str | None = None,
+        contacts: bool = True,
+        joints: bool = True,
+    ) -> None:
+        self._world = world
+        self._path = Path(path)
+        self._title = self._path.stem if title is None else title
+        self._interval = 1.0 / float(positive(fps, "fps"))
+        self._board = Board()
+        # Of the own board, and of that of a viewer: what scripts draw is there.
+        self._told = [0, 0]
+        lock = RLock()
+        self._feed = SceneFeed(world, lock, self._board)
+        self._details = Details(world, lock, self._board)
+        wish = Wish(
+            contacts=contacts, joints="all" if joints else frozenset(), dynamics=True, constraints=True
+        )
+        self._details.want(_PAGE, wish)
+        self._recording = Recording()
+        self._due: float | None = None
+        self._last = 0.0
+        self._facts: dict[str, Any] = {}
+        world.observers.append(self)
+
+    def __enter__(self) -> ReplayRecorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def look_from(
+        self, distance: float, yaw: float, pitch: float, target: tuple[float, float, float]
+    ) -> None:
+        """Where the page looks from at first; by default it shows everything.
+
+        Args:
+            distance: To the target [m].
+            yaw: About the upward axis [degrees].
+            pitch: Upwards; negative looks down from above [degrees].
+            target: What it looks at [m].
+        """
+        self._facts["camera"] = {"distance": distance, "yaw": yaw, "pitch": pitch, "target": target}
+
+    def before_step(self) -> None:
+        """Takes the first frame."""
+        if self._due is None:
+            self._due = 1.0
+            self._last = float(self._world.time)
+            self.shoot()
+
+    def after_step(self) -> None:
+        """Takes the frame that is due."""
+        assert self._due is not None
+        time = float(self._world.time)
+        passed = time - self._last
+        self._last = time
+        # Time goes back when a state is restored: what follows is seen at once.
+        self._due = 0.0 if passed < 0.0 else self._due - passed / self._interval
+        if self._due <= _EARLY:
+            self.shoot()
+            while self._due <= _EARLY:
+                self._due += 1.0
+
+    def shoot(self) -> None:
+        """Takes a frame now."""
+        blocks = self._details.blocks()
+        frame = self._feed.frame({}, blocks)
+        self._take_news()
+        if frame is not None:
+            self._recording.add(*decoded(frame))
+
+    def stop(self) -> None:
+        """Records no more and writes the file; stopping again does nothing.
+
+        Raises:
+            OSError: The file cannot be written.
+        """
+        if self not in self._world.observers:
+            return
+        self._world.observers.remove(self)
+        self._details.want(_PAGE, Wish())
+        if self._recording.frame_count == 0 or self._last != float(self._world.time):
+            self.shoot()
+        self._path.write_text(self._page(), encoding="utf-8")
+
+    @property
+    def frame_count(self) -> int:
+        """How many frames have been recorded."""
+        return self._recording.frame_count
+
+    def _repr_html_(self) -> str:
+        """What has been recorded so far, for notebooks: it needs no connection."""
+        return replay_frame(self._page())
+
+    def _page(self) -> str:
+        return replay_of(self._recording.packed(title=self._title, **self._facts))
+
+    def _take_news(self) -> None:
+        """Takes in what is new on the boards."""
+        self._take_from(0, self._board, _OF_BODIES)
+        viewer_board = boards.get(self._world)
+        if viewer_board is not None:
+            self._take_from(1, viewer_board, _OF_SCRIPTS)
+
+    def _take_from(self, number: int, board: Board, kept: frozenset[str]) -> None:
+        messages, self._told[number] = board.since(self._told[number])
+        for message in messages:
+            header, payload = decoded(message)
+            kind = header["type"]
+            if kind.removeprefix("no ") in kept:
+                self._recording.add(header, payload)
+            elif kind == "options":
+                self._facts["options"] = header
+            elif kind == "camera" and header["chosen"]:
+                self._facts.setdefault("camera", header)

@@ -1,0 +1,70 @@
+"""The page as one file that plays a recording, without a server and without a network.
+
+Browsers load no modules from the files beside a page that is itself a file. So the modules come along packed,
+under names of their own (`carom/view/scene.js`) that an import map leads to, and a few lines unpack them.
+"""
+
+from __future__ import annotations
+
+import json
+import posixpath
+import re
+from base64 import b64encode
+from functools import cache
+from zlib import compress
+
+from carom.viewer.page_files import page_files
+
+_PLACE = "RECORDING"
+_MAIN = "main.js"
+# What a module imports, by a path relative to itself.
+_IMPORT = re.compile(r'(\bfrom ")(\.[^"]+)(")')
+_STYLE = re.compile(r'<link rel="stylesheet"[^>]*>')
+_ICON = re.compile(r'<link rel="icon"[^>]*>')
+_SCRIPT = re.compile(r'<script type="module"[^>]*></script>')
+_UNPACK = """
+(async () => {
+  const packed = await (await fetch("data:application/octet-stream;base64,%s")).blob();
+  const text = await new Response(packed.stream().pipeThrough(new DecompressionStream("deflate"))).text();
+  const imports = {};
+  for (const [name, source] of Object.entries(JSON.parse(text))) {
+    imports["carom/" + name] = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+  }
+  const map = document.createElement("script");
+  map.type = "importmap";
+  map.textContent = JSON.stringify({ imports });
+  document.head.append(map);
+  await import("carom/main.js");
+})();
+"""
+
+
+@cache
+def replay_page() -> str:
+    """The page with `RECORDING` where the recording goes, in base 64."""
+    files = {name: content.decode() for name, content in page_files().items()}
+    modules = {
+        name: _with_absolute_imports(name, text) for name, text in files.items() if name.endswith(".js")
+    }
+    packed = b64encode(compress(json.dumps(modules).encode(), 9)).decode()
+    script = (
+        f'<script type="application/octet-stream" id="recording">{_PLACE}</script>\n'
+        f"    <script>{_UNPACK % packed}</script>"
+    )
+    page = _STYLE.sub(lambda _: f"<style>\n{files['style.css']}</style>", files["index.html"])
+    page = _ICON.sub("", _SCRIPT.sub("", page))
+    return page.replace("</body>", f"  {script}\n  </body>")
+
+
+def replay_of(recording: bytes) -> str:
+    """A page that plays a recording; see `recording.py` for its format."""
+    return replay_page().replace(_PLACE, b64encode(recording).decode())
+
+
+def _with_absolute_imports(name: str, text: str) -> str:
+    folder = posixpath.dirname(name)
+
+    def absolute(found: re.Match[str]) -> str:
+        return f"{found[1]}carom/{posixpath.normpath(posixpath.join(folder, found[2]))}{found[3]}"
+
+    return _IMPORT.sub(absolute, text)

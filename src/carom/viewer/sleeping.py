@@ -1,0 +1,42 @@
+"""Keeping bodies awake, as the key d does in PyBullet's window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from carom.dynamics_changes import change_dynamics
+from carom.model.body_spec import BASE
+from carom.model.flags import ActivationChange
+
+if TYPE_CHECKING:
+    from carom.body import Body
+    from carom.world import World
+
+
+class Sleeping:
+    """Whether bodies may fall asleep. Its method is called while nobody steps the world.
+
+    Args:
+        world: The world.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._kept_awake: list[Body] | None = None
+
+    def toggle(self) -> None:
+        """Wakes all bodies up and lets none fall asleep, or lets those that could before."""
+        if self._kept_awake is None:
+            can_sleep = self._world.arrays.model.numpy["tree_can_sleep"]
+            self._kept_awake = [body for body in self._world.bodies.values() if can_sleep[body.rows.tree]]
+            for body in self._kept_awake:
+                _change(body, ActivationChange.WAKE_UP | ActivationChange.DISABLE_SLEEPING)
+            return
+        for body in self._kept_awake:
+            if self._world.bodies.get(body.id) is body:
+                _change(body, ActivationChange.ENABLE_SLEEPING)
+        self._kept_awake = None
+
+
+def _change(body: Body, change: ActivationChange) -> None:
+    change_dynamics(body, BASE, {"activation_state": change})

@@ -1,0 +1,37 @@
+"""The viewer's hold on the steps of a world that nobody else guards."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from carom.viewer.viewer import Viewer
+
+
+class Turnstile:
+    """One of `World.observers`: a step waits for the viewer and holds its lock.
+
+    So that pages can pause, pull and go back in time while a script calls `World.step`.
+
+    Args:
+        viewer: The viewer.
+    """
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._lock: Any = viewer.lock
+        self._held = False
+
+    def before_step(self) -> None:
+        """Waits while the simulation is paused, then takes the lock."""
+        if self._viewer.held:
+            self._viewer.wait_for_turn()
+        # A step that failed has not given it back.
+        if not self._held:
+            self._lock.acquire()
+            self._held = True
+
+    def after_step(self) -> None:
+        """Gives the lock back."""
+        self._held = False
+        self._lock.release()

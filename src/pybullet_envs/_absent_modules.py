@@ -1,0 +1,88 @@
+"""What PyBullet's package of environments has and ours has not, by reason; see `pybullet_utils._absent`."""
+
+ABSENT = """
+# PyBullet's learning code is for TensorFlow 1; the environments train with any library for Gymnasium
+agents: configs networks train_ppo utility visualize_ppo
+agents.ppo: algorithm memory normalize utility
+agents.tools: attr_dict batch_env count_weights in_graph_batch_env in_graph_env loop mock_algorithm
+agents.tools: mock_environment simulate streaming_mean wrappers
+baselines: enjoy_kuka_diverse_object_grasping enjoy_kuka_grasping enjoy_pybullet_cartpole
+baselines: enjoy_pybullet_racecar enjoy_pybullet_zed_racecar train_kuka_cam_grasping train_kuka_grasping
+baselines: train_pybullet_cartpole train_pybullet_racecar train_pybullet_zed_racecar
+stable_baselines: enjoy train
+minitaur.agents.ppo: algorithm memory normalize utility
+minitaur.agents.scripts: configs networks train train_ppo_test utility visualize
+minitaur.agents.tools: attr_dict attr_dict_test batch_env count_weights count_weights_test
+minitaur.agents.tools: in_graph_batch_env in_graph_env loop loop_test mock_algorithm mock_environment
+minitaur.agents.tools: simulate simulate_test streaming_mean wrappers wrappers_test
+minitaur.actuatornet: actuatornet_keras actuatornet_keras_lstm minitaur_raibert_controller_example
+minitaur.actuatornet: proto2csv
+# it imitates recorded motions of people, which are not Carom's to pass on
+deep_mimic: DeepMimic_Optimizer DeepMimic_Optimizer_multiclip mpi_run mpi_run_multiclip plot_return testrl
+deep_mimic: testrl_multiclip
+deep_mimic.env: env humanoid_pose_interpolator humanoid_stable_pd humanoid_stable_pd_multiclip
+deep_mimic.env: motion_capture_data_multiclip pybullet_deep_mimic_env pybullet_deep_mimic_env_multiclip
+deep_mimic.env: quadrupedPoseInterpolator quadruped_stable_pd testHumanoid testLaikago
+deep_mimic.gym_env: deep_mimic_env deepmimic_test
+deep_mimic.learning: agent_builder exp_params normalizer path pg_agent ppo_agent replay_buffer rl_agent
+deep_mimic.learning: rl_util rl_world tf_agent tf_normalizer tf_util
+deep_mimic.learning.nets: fc_2layers_1024units net_builder
+deep_mimic.learning.solvers: mpi_solver solver
+# the second generation of walking robots and their environments is not built yet
+minitaur.agents.baseline_controller: com_height_estimator com_velocity_estimator dummy_gait_generator
+minitaur.agents.baseline_controller: foot_stepper gait_generator imu_based_com_velocity_estimator
+minitaur.agents.baseline_controller: leg_controller locomotion_controller locomotion_controller_example
+minitaur.agents.baseline_controller: locomotion_controller_in_scenario_set_example
+minitaur.agents.baseline_controller: locomotion_controller_setup minitaur_raibert_controller
+minitaur.agents.baseline_controller: minitaur_raibert_controller_utils model_predictive_control
+minitaur.agents.baseline_controller: multi_state_estimator openloop_gait_generator
+minitaur.agents.baseline_controller: raibert_swing_leg_controller state_estimator static_gait_controller
+minitaur.agents.baseline_controller: time_based_moving_window_filter torque_stance_leg_controller
+minitaur.agents.trajectory_generator: controller_simple tg_inplace tg_simple
+minitaur.envs_v2: base_client curriculum_reset_helpers env_loader laikago_ars_run_policy laikago_ars_train
+minitaur.envs_v2: locomotion_gym_config locomotion_gym_config_test locomotion_gym_env
+minitaur.envs_v2: locomotion_gym_env_test multiagent_mobility_gym_env
+minitaur.envs_v2.env_wrappers: action_denormalize_wrapper alternating_legs_openloop curriculum_wrapper_env
+minitaur.envs_v2.env_wrappers: depth_uv_to_footplacement_wrapper fixed_steptime_wrapper_env
+minitaur.envs_v2.env_wrappers: ik_based_wrapper_env imitation_wrapper_env mpc_locomotion_wrapper
+minitaur.envs_v2.env_wrappers: observation_dictionary_to_array_wrapper pmtg_inplace_wrapper_env
+minitaur.envs_v2.env_wrappers: pmtg_wrapper_env simple_openloop state_machine_based_wrapper_env
+minitaur.envs_v2.env_wrappers: step_based_curriculum_wrapper_env trajectory_generator_wrapper_env
+minitaur.envs_v2.env_wrappers: walking_wrapper
+minitaur.envs_v2.evaluation: metric metric_logger metric_utils
+minitaur.envs_v2.examples: laikago_mpc_wrapper_example laikago_pmtg_example laikago_static_gait_example
+minitaur.envs_v2.scenes: random_stepstone_scene scene_base simple_scene world_asset_pb2
+minitaur.envs_v2.sensors: accelerometer_sensor camera_sensor imu_sensor last_action_sensor
+minitaur.envs_v2.sensors: motor_angle_sensor sensor space_utils toe_position_sensor
+minitaur.envs_v2.tasks: simple_locomotion_task task_interface task_utils terminal_conditions
+minitaur.envs_v2.utilities: env_utils env_utils_v2 laikago_pose_utils mini_cheetah_pose_utils
+minitaur.envs_v2.utilities: minitaur_pose_utils noise_generators rendering_utils robot_pose_utils
+minitaur.envs_v2.utilities: termination_reason
+minitaur.robots: autonomous_object crowd_controller hybrid_motor_model laikago laikago_constants
+minitaur.robots: laikago_interface_pb2 laikago_kinematic_constants laikago_motor laikago_v2 mini_cheetah
+minitaur.robots: mini_cheetah_test minitaur minitaur_constants minitaur_motor minitaur_motor_model_v2
+minitaur.robots: minitaur_v2 object_controller quadruped_base robot_base robot_config robot_urdf_loader
+minitaur.robots: time_ordered_buffer timestamp_pb2 vector_pb2
+minitaur.robots.safety: data_types motor_action_validator motor_state_validator safety_checker
+minitaur.robots.safety: safety_error utilities
+minitaur.robots.safety.python: moving_window_filter
+minitaur.robots.utilities: action_filter kinematics kinematics_utils urdf_utils
+minitaur.vision: imagery_client imagery_utils imagery_utils_test point_cloud_utils sim_camera
+# it is one of PyBullet's examples; Carom's own are in its documentation
+examples: batchsim3 dominoes enjoy_TF_AntBulletEnv_v0_2017may enjoy_TF_HalfCheetahBulletEnv_v0_2017may
+examples: enjoy_TF_HopperBulletEnv_v0_2017may enjoy_TF_HumanoidBulletEnv_v0_2017may
+examples: enjoy_TF_HumanoidFlagrunHarderBulletEnv_v1_2017jul
+examples: enjoy_TF_InvertedDoublePendulumBulletEnv_v0_2017may
+examples: enjoy_TF_InvertedPendulumBulletEnv_v0_2017may
+examples: enjoy_TF_InvertedPendulumSwingupBulletEnv_v0_2017may enjoy_TF_Walker2DBulletEnv_v0_2017may
+examples: kukaCamGymEnvTest kukaGymEnvTest kukaGymEnvTest2 kuka_setup mini_cheetah_test
+examples: minitaur_gym_env_example racecarGymEnvTest racecarZEDGymEnvTest testMJCF
+prediction: boxstack_pybullet_sim pybullet_sim_gym_env test_pybullet_sim_gym_env
+# examples of the Minitaur and its Raibert controller are not built yet
+minitaur.envs: minitaur_alternating_legs_env_example minitaur_ball_gym_env_example
+minitaur.envs: minitaur_four_leg_stand_env_example minitaur_gym_env_example minitaur_proto_dump_example
+minitaur.envs: minitaur_raibert_controller minitaur_raibert_controller_example
+minitaur.envs: minitaur_randomize_terrain_gym_env minitaur_randomize_terrain_gym_env_example
+minitaur.envs: minitaur_reactive_env_example minitaur_stand_gym_env_example minitaur_trotting_env_example
+minitaur.envs: simple_ppo_agent simple_ppo_agent_example timestamp_pb2 vector_pb2
+"""

@@ -1,0 +1,1 @@
+"""Kinds of actions, and files of recorded motions."""

@@ -1,0 +1,1 @@
+"""PyBullet's examples of environments and arms, as far as they are here."""

@@ -1,0 +1,1 @@
+"""The xArm over a tray (`xarm_sim`)."""

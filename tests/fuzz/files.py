@@ -1,0 +1,184 @@
+"""The fuzzers of files: `python -m tests.fuzz.files --cases 100000 --seed 1 [--kinds urdf obj ...]`.
+
+Each case damages a good file and loads it by the function scripts would use. It is refused with
+`pybullet.error`, and the world is as it was; or it is loaded, and steps and getters give numbers. Nothing
+takes 5 s or a gigabyte.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import struct
+import sys
+from collections import Counter
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+from random import Random
+from time import perf_counter
+from typing import Any
+
+from tests.fuzz.api import LONGEST, own_folder
+from tests.fuzz.damage import damaged
+from tests.fuzz.invariants import Broken, check_finite
+from tests.fuzz.memory import check_memory
+
+import pybullet as p
+import pybullet_data
+from carom.saved import container
+
+_DATA = Path(pybullet_data.getDataPath())
+_TEST_DATA = Path(__file__).parents[1] / "formats" / "data"
+_LARGEST = 30_000
+_MOST_SEEDS = 25
+
+Load = Callable[[str], Any]
+
+
+def _files(*patterns: str) -> list[bytes]:
+    """Contents of small files of ours."""
+    found = [
+        file
+        for folder in (_TEST_DATA, _DATA)
+        for pattern in patterns
+        for file in sorted(folder.rglob(pattern))
+    ]
+    return [file.read_bytes() for file in found if file.stat().st_size < _LARGEST][:_MOST_SEEDS]
+
+
+def _images(kind: str) -> list[bytes]:
+    from PIL import Image
+
+    images = []
+    for mode in ("RGB", "L", "RGBA") if kind == "PNG" else ("RGB", "L"):
+        stream = io.BytesIO()
+        Image.new(mode, (13, 7), 100).save(stream, kind)
+        images.append(stream.getvalue())
+    return images
+
+
+def _worlds() -> list[bytes]:
+    """A few saved worlds."""
+    contents = []
+    for robot in ("r2d2.urdf", "cube_small.urdf", "kuka_iiwa/model.urdf"):
+        client = p.connect(p.DIRECT)
+        p.setAdditionalSearchPath(str(_DATA), physicsClientId=client)
+        p.loadURDF("plane.urdf", physicsClientId=client)
+        p.loadURDF(robot, [0, 0, 0.5], physicsClientId=client)
+        for _ in range(5):
+            p.stepSimulation(physicsClientId=client)
+        p.saveBullet("seed.bullet", physicsClientId=client)
+        p.disconnect(client)
+        contents.append(Path("seed.bullet").read_bytes())
+    return contents
+
+
+def _mesh(name: str) -> Any:
+    return p.createMultiBody(1, p.createCollisionShape(p.GEOM_MESH, fileName=name))
+
+
+SEEDS: dict[str, Callable[[], list[bytes]]] = {
+    "urdf": lambda: _files("*.urdf"),
+    "sdf": lambda: _files("*.sdf"),
+    "xml": lambda: _files("mjcf/*.xml"),
+    "obj": lambda: _files("*.obj"),
+    "stl": lambda: _files("*.stl"),
+    "dae": lambda: _files("*.dae"),
+    "png": lambda: _images("PNG"),
+    "jpg": lambda: _images("JPEG"),
+    "bullet": _worlds,
+}
+LOADERS: dict[str, Load] = {
+    "urdf": p.loadURDF,
+    "sdf": p.loadSDF,
+    "xml": p.loadMJCF,
+    "obj": _mesh,
+    "stl": _mesh,
+    "dae": _mesh,
+    "png": p.loadTexture,
+    "jpg": p.loadTexture,
+    "bullet": p.loadBullet,
+}
+
+
+def _damaged_world(content: bytes, random: Random) -> bytes:
+    """A saved world with a damaged document whose checksum is right, or with any damage."""
+    if random.random() < 0.1:
+        return damaged(content, random)
+    document, blocks = container.unpacked(content, Path("seed"))
+    text = damaged(json.dumps(document).encode(), random)
+    payload = struct.pack("<Q", len(text)) + text + bytes(blocks)
+    header = struct.pack("<8sIIQ32s", container.MAGIC, 1, 0, len(payload), sha256(payload).digest())
+    return header + payload
+
+
+def fuzz(kind: str, cases: int, seed: int) -> Counter[str]:
+    """Loads so many damaged files of a kind; raises `Broken` at the first that does harm."""
+    random = Random(f"{kind} {seed}")
+    with own_folder():
+        seeds = SEEDS[kind]()
+        client = p.connect(p.DIRECT)
+        assert client == 0, "the first connection of the process"
+        p.setAdditionalSearchPath(str(_DATA))
+        outcomes: Counter[str] = Counter()
+        try:
+            for number in range(cases):
+                content = random.choice(seeds)
+                harm = _damaged_world if kind == "bullet" else damaged
+                # Another name each time, so that nothing is served from a cache.
+                file = Path(f"{number}.{kind}")
+                file.write_bytes(harm(content, random))
+                try:
+                    outcomes[_load(kind, str(file))] += 1
+                except Broken:
+                    print(f"kind {kind}, seed {seed}, case {number}: {file.read_bytes()!r}", file=sys.stderr)
+                    raise
+                file.unlink()
+            check_memory()
+        finally:
+            p.disconnect(client)
+    return outcomes
+
+
+def _load(kind: str, name: str) -> str:
+    start = perf_counter()
+    try:
+        LOADERS[kind](name)
+        outcome = "loaded"
+    except p.error:
+        if p.getNumBodies():
+            raise Broken("it was refused, and yet there are bodies") from None
+        return "refused"
+    except Exception as problem:
+        raise Broken(f"{type(problem).__name__}: {problem}") from problem
+    finally:
+        if perf_counter() - start > LONGEST:
+            raise Broken(f"it took {perf_counter() - start:.1f} s")
+    if kind not in ("png", "jpg"):
+        try:
+            p.stepSimulation()
+        except p.error:
+            # Some damage makes robots that nothing can simulate; the step says so.
+            outcome = "loaded, cannot be stepped"
+        check_finite()
+        p.resetSimulation()
+    return outcome
+
+
+def main() -> None:
+    """Does what the command line says."""
+    parser = argparse.ArgumentParser(description="Loads damaged files.")
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--kinds", nargs="*", default=list(SEEDS))
+    asked = parser.parse_args()
+    for kind in asked.kinds:
+        start = perf_counter()
+        outcomes = fuzz(kind, asked.cases, asked.seed)
+        print(f"{kind}: {asked.cases} files in {perf_counter() - start:.0f} s: {dict(outcomes)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

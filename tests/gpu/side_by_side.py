@@ -1,0 +1,109 @@
+"""Several worlds of the same scene in one set of arrays, stepped by the fine launches that are for GPUs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from carom import World
+from carom.engine.parallel import Extent, ParallelStep
+from carom.engine.program import Plan
+from carom.engine.prospects import can_sleep
+from carom.engine.workspace import Workspace
+from carom.model.arrays import ArrayTable
+
+DEVICE = "cpu"
+
+
+class SideBySide:
+    """Worlds of the same bodies, as they are now, each with its parameters; they themselves stay as they are.
+
+    There is room for all pairs, and for as many contacts and rows as are asked for.
+
+    Attributes:
+        tables: Their arrays, by the names that kernels give them.
+        coupled: Whether their bodies can touch, are tied together or can fall asleep.
+    """
+
+    def __init__(self, worlds: Sequence[World], *, contacts: int = 256, rows: int = 512) -> None:
+        for world in worlds:
+            world.prepare()
+        first = worlds[0]
+        arrays = first.arrays.repeated(len(worlds))
+        touch = first.touch.repeated(arrays)
+        touch.contacts.reserve({"contact": contacts})
+        touch.reserve()
+        self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": touch.contacts}
+        self._parameters: dict[str, ArrayTable] = {
+            "model": arrays.model,
+            "shapes": touch.shapes.table,
+            "users": touch.users,
+        }
+        for table in self._parameters.values():
+            for name in [name for name in table.numpy if table.is_per_world(name)]:
+                table.spread(name, len(worlds))
+        for number, world in enumerate(worlds):
+            for ours, theirs in (*self._beside(world), *self._parameters_beside(world)):
+                ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
+        workspace = Workspace(len(worlds))
+        workspace.fit(arrays, touch)
+        workspace.pairs.reserve({"pair": 256})
+        workspace.couplings.reserve({"coupling": rows, "jacobian": 8 * rows, "run": 8 * rows})
+        shared = {
+            "settings": first.engine.structs()["settings"],
+            **arrays.structs(DEVICE),
+            **touch.structs(DEVICE),
+        }
+        touching, sleeping = first.engine.can_touch, can_sleep(first.arrays)
+        self.coupled = touching or sleeping or touch.user_count > 0
+        self.step = ParallelStep(
+            workspace.bind(shared, DEVICE),
+            Extent(
+                len(worlds),
+                arrays.used["tree"],
+                touch.shapes.shape_count,
+                touch.contacts.capacity["contact"],
+                workspace.pairs.capacity["pair"],
+            ),
+            max(1, first.parameters.substeps),
+            DEVICE,
+            Plan(touching, sleeping, self.coupled),
+        )
+
+    def differences(self, number: int, world: World) -> list[str]:
+        """Names of the arrays of which a bit differs between one of these worlds and a lone one."""
+        contacts = world.touch.contact_count
+        found = []
+        for name, (ours, theirs) in zip(self._names, self._beside(world), strict=True):
+            if name == "status_entry":
+                continue
+            count = contacts if name.startswith("contact_") else min(ours.shape[1], theirs.shape[1])
+            if not np.array_equal(ours[number, :count], theirs[0, :count], equal_nan=True):
+                found.append(name)
+        return found
+
+    def _parameters_beside(self, world: World) -> list[tuple[np.ndarray, np.ndarray]]:
+        lone = {
+            "model": world.arrays.model,
+            "shapes": world.touch.shapes.table,
+            "users": world.touch.users,
+        }
+        return [
+            (values, lone[name].numpy[field])
+            for name, table in self._parameters.items()
+            for field, values in table.numpy.items()
+            if table.is_per_world(field)
+        ]
+
+    @property
+    def _names(self) -> list[str]:
+        return [name for table in self.tables.values() for name in table.numpy]
+
+    def _beside(self, world: World) -> list[tuple[np.ndarray, np.ndarray]]:
+        lone = {"state": world.arrays.state, "contacts": world.touch.contacts}
+        return [
+            (values, lone[name].numpy[field])
+            for name, table in self.tables.items()
+            for field, values in table.numpy.items()
+        ]

@@ -1,0 +1,80 @@
+"""Every kernel of a step compiles for a GPU, and takes no more of one than it should. No GPU is needed."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from tools.gpu.compile import Compiled, compile_modules
+from tools.gpu.resources import Resources, find_assembler, parse_report, resources_of
+
+from carom.warmup import CUDA_MODULES
+
+SECONDS = 360.0
+"""Time of cores that compiling may take: three minutes of two."""
+
+SPILLS = {
+    "pair_candidates_kernel": 12_000,
+    "island_contacts_kernel": 11_000,
+    "restless_sweeps_kernel": 1_500,
+    "calm_sweeps_kernel": 200,
+    "closest_points_kernel": 5_000,
+    "rays_kernel": 1_600,
+}
+"""Bytes that kernels may write and read for want of registers; all others none."""
+
+STACK = 4_000
+"""Bytes of stack that a thread may take."""
+
+REPORT = """
+ptxas info    : Compiling entry function 'first_kernel_0a1b2c3d_cuda_kernel_forward' for 'sm_90'
+ptxas info    : Function properties for first_kernel_0a1b2c3d_cuda_kernel_forward
+    40 bytes stack frame, 8 bytes spill stores, 12 bytes spill loads
+ptxas info    : Used 168 registers, used 0 barriers, 96 bytes cumulative stack size, 1024 bytes smem
+ptxas info    : Compile time = 5.000 ms
+ptxas info    : Function properties for called_0
+    0 bytes stack frame, 100 bytes spill stores, 200 bytes spill loads
+ptxas info    : Compiling entry function 'second_kernel_4e5f6a7b_cuda_kernel_forward' for 'sm_90'
+ptxas info    : Function properties for second_kernel_4e5f6a7b_cuda_kernel_forward
+    0 bytes stack frame, 0 bytes spill stores, 0 bytes spill loads
+ptxas info    : Used 30 registers, used 0 barriers
+"""
+
+
+def test_a_report_of_the_assembler_is_understood() -> None:
+    first, second = parse_report(REPORT)
+    assert first == Resources("first_kernel", registers=168, stack=96, spill_stores=108, spill_loads=212)
+    assert second == Resources("second_kernel", registers=30, stack=0, spill_stores=0, spill_loads=0)
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> list[Compiled]:
+    return compile_modules(CUDA_MODULES, tmp_path_factory.mktemp("ptx"))
+
+
+@pytest.mark.slow
+def test_all_modules_compile_for_a_gpu_in_time(compiled: Sequence[Compiled]) -> None:
+    assert [module.module for module in compiled] == list(CUDA_MODULES)
+    for module in compiled:
+        assert ".target sm_90" in module.ptx.read_text(encoding="utf-8")
+    assert sum(module.seconds for module in compiled) < SECONDS
+
+
+@pytest.mark.slow
+def test_kernels_fit_into_the_registers_of_a_gpu(compiled: Sequence[Compiled]) -> None:
+    assembler = find_assembler()
+    if assembler is None:
+        pytest.skip("needs ptxas, of the package nvidia-cuda-nvcc")
+    kernels = [kernel for module in compiled for kernel in _resources(module.ptx, assembler)]
+    assert {kernel.kernel for kernel in kernels} >= set(SPILLS)
+    greedy = {
+        kernel.kernel: (kernel.stack, kernel.spill_stores, kernel.spill_loads)
+        for kernel in kernels
+        if kernel.spill_stores + kernel.spill_loads > SPILLS.get(kernel.kernel, 0) or kernel.stack > STACK
+    }
+    assert greedy == {}
+
+
+def _resources(ptx: Path, assembler: Path) -> list[Resources]:
+    found = resources_of(ptx, assembler)
+    assert found, f"no kernels in {ptx}"
+    return found

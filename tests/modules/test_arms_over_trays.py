@@ -1,0 +1,63 @@
+"""The simulations of `pybullet_robots` do what they are there for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+import pybullet as p
+import pybullet_data
+from pybullet_robots.panda.panda_sim import PandaSim
+from pybullet_robots.panda.panda_sim_grasp import PandaSimAuto
+from pybullet_robots.xarm.xarm_sim import XArm6Sim
+
+
+@pytest.fixture(autouse=True)
+def _world() -> Iterator[None]:
+    p.connect(p.DIRECT)
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    yield
+    p.disconnect()
+
+
+def hand_of(arm: int, link: int) -> tuple[float, ...]:
+    state = p.getLinkState(arm, link)
+    assert state is not None
+    return state[0]
+
+
+def test_the_panda_lifts_a_brick() -> None:
+    p.setGravity(0, -9.8, 0)
+    arm = PandaSimAuto(p, [0, 0, 0])
+    heights = []
+    for _ in range(8 * 240):
+        arm.step()
+        p.stepSimulation()
+        heights.append(p.getBasePositionAndOrientation(arm.legos[0])[0][1])
+    assert heights[5 * 240] < 0.04
+    # PyBullet's is at 0.116 m then.
+    assert heights[-1] == pytest.approx(0.116, abs=2e-3)
+
+
+def test_the_hand_of_the_panda_follows_its_ellipse() -> None:
+    p.setGravity(0, -9.8, 0)
+    arm = PandaSim(p, [1.0, 2.0, 3.0])
+    arm.takes_pictures = False
+    for _ in range(120):
+        arm.step()
+        p.stepSimulation()
+    x, y, z = hand_of(arm.panda, 11)
+    assert y == pytest.approx(2.044, abs=0.02)
+    assert ((x - 1.0) / 0.2) ** 2 + ((z - 2.4) / 0.1) ** 2 == pytest.approx(1.0, abs=0.15)
+
+
+def test_the_hand_of_the_xarm_follows_its_circle() -> None:
+    p.setGravity(0, 0, -9.8)
+    p.setTimeStep(1 / 60)
+    arm = XArm6Sim(p, [0, 0, 0])
+    for _ in range(120):
+        arm.step()
+        p.stepSimulation()
+    # PyBullet's is at (0.488, -0.182, 0.129).
+    assert hand_of(arm.xarm, 6) == pytest.approx((0.488, -0.182, 0.129), abs=5e-3)

@@ -1,0 +1,95 @@
+"""All that PyBullet's wheel lets one import can be imported; what is missing says so at its use.
+
+`wheel_modules.txt` names the modules of PyBullet 3.2.7's distribution besides `pybullet` and `pybullet_data`.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import pybullet as p
+from pybullet_utils._absent import Absent
+
+NAMES = Path(__file__).with_name("wheel_modules.txt").read_text(encoding="utf-8").split()
+# Run scripts that use only parts, as if Gymnasium were not installed.
+WITHOUT_GYMNASIUM = "import sys; sys.modules['gymnasium'] = None\n"
+
+
+def run(code: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def test_every_module_of_the_wheel_can_be_imported() -> None:
+    for name in NAMES:
+        import_module(name)
+
+
+def test_what_is_missing_says_so_when_it_is_used() -> None:
+    laikago_v2 = import_module("pybullet_envs.minitaur.robots.laikago_v2")
+    Laikago = laikago_v2.Laikago
+    assert "second generation" in repr(Laikago)
+    with pytest.raises(p.error, match=r"laikago_v2\.Laikago is not available"):
+        Laikago(None)
+    with pytest.raises(p.error, match="is not available"):
+
+        class Mine(laikago_v2.Laikago):
+            pass
+
+    with pytest.raises(p.error, match="is not available"):
+        _ = laikago_v2.NUM_MOTORS + 1
+    with pytest.raises(p.error, match="is not available"):
+        list(laikago_v2.MOTOR_NAMES)
+
+
+def test_names_nobody_has_are_not_found() -> None:
+    assert find_spec("pybullet_envs.agents.nobody") is None
+    with pytest.raises(ModuleNotFoundError):
+        import_module("pybullet_examples.nobody")
+
+
+def test_absent_modules_can_be_inspected() -> None:
+    module = import_module("pybullet_envs.agents.configs")
+    assert module.__path__ == [] if hasattr(module, "__path__") else True
+    assert not hasattr(module.anything, "__wrapped__")
+    assert isinstance(module.anything, Absent)
+
+
+def test_running_a_missing_example_says_so() -> None:
+    command = [sys.executable, "-m", "pybullet_examples.jacobian"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1
+    assert done.stderr.strip().endswith("Carom's own are in its documentation")
+
+
+def test_robots_need_no_gymnasium() -> None:
+    code = """
+import pybullet as p, pybullet_data
+from pybullet_envs.bullet import kuka, minitaur, racecar
+from pybullet_envs import robot_locomotors, env_bases
+p.connect(p.DIRECT)
+print(p.getNumJoints(kuka.Kuka(pybullet_data.getDataPath()).kukaUid))
+"""
+    assert run(WITHOUT_GYMNASIUM + code) == "14"
+
+
+def test_environments_say_that_they_need_gymnasium() -> None:
+    code = """
+from pybullet_envs.bullet.kukaGymEnv import KukaGymEnv
+from pybullet_envs.robot_locomotors import Ant
+for make in (KukaGymEnv, Ant):
+    try:
+        make()
+    except ImportError as error:
+        print(error.name, 'pip install' in str(error))
+"""
+    assert run(WITHOUT_GYMNASIUM + code).splitlines() == ["gymnasium True"] * 2

@@ -1,0 +1,199 @@
+"""Arguments that no script should have, and that must not get far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import isfinite
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pybullet as p
+import pybullet_data
+
+SMALL = [1e-160, 0, 0, 0]
+TINY = [0, 0, 0, 1e-200]
+MANY = np.array([1.0, 2.0, 3.0])
+
+
+@pytest.fixture(autouse=True)
+def _scene() -> Iterator[None]:
+    p.connect(p.DIRECT)
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.loadURDF("plane.urdf")
+    p.loadURDF("kuka_iiwa/model.urdf", useFixedBase=1)
+    yield
+    p.disconnect()
+
+
+def box() -> int:
+    return p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+
+
+ROTATIONS: list[Callable[[list[float]], Any]] = [
+    lambda turn: p.loadURDF("cube_small.urdf", [0, 0, 1], turn),
+    lambda turn: p.resetBasePositionAndOrientation(1, [0, 0, 1], turn),
+    lambda turn: p.createMultiBody(0, box(), -1, [0, 0, 1], turn),
+    lambda turn: p.createMultiBody(1, box(), baseInertialFrameOrientation=turn),
+    lambda turn: p.createCollisionShape(p.GEOM_SPHERE, radius=1, collisionFrameOrientation=turn),
+    lambda turn: p.createVisualShape(p.GEOM_SPHERE, radius=1, visualFrameOrientation=turn),
+    lambda turn: p.createConstraint(1, 0, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0, 0, 0], turn, turn),
+    lambda turn: p.calculateInverseKinematics(1, 6, [0.3, 0, 0.5], turn),
+    p.getMatrixFromQuaternion,
+    lambda turn: p.multiplyTransforms([0, 0, 0], turn, [0, 0, 0], [0, 0, 0, 1]),
+    lambda turn: p.invertTransform([0, 0, 0], turn),
+]
+
+
+@pytest.mark.parametrize("turn", [SMALL, TINY, [0, 0, 0, 0], [1e160, 0, 0, 0]])
+@pytest.mark.parametrize("use", ROTATIONS)
+def test_quaternions_without_direction_are_refused(use: Callable[[Any], Any], turn: list[float]) -> None:
+    with pytest.raises(p.error, match=r"quaternion of length|has to be from"):
+        use(turn)
+
+
+@pytest.mark.parametrize("use", ROTATIONS)
+def test_quaternions_of_other_lengths_are_rotations(use: Callable[[Any], Any]) -> None:
+    use([0, 0, 0, 1e-9])
+    use([0, 0, 3e9, 4e9])
+
+
+TOO_LARGE: list[Callable[[], Any]] = [
+    lambda: p.createMultiBody(1e300, box()),
+    lambda: p.changeDynamics(1, 0, mass=1e300),
+    lambda: p.changeDynamics(1, 0, localInertiaDiagonal=[1, 1, 1e300]),
+    lambda: p.changeDynamics(1, 0, contactStiffness=1e300, contactDamping=1),
+    lambda: p.createCollisionShape(p.GEOM_MESH, fileName="cube.obj", meshScale=[1e155] * 3),
+    lambda: p.createCollisionShape(p.GEOM_MESH, vertices=[[1e155, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]]),
+    lambda: p.createVisualShape(p.GEOM_MESH, fileName="cube.obj", meshScale=[1e300] * 3),
+    lambda: p.loadURDF("cube_small.urdf", globalScaling=1e300),
+    lambda: p.loadSDF("kuka_iiwa/model.sdf", globalScaling=1e300),
+    lambda: p.resetJointState(1, 0, 1e300),
+    lambda: p.resetBaseVelocity(1, [0, 0, 1e300]),
+    lambda: p.setGravity(0, 0, 1e300),
+    lambda: p.setPhysicsEngineParameter(contactERP=1e300),
+    lambda: p.setJointMotorControl2(1, 0, p.POSITION_CONTROL, targetPosition=1e300),
+    lambda: p.rayTestBatch([[0, 0, 0]], [[0, 0, 1e300]]),
+]
+
+
+@pytest.mark.parametrize("call", TOO_LARGE)
+def test_what_products_would_overflow_is_refused(call: Callable[[], Any]) -> None:
+    with pytest.raises(p.error, match=r"1e\+30"):
+        call()
+    assert p.getNumBodies() == 2
+
+
+def test_bounds_may_be_as_great_as_one_likes() -> None:
+    p.setJointMotorControl2(1, 0, p.POSITION_CONTROL, targetPosition=0.1, force=1e300)
+    p.changeDynamics(1, 0, jointLimitForce=1e100, maxJointVelocity=1e100)
+    for _ in range(5):
+        p.stepSimulation()
+    assert all(map(isfinite, p.getJointState(1, 0)[:2]))
+
+
+@pytest.mark.parametrize("scale", [1e-201, 1e-160, 5e-324])
+def test_tiny_shapes_are_shapes(scale: float) -> None:
+    shapes = [
+        p.createCollisionShape(p.GEOM_MESH, fileName="cube.obj", meshScale=[scale] * 3),
+        p.createCollisionShape(p.GEOM_CYLINDER, radius=scale, height=1),
+    ]
+    bodies = [p.createMultiBody(1, shape, basePosition=[0, 0, 3]) for shape in shapes]
+    bodies.append(p.loadURDF("duck_vhacd.urdf", [0, 3, 3], globalScaling=scale))
+    for _ in range(10):
+        p.stepSimulation()
+    for body in bodies:
+        assert all(map(isfinite, p.getBasePositionAndOrientation(body)[0]))
+
+
+ARRAYS: list[Callable[[], Any]] = [
+    lambda: p.changeDynamics(1, -1, mass=MANY),  # type: ignore[arg-type]
+    lambda: p.changeDynamics(1, -1, jointLowerLimit=MANY),  # type: ignore[arg-type]
+    lambda: p.setJointMotorControl2(1, 0, p.POSITION_CONTROL, targetPosition=MANY),  # type: ignore[arg-type]
+    lambda: p.resetJointState(1, 0, MANY),  # type: ignore[arg-type]
+    lambda: p.calculateInverseKinematics(1, 6, [0, 0, 1], maxNumIterations=MANY),  # type: ignore[arg-type]
+    lambda: p.calculateInverseKinematics(1, 6, [0, 0, 1], residualThreshold=MANY),  # type: ignore[arg-type]
+    lambda: p.setTimeStep(MANY),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize("call", ARRAYS)
+def test_arrays_are_no_numbers(call: Callable[[], Any]) -> None:
+    with pytest.raises(TypeError, match=r"real number|integer"):
+        call()
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        {"numNonContactInnerIterations": 10**9},
+        {"numSolverIterations": 10**9},
+        {"numSubSteps": 10**9},
+        {"numSolverIterations": 10**6, "numNonContactInnerIterations": 100},
+        {"numSubSteps": 10_000, "numSolverIterations": 10_000},
+    ],
+)
+def test_a_step_comes_to_an_end(parameters: dict[str, int]) -> None:
+    before = p.getPhysicsEngineParameters()
+    with pytest.raises(p.error, match="at most"):
+        p.setPhysicsEngineParameter(**parameters)  # type: ignore[arg-type]
+    assert p.getPhysicsEngineParameters() == before
+
+
+def test_rays_end_behind_their_last_hit() -> None:
+    p.rayTest([0, 0, 1], [0, 0, -1])
+    start = perf_counter()
+    hits = p.rayTestBatch([[9, 9, 1], [9, 9, 1]], [[9, 9, -1], [9, 9, 5]], reportHitNumber=2**31 - 1)
+    assert [hit[0] for hit in hits] == [-1, -1]
+    assert perf_counter() - start < 1.0
+
+
+def test_without_iterations_nothing_is_solved() -> None:
+    p.setGravity(0, 0, -10)
+    cube = p.loadURDF("cube_small.urdf", [3, 3, 0.025])
+    p.setJointMotorControl2(1, 3, p.POSITION_CONTROL, 0.5, force=100)
+    for _ in range(30):
+        p.stepSimulation()
+    p.setPhysicsEngineParameter(numSolverIterations=0)
+    held = p.getJointState(1, 3)[0]
+    z = p.getBasePositionAndOrientation(cube)[0][2]
+    for _ in range(60):
+        p.stepSimulation()
+    fallen = p.getBasePositionAndOrientation(cube)[0][2] - z
+    # As in PyBullet: free fall by 60 steps of 1/240 s.
+    assert fallen == pytest.approx(-10 * (60 * 61 / 2) / 240**2, rel=0.02)
+    assert p.getJointState(1, 3)[3] == 0.0
+    assert p.getJointState(1, 3)[0] != held
+
+
+def test_states_do_not_depend_on_what_came_after_with_swept_spheres() -> None:
+    p.setGravity(0, 0, -10)
+    ball = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.05), basePosition=[2, 2, 3])
+    p.changeDynamics(ball, -1, ccdSweptSphereRadius=0.05)
+    p.resetBaseVelocity(ball, [0, 0, -30])
+    for _ in range(10):
+        p.stepSimulation()
+    state = p.saveState()
+
+    def after() -> list[Any]:
+        poses = []
+        for _ in range(20):
+            p.stepSimulation()
+            poses.append(p.getBasePositionAndOrientation(ball))
+        return poses
+
+    first = after()
+    p.resetBasePositionAndOrientation(ball, [50, 50, 50], [0, 0, 0, 1])
+    p.stepSimulation()
+    p.restoreState(state)
+    assert after() == first
+
+
+@pytest.mark.parametrize("key", ["\0", "a\0b", "\ud800"])
+def test_user_data_hold_text(key: str) -> None:
+    for given in ((key, "v"), ("k", key)):
+        with pytest.raises(p.error, match=r"null character|cannot be encoded"):
+            p.addUserData(0, *given)
+    assert p.getNumUserData(0) == 0

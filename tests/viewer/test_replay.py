@@ -1,0 +1,204 @@
+"""Replays: recordings as pages of their own, in real browsers and without a network."""
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from tests.viewer.browser import Page, chromium, needs_browser
+from tests.viewer.firefox import firefox, needs_firefox
+from tests.viewer.scripts import ROOT
+
+import pybullet_data
+from carom import World
+from carom.viewer.recording import Recording, unpacked
+from carom.viewer.replay_page import replay_page
+
+DATA = Path(pybullet_data.getDataPath())
+ALL_POSES = """async () => {
+  const { history } = app;
+  return history.frames.map(({ header, payload }) =>
+    [header.time, ...new Float32Array(payload, 0, 7 * header.poses)]);
+}"""
+
+
+def record(file: Path, seconds: float) -> NDArray[np.float64]:
+    """Records a Panda that moves and a cube that falls; returns times and poses of each 60th of a second."""
+    world = World()
+    world.gravity = (0, 0, -9.81)
+    world.load_urdf(DATA / "plane.urdf")
+    arm = world.load_urdf(DATA / "franka_panda/panda.urdf", fixed_base=True)
+    world.load_urdf(DATA / "cube_small.urdf", (0.5, 0, 0.5))
+    rows = []
+    with world.record(file):
+        for step in range(round(seconds * 240)):
+            if step % 4 == 0:
+                rows.append([world.time, *world.link_pose[: 1 + 12 + 1 + 1].flat])
+            arm.joints["panda_joint4"].set_position_target(-1.5 + np.sin(step / 120), max_force=80)
+            world.step()
+    rows.append([world.time, *world.link_pose[: 1 + 12 + 1 + 1].flat])
+    return np.array(rows)
+
+
+@pytest.fixture(scope="module")
+def panda(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, NDArray[np.float64]]:
+    file = tmp_path_factory.mktemp("replay") / "panda.html"
+    return file, record(file, 10)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator:
+    with chromium() as browser:
+        yield browser
+
+
+def test_ten_seconds_of_the_panda_are_less_than_a_megabyte(panda):
+    assert panda[0].stat().st_size < 1_000_000
+
+
+def test_nothing_in_the_page_comes_from_elsewhere():
+    page = replay_page()
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert "https://" not in page
+    assert ' src="' not in page
+
+
+@needs_browser
+def test_a_replay_is_the_run(panda, browser):
+    file, run = panda
+    page = Page(browser, file.as_uri())
+    page.until("window.app?.history.count > 0")
+    replayed = np.array(page.page.evaluate(ALL_POSES))
+    assert replayed.shape == run.shape
+    assert replayed == pytest.approx(run, abs=1e-6)
+    assert page.page.title() == "panda"
+    assert page.complaints == []
+    page.page.close()
+
+
+@needs_browser
+def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
+    page = Page(browser, panda[0].as_uri(), 900, 600)
+    moment = page.page.locator("#moment")
+    page.until("window.app?.history.count > 0")
+    page.page.locator("#scrub").fill("4")
+    assert moment.text_content() == "4.000 s, -6.00"
+    page.page.locator("#forth").click()
+    assert moment.text_content() == "4.017 s, -5.98"
+    page.page.locator("#back").click(click_count=2)
+    assert moment.text_content() == "3.983 s, -6.02"
+    page.page.locator("#scrub").fill("9.5")
+    page.page.select_option("#playback", "4")
+    page.page.locator("#loop").click()
+    page.page.locator("#play").click()
+    page.until("app.player.clock < 5")
+    page.page.locator("#play").click()
+    assert not page.page.evaluate("app.player.running")
+    page.page.locator("#loop").click()
+    page.page.locator("#scrub").fill("9.5")
+    page.page.locator("#play").click()
+    page.until("!app.player.running")
+    assert page.page.evaluate("app.player.clock") == pytest.approx(10)
+    assert page.complaints == []
+    page.page.close()
+
+
+@needs_browser
+def test_a_replay_shows_contacts_and_joints_and_plots_them(panda, browser):
+    page = Page(browser, panda[0].as_uri(), 900, 700)
+    page.until("window.app?.history.count > 0")
+    page.page.locator("#scrub").fill("8")
+    assert page.page.evaluate("app.readings.contacts.length") == 4
+    page.page.locator("#joint").select_option(label="panda · panda_joint4")
+    plotted = float(page.page.locator(".chart").get_attribute("data-position"))
+    page.page.locator("#scrub").fill("10")
+    assert plotted == page.page.evaluate("app.readings.joints.get('1,3').position")
+    assert not page.page.locator("#pause").is_visible()
+    assert not page.page.locator("#save").is_visible()
+    page.page.close()
+
+
+@needs_firefox
+def test_firefox_plays_it_too(panda, tmp_path: Path):
+    file, run = panda
+    with firefox(tmp_path, file.as_uri()) as page:
+        assert page.wait_for("window.app ? app.history.count > 0 : false")
+        assert page.evaluate("app.history.count") == len(run)
+        page.evaluate("app.player.seek(5)")
+        index = 5 * 60
+        position = page.evaluate("String(app.scene.poses.subarray(7 * 8, 7 * 8 + 3))")
+        assert [float(x) for x in position.split(",")] == pytest.approx(run[index, 57:60], abs=1e-6)
+        assert page.evaluate("document.getElementById('notice').hidden")
+
+
+@needs_browser
+def test_bodies_and_drawings_come_and_go_in_a_replay(tmp_path: Path, browser):
+    world = World()
+    with world.record(tmp_path / "two.html"):
+        world.load_urdf(DATA / "cube_small.urdf")
+        world.step(240)
+        second = world.load_urdf(DATA / "sphere_small.urdf", (1, 0, 0))
+        world.step(240)
+        world.remove(second.id)
+        world.step(240)
+    page = Page(browser, (tmp_path / "two.html").as_uri())
+    page.until("window.app?.history.count > 0")
+    for clock, bodies in (("0.5", 1), ("1.5", 2), ("2.5", 1), ("1.5", 2), ("0.5", 1)):
+        page.page.locator("#scrub").fill(clock)
+        assert page.page.evaluate("app.scene.bodies.size") == bodies
+    assert page.complaints == []
+    page.page.close()
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.lists(st.tuples(st.integers(0, 2), st.integers(0, 3), st.floats(width=32)), max_size=40))
+def test_recordings_come_back_as_they_were(frames: list[tuple[int, int, float]]):
+    recording, told = Recording(), []
+    for number, (layout, size, value) in enumerate(frames):
+        header = {"type": "frame", "layout": layout, "poses": 0, "time": number / 60}
+        payload = np.full(size, value, dtype="<f4").tobytes()
+        told.append((header, payload))
+        if number % 7 == 3:
+            told.append(({"type": "line", "item": number}, b"abc"))
+    for header, payload in told:
+        recording.add(header, payload)
+    assert unpacked(recording.packed(title="x")) == ({"format": 1, "title": "x"}, told)
+
+
+def test_a_script_is_recorded_by_the_command_line(tmp_path: Path):
+    script = tmp_path / "fall.py"
+    script.write_text(
+        "import pybullet as p, sys\n"
+        "print(sys.argv[1:])\n"
+        "p.connect(p.GUI)\n"
+        "p.setGravity(0, 0, -10)\n"
+        "p.createMultiBody(1, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1]))\n"
+        "p.addUserDebugText('falls', [0, 0, 1])\n"
+        "while p.isConnected():\n"
+        "    p.stepSimulation()\n",
+        encoding="utf-8",
+    )
+    file = tmp_path / "fall.html"
+    command = [sys.executable, "-m", "carom", "record", "--seconds", "2", script, file, "--fast"]
+    environment = {"PYTHONPATH": str(ROOT / "src"), "PATH": "", "HOME": str(tmp_path.parent)}
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "['--fast']" in done.stdout
+    facts, messages = unpacked(_recording_in(file))
+    frames = [header for header, _ in messages if header["type"] == "frame"]
+    assert frames[-1]["time"] == pytest.approx(2, abs=0.02)
+    assert any(header["type"] == "text" for header, _ in messages)
+    assert facts["title"] == "fall"
+
+
+def _recording_in(file: Path) -> bytes:
+    from base64 import b64decode
+
+    text = file.read_text(encoding="utf-8")
+    start = text.index('id="recording">') + len('id="recording">')
+    return b64decode(text[start : text.index("</script>", start)])

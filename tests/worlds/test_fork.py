@@ -1,0 +1,42 @@
+"""Processes that fork while they hold worlds, as workers of learning libraries do."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+SCRIPT = """
+import os, sys, warnings
+from carom import World, Worlds
+from carom.description import Box
+from carom.description.link import Collision
+from carom.model.body_spec import BodySpec, LinkSpec
+
+# That forking with threads is dangerous is what is tested.
+warnings.simplefilter("ignore", DeprecationWarning)
+world = World()
+world.gravity = (0.0, 0.0, -9.81)
+shape = Collision(Box((1.0, 1.0, 1.0)))
+box = LinkSpec(name="box", mass=1.0, inertia=(1.0, 1.0, 1.0), collisions=(shape,))
+body = world.load(BodySpec("box", box))
+worlds = Worlds(world, 8, threads=2)
+worlds.step(5)
+child = os.fork()
+worlds.step(5)
+height = float(worlds[body].base_poses[0, 2])
+if child == 0:
+    os._exit(0 if height < 0.0 else 1)
+_, status = os.waitpid(child, 0)
+print(os.waitstatus_to_exitcode(status), height == worlds[body].base_poses[7, 2])
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork on this system")
+def test_worlds_go_on_in_both_processes() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT], capture_output=True, text=True, timeout=300, check=True
+    )
+    assert done.stdout.split() == ["0", "True"]
