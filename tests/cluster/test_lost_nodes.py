@@ -69,8 +69,11 @@ def test_a_node_is_killed_and_nothing_is_lost_or_counted_twice(cluster, tmp_path
 def test_when_the_last_node_is_lost_it_is_said(cluster, tmp_path):
     large = add_node(cluster, num_cpus=2)
 
+    page = tmp_path / large.node_id
+
     def slow(observations):
-        (tmp_path / large.node_id).open("a").write("x")
+        with page.open("a") as written:
+            written.write("x")
         time.sleep(0.1)
         return copy_throws(observations)
 

@@ -92,7 +92,9 @@ def test_what_fails_is_named_with_its_episodes():
     assert failure.value.ids == (2, 3, 4)
     assert failure.value.seeds == (12, 13, 14)
     assert isinstance(failure.value.__cause__, ZeroDivisionError)
-    with pytest.raises(EpisodeError, match=r"the policy failed in episode 0 .*shape \(1, 2\).*\(1, 1\)"):
+    with pytest.raises(
+        EpisodeError, match=r"the policy failed in episode 0 \(seed 0\): .*shape \(1, 2\).*\(1, 1\)"
+    ):
         Player(Dice(1)).play(lambda observations: observations, range(1), seed=0)
 
 

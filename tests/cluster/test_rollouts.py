@@ -1,6 +1,7 @@
 """Rollouts on one machine."""
 
 import os
+import threading
 import time
 from pathlib import Path
 
@@ -132,6 +133,14 @@ def test_what_cannot_be_unpacked_on_the_node_is_explained(rollouts):
     with pytest.raises(ClusterError, match=r"the policy cannot be sent to .*: not here"):
         rollouts.collect(Stubborn(), episodes=1)
     assert len(rollouts.collect(copy_throws, episodes=1)) == 1
+
+
+def test_what_cannot_be_packed_is_explained(rollouts):
+    lock = threading.Lock()
+    with pytest.raises(TypeError, match="the policy cannot be sent to other processes.*lock"):
+        rollouts.collect(lambda observations: lock, episodes=1)
+    with pytest.raises(TypeError, match="make_env cannot be sent to other processes"):
+        Rollouts(lambda count: lock, 1)  # type: ignore[arg-type]
 
 
 def test_bad_numbers_are_refused(rollouts):

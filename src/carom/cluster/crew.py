@@ -13,7 +13,7 @@ from ray.exceptions import RayError, RayTaskError
 from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError
 from carom.cluster.ledger import Outcome
-from carom.cluster.nodes import Failed, Failure, MakeEnv, Node, living_nodes, packed
+from carom.cluster.nodes import Failed, Failure, Node, living_nodes
 
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"
@@ -53,14 +53,14 @@ class Crew:
     """One actor on each of some nodes.
 
     Args:
-        make_env: Makes the vector environments.
+        make_env: Makes the vector environments; packed.
         num_envs: How many environments each is.
         max_episode_steps: After how many steps episodes are cut off.
         nodes: On how many nodes at most, or "all".
         cpus: Processors that Ray is to count as taken on each.
     """
 
-    make_env: MakeEnv
+    make_env: bytes
     num_envs: int
     max_episode_steps: int | None
     nodes: int | str
@@ -97,9 +97,7 @@ class Crew:
             if not is_enough and node.id not in taken and self._losses[node.id] < _MOST_LOSSES:
                 member = Member(node, node.start(self.cpus))
                 self.members.append(member)
-                prepared = member.actor.prepare.remote(
-                    packed(self.make_env), self.num_envs, self.max_episode_steps
-                )
+                prepared = member.actor.prepare.remote(self.make_env, self.num_envs, self.max_episode_steps)
                 self._jobs[prepared] = (member, None)
 
     def give(self, member: Member, batch: range, policy: Any, seed: int, keep_steps: bool) -> None:

@@ -30,12 +30,17 @@ class EpisodeError(ClusterError):
         super().__init__(what, self.ids, self.seeds, reason)
 
     def __str__(self) -> str:
-        return f"{self.what} failed in {named(self.ids)} (seeds {_listed(self.seeds)}): {self.reason}"
+        seeds = _counted("seed", self.seeds)
+        return f"{self.what} failed in {named(self.ids)} ({seeds}): {self.reason}"
 
 
 def named(ids: Sequence[int]) -> str:
     """Episodes in words."""
-    return f"episode{'s' if len(ids) > 1 else ''} {_listed(ids)}"
+    return _counted("episode", ids)
+
+
+def _counted(word: str, numbers: Sequence[int]) -> str:
+    return f"{word}{'s' if len(numbers) > 1 else ''} {_listed(numbers)}"
 
 
 def _listed(numbers: Sequence[int]) -> str:

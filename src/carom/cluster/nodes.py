@@ -21,9 +21,18 @@ MakeEnv = Callable[[int], VectorEnv]
 """Makes a vector environment of as many as it is told."""
 
 
-def packed(value: Any) -> bytes:
-    """Something to be sent. Packed by Ray itself it would arrive with arrays that must not be written."""
-    return cloudpickle.dumps(value)  # type: ignore[reportPrivateImportUsage]
+def packed(value: Any, name: str) -> bytes:
+    """Something to be sent. Packed by Ray itself it would arrive with arrays that must not be written.
+
+    Raises:
+        TypeError: It cannot be sent; the message calls it `name`.
+    """
+    try:
+        return cloudpickle.dumps(value)  # type: ignore[reportPrivateImportUsage]
+    except Exception as error:
+        raise TypeError(
+            f"{name} cannot be sent to other processes; something it refers to cannot be pickled: {error}"
+        ) from error
 
 
 def unpacked(sent: bytes) -> Any:
@@ -48,7 +57,7 @@ class Failure:
         """What can be sent of an exception."""
         text = "".join(traceback.format_exception(error))
         try:
-            copy = unpacked(packed(error))
+            copy = unpacked(packed(error, "the exception"))
         except Exception:
             copy = None
         return cls(copy if isinstance(copy, Exception) else None, text)

@@ -43,6 +43,7 @@ class Rollouts:
 
     Raises:
         ValueError: A number is too small.
+        TypeError: `make_env` refers to something that cannot be sent to other processes.
     """
 
     def __init__(
@@ -65,7 +66,8 @@ class Rollouts:
         self.next_id = 0
         self._seed, self._attempts = seed, attempts
         self._batch_size = batch_size or num_envs_per_node
-        self._crew = Crew(make_env, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
+        sent = packed(make_env, "make_env")
+        self._crew = Crew(sent, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
 
     def collect(
         self,
@@ -92,6 +94,7 @@ class Rollouts:
 
         Raises:
             ValueError: Not either episodes or steps are given, or a number is too small.
+            TypeError: The policy refers to something that cannot be sent to other processes.
             EpisodeError: The policy or the environment failed; it is the cause of this exception.
             ClusterError: No node is left, an environment cannot be made, or processes die again and again of
                 the same episodes.
@@ -107,7 +110,7 @@ class Rollouts:
         # Who played which episode, whether it counts in the end or not.
         players: dict[int, str] = {}
         self._crew.begin()
-        sent = ray.put(packed(policy))
+        sent = ray.put(packed(policy, "the policy"))
         while not ledger.is_full:
             self._hand_out(ledger, sent, keep_steps)
             back = self._crew.wait()
