@@ -26,7 +26,7 @@ def make_env(num_envs):
 
 def lean(observations):
     """Push towards the side on which the pole falls."""
-    return (observations[:, 2] + observations[:, 3] > 0).astype(int)
+    return (observations[:, 0] + observations[:, 1] > 0).astype(int)
 
 
 class Guess:

@@ -10,7 +10,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 
 import pybullet_envs  # noqa: F401  # registers the environments
 
-ENVS, SEED, EPISODES = 4, 7, 120
+ENVS, SEED, EPISODES = 4, 7, 40
 
 
 def make_env(count: int) -> VectorEnv:
@@ -19,7 +19,7 @@ def make_env(count: int) -> VectorEnv:
 
 
 def lean(observations: np.ndarray) -> np.ndarray:
-    return (observations[:, 2] + observations[:, 3] > 0).astype(int)
+    return (observations[:, 0] + observations[:, 1] > 0).astype(int)
 
 
 class Diary:
@@ -31,5 +31,5 @@ class Diary:
     def __call__(self, observations: np.ndarray) -> np.ndarray:
         with (self.folder / ray.get_runtime_context().get_node_id()).open("a") as page:
             page.write("x")
-        time.sleep(0.02)
+        time.sleep(0.01)
         return lean(observations)

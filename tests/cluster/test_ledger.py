@@ -39,6 +39,7 @@ def test_each_episode_counts_once(chance: random.Random, first, size, amount, by
     ledger = Ledger(first, size, **wanted, attempts=10**6)
     out: list[range] = []
     late: list[range] = []
+    back: set[int] = set()
     while not ledger.is_full:
         while len(out) < nodes and (batch := ledger.take()) is not None:
             out.append(batch)
@@ -48,12 +49,14 @@ def test_each_episode_counts_once(chance: random.Random, first, size, amount, by
             ledger.lose(batch, "")
             late += [batch] if event == "believed lost" else []
         else:
-            ledger.finish(batch, played(batch))
+            assert ledger.finish(batch, played(batch)) == (batch.start not in back)
+            back.add(batch.start)
             late += [batch] if event == "twice" else []
         if late and chance.random() < 0.5:
             # What was given up, or has been counted, comes in after all.
             again = late.pop()
-            ledger.finish(again, played(again))
+            assert ledger.finish(again, played(again)) == (again.start not in back)
+            back.add(again.start)
     ids = [episode.id for episode in ledger.counted]
     assert ids == list(range(first, first + len(ids)))
     if by_steps:

@@ -137,7 +137,7 @@ def test_what_cannot_be_unpacked_on_the_node_is_explained(rollouts):
 
 def test_what_cannot_be_packed_is_explained(rollouts):
     lock = threading.Lock()
-    with pytest.raises(TypeError, match="the policy cannot be sent to other processes.*lock"):
+    with pytest.raises(TypeError, match=r"the policy cannot be sent to other processes.*lock"):
         rollouts.collect(lambda observations: lock, episodes=1)
     with pytest.raises(TypeError, match="make_env cannot be sent to other processes"):
         Rollouts(lambda count: lock, 1)  # type: ignore[arg-type]
