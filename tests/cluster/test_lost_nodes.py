@@ -57,8 +57,9 @@ def test_a_node_is_killed_and_nothing_is_lost_or_counted_twice(cluster, tmp_path
         # It had played some, and was playing others.
         report = found.report
         assert len(report.episodes_of_nodes) == 2
-        assert len(report.lost_nodes) == 1
-        assert victim.node_id[:8] in report.lost_nodes[0]
+        # Ray may hold it for alive a while longer, and a new process may be lost there before it has begun.
+        assert report.lost_nodes
+        assert all(victim.node_id[:8] in lost for lost in report.lost_nodes)
         assert report.repeated == ENVS
         # The next one makes do with the node that is left.
         after = rollouts.collect(lean, steps=200, first=0)
