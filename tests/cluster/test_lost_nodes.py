@@ -48,15 +48,14 @@ def test_a_node_is_killed_and_nothing_is_lost_or_counted_twice(cluster, tmp_path
     with Rollouts(make_env, ENVS, seed=SEED) as rollouts:
         # Both have made their environments, so that both play from the beginning.
         until(lambda: len(rollouts.collect(lean, episodes=8 * ENVS, first=0).report.episodes_of_nodes) == 2)
-        thread, told = kill_in_the_middle(cluster, victim, tmp_path, calls=150)
+        thread, told = kill_in_the_middle(cluster, victim, tmp_path, calls=30)
         found = rollouts.collect(Diary(tmp_path), episodes=EPISODES, first=0)
         thread.join(PATIENCE)
-        assert told["calls"] >= 150
+        assert told["calls"] >= 30
         assert found.ids.tolist() == list(range(EPISODES))
         assert_same(found, expected)
-        # It had played some, and was playing others.
+        # It was in the middle of a batch, which somebody else had to play again.
         report = found.report
-        assert len(report.episodes_of_nodes) == 2
         # Ray may hold it for alive a while longer, and a new process may be lost there before it has begun.
         assert report.lost_nodes
         assert all(victim.node_id[:8] in lost for lost in report.lost_nodes)
