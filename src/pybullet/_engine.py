@@ -32,6 +32,8 @@ _WORK = {
     "noncontact_inner_iterations": ("numNonContactInnerIterations", 10_000),
 }
 _MOST_WORK = 10_000_000
+# Forces are impulses by time [s].
+_LEAST_TIME_STEP = 1e-12
 
 
 @exported
@@ -415,6 +417,8 @@ def _set_time_step(client: Client, value: Any, name: str) -> None:
     time_step = quantity(value, name)
     if time_step <= 0.0:
         fail(f"{name} has to be greater than 0, not {time_step}.")
+    if time_step < _LEAST_TIME_STEP:
+        fail(f"{name} has to be at least {_LEAST_TIME_STEP:g} s, not {time_step:g} s.")
     _change(client, time_step=time_step)
     client.time_step = time_step
 

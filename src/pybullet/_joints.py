@@ -41,6 +41,8 @@ _NO_STATE = "getJointState failed."
 _NEGATIVE_BODY = "getJointState failed; invalid bodyUniqueId"
 _NO_LISTS = "Expected an position and/or velocity list."
 
+_LEAST = -MAX_MAGNITUDE
+
 
 @exported
 def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> JointInfo:
@@ -235,7 +237,7 @@ def resetJointState(
     """
     try:
         joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
-        if abs(targetValue) + abs(targetVelocity) <= MAX_MAGNITUDE:
+        if _LEAST < targetValue < MAX_MAGNITUDE and _LEAST < targetVelocity < MAX_MAGNITUDE:
             joint.reset(targetValue, targetVelocity)
             return
     except (KeyError, TypeError, ValueError):

@@ -131,7 +131,10 @@ def triangles(values: Any, vertex_count: int, problem: str) -> NDArray[np.int32]
     """`indices` as rows of three; raises `pybullet.error` if they do not fit the vertices."""
     import numpy as np
 
-    flat = np.array(sequence(values, problem, "indices"))
+    try:
+        flat = np.array(sequence(values, problem, "indices"))
+    except ValueError:
+        fail(problem, "indices has to be a flat sequence of integers.")
     if flat.size == 0:
         return np.empty((0, 3), dtype=np.int32)
     if flat.ndim != 1 or flat.dtype.kind not in "iu":

@@ -208,6 +208,13 @@ def test_the_rollout_plays_all_episodes_and_leaning_is_better_than_guessing(exam
     assert "12 episodes on" in capsys.readouterr().out
 
 
+def test_every_example_is_tested():
+    tests = (path for path in Path(__file__).parents[1].rglob("test_*.py"))
+    tested = "".join(path.read_text(encoding="utf-8") for path in tests)
+    for script in EXAMPLES.glob("[!_]*.py"):
+        assert f'example("{script.stem}")' in tested or f'__import__("{script.stem}")' in tested
+
+
 def test_a_thousand_arms_come_to_their_targets_and_one_of_them_goes_on_alone(example):
     record = example("thousand_arms").main(count=12, duration=0.75)
     assert record["error"].max() < 0.02
@@ -225,9 +232,3 @@ def test_an_environment_of_ones_own_can_be_solved(example):
     record = example("own_vector_env").main(count=5)
     assert record["return"].min() > 120.0
     assert record["off"].max() < 0.01
-
-
-def test_every_example_is_tested():
-    tested = Path(__file__).read_text(encoding="utf-8")
-    for script in EXAMPLES.glob("[!_]*.py"):
-        assert f'example("{script.stem}")' in tested

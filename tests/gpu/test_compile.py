@@ -1,16 +1,12 @@
 """Every kernel of a step compiles for a GPU, and takes no more of one than it should. No GPU is needed."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from tools.gpu.compile import Compiled, compile_modules
+from tools.gpu.compile import compile_modules
 from tools.gpu.resources import Resources, find_assembler, parse_report, resources_of
 
 from carom.warmup import CUDA_MODULES
-
-SECONDS = 360.0
-"""Time of cores that compiling may take: three minutes of two."""
 
 SPILLS = {
     "pair_candidates_kernel": 12_000,
@@ -46,24 +42,17 @@ def test_a_report_of_the_assembler_is_understood() -> None:
     assert second == Resources("second_kernel", registers=30, stack=0, spill_stores=0, spill_loads=0)
 
 
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory: pytest.TempPathFactory) -> list[Compiled]:
-    return compile_modules(CUDA_MODULES, tmp_path_factory.mktemp("ptx"))
-
-
 @pytest.mark.slow
-def test_all_modules_compile_for_a_gpu_in_time(compiled: Sequence[Compiled]) -> None:
+def test_all_modules_compile_for_a_gpu_and_fit_into_its_registers(tmp_path: Path) -> None:
+    compiled = compile_modules(CUDA_MODULES, tmp_path)
     assert [module.module for module in compiled] == list(CUDA_MODULES)
     for module in compiled:
         assert ".target sm_90" in module.ptx.read_text(encoding="utf-8")
-    assert sum(module.seconds for module in compiled) < SECONDS
-
-
-@pytest.mark.slow
-def test_kernels_fit_into_the_registers_of_a_gpu(compiled: Sequence[Compiled]) -> None:
     assembler = find_assembler()
     if assembler is None:
-        pytest.skip("needs ptxas, of the package nvidia-cuda-nvcc")
+        pytest.skip(
+            "compiled; how many registers that takes only ptxas says, of the package nvidia-cuda-nvcc"
+        )
     kernels = [kernel for module in compiled for kernel in _resources(module.ptx, assembler)]
     assert {kernel.kernel for kernel in kernels} >= set(SPILLS)
     greedy = {

@@ -197,3 +197,14 @@ def test_user_data_hold_text(key: str) -> None:
         with pytest.raises(p.error, match=r"null character|cannot be encoded"):
             p.addUserData(0, *given)
     assert p.getNumUserData(0) == 0
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "x" * 5000 + ".urdf", "a\0b", "\ud800", "no/" * 2000])
+def test_names_no_file_can_have(name: str) -> None:
+    loaders: list[Callable[[str], Any]] = [p.loadURDF, p.loadSDF, p.loadMJCF, p.loadBullet, p.loadTexture]
+    for load in loaders:
+        with pytest.raises(p.error):
+            load(name)
+    with pytest.raises(p.error):
+        p.createCollisionShape(p.GEOM_MESH, fileName=name)
+    assert p.loadPlugin(name) == -1

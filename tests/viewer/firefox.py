@@ -14,7 +14,8 @@ from typing import Any
 
 import pytest
 from tests.patience import PATIENCE, until
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import connect
+from websockets.sync.connection import Connection
 
 FIREFOX = next(filter(None, map(shutil.which, ("firefox", "firefox-esr"))), None)
 # Without a display Firefox has no WebGL; this one needs no screen.
@@ -38,7 +39,7 @@ class FirefoxPage:
         address: Of the page.
     """
 
-    def __init__(self, socket: ClientConnection, address: str) -> None:
+    def __init__(self, socket: Connection, address: str) -> None:
         self._socket = socket
         self._number = 0
         self._call("session.new", capabilities={})

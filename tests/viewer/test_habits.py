@@ -59,7 +59,7 @@ def test_escape_ends_a_script_that_has_lost_interest_in_keys(viewer: Viewer):
         assert until(lambda: not viewer.is_open)
 
 
-def in_background(script: Callable[[], None]) -> threading.Thread:
+def in_background(script: Callable[[], object]) -> threading.Thread:
     thread = threading.Thread(target=script)
     thread.start()
     return thread

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pybullet as p
-from carom.viewer.keys import Keyboard, key_code
-from carom.viewer.mouse import Mouse
+from carom.viewer.input.keys import Keyboard, key_code
+from carom.viewer.input.mouse import Mouse
 
 DOWN, TRIGGERED, RELEASED = p.KEY_IS_DOWN, p.KEY_WAS_TRIGGERED, p.KEY_WAS_RELEASED
 

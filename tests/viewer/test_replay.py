@@ -16,8 +16,8 @@ from tests.viewer.scripts import ROOT
 
 import pybullet_data
 from carom import World
-from carom.viewer.recording import Recording, unpacked
-from carom.viewer.replay_page import replay_page
+from carom.viewer.replay.page import replay_page
+from carom.viewer.replay.recording import Recording, unpacked
 
 DATA = Path(pybullet_data.getDataPath())
 ALL_POSES = """async () => {

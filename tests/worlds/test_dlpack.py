@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import jax
 import numpy as np
 import pytest
 import torch
@@ -52,6 +51,7 @@ def test_jax_takes_the_numbers_and_gives_some_back(arms):
     """By a copy: JAX sees memory without gaps only, and the joints of a body lie between its bases."""
     _, panda = arms
     panda.joint_positions[:] = 0.25
+    jax = pytest.importorskip("jax", reason="JAX takes 600 MB, and is tried where it is there")
     with jax.enable_x64(True):
         array = jax.numpy.asarray(panda.joint_positions)
         assert array.dtype == np.float64

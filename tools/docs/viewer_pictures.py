@@ -61,9 +61,9 @@ def crowd(page: Page) -> None:
 def plot(page: Page, joint: str) -> None:
     """Begins to plot a joint."""
     choice = page.page.locator("#joint")
-    choice.locator("option", has_text=joint).wait_for(state="attached")
-    label = choice.locator("option", has_text=joint).text_content()
-    choice.select_option(label=label)
+    option = choice.locator("optgroup[label=Joints] option", has_text=joint)
+    option.wait_for(state="attached")
+    choice.select_option(value=option.get_attribute("value"))
 
 
 def pause(page: Page) -> None:

@@ -4,7 +4,7 @@ Bullet adds one point in a step, the deepest, and keeps those of the steps befor
 parted. A face has all its corners after a few steps, so a manifold made at once is as good and steadier.
 But a wheel never comes so far: new points enter where it rolls to, old ones linger where it rolled from,
 and both decide how deep it rolls and how it scrubs sideways. So wheels, cylinders and capsules on their
-sides get their points by Bullet's rules.
+sides get their points by Bullet's rules, and so do cylinders on infinite planes wherever they stand.
 """
 
 import math
@@ -22,7 +22,15 @@ from carom.collision.cores import core_of
 from carom.collision.manifold import bequeath, keep_contact, write_contact
 from carom.collision.narrow_phase import in_order
 from carom.collision.reach import is_part_of_compound
-from carom.model.codes import NO_ROLLING, ROLLING_ABOUT_ANY, ROLLING_ABOUT_X, SPHERE, TRIANGLES
+from carom.model.codes import (
+    CYLINDER,
+    NO_ROLLING,
+    PLANE,
+    ROLLING_ABOUT_ANY,
+    ROLLING_ABOUT_X,
+    SPHERE,
+    TRIANGLES,
+)
 from carom.model.contact_structs import Contacts, Pairs, Shapes
 from carom.model.real import Index4, Int32, Vector3, Vector4, func, real
 from carom.model.structs import State
@@ -71,6 +79,27 @@ def lies_on_side(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, norma
 
 
 @func
+def gathers_everywhere(shapes: Shapes, a: Int32, b: Int32) -> bool:
+    """Whether two shapes are a cylinder and an infinite plane.
+
+    On a plane a cylinder gathers its points also where it stands: pucks and small drones rock and creep by
+    them. On faces of other shapes the deepest point of one that stands exactly is in the middle, and would
+    stay alone.
+    """
+    kind_a = shapes.shape_kind[a]
+    kind_b = shapes.shape_kind[b]
+    return (kind_a == CYLINDER and kind_b == PLANE) or (kind_a == PLANE and kind_b == CYLINDER)
+
+
+@func
+def gathers(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, normal: Vector3) -> bool:
+    """Whether a manifold with this normal gathers its points."""
+    if gathers_everywhere(shapes, a, b):
+        return True
+    return lies_on_side(shapes, pairs, world, a, normal) or lies_on_side(shapes, pairs, world, b, normal)
+
+
+@func
 def find_new_point(
     shapes: Shapes, pairs: Pairs, world: Int32, sides: Index4, reach: real, first: Int32, last: Int32
 ) -> Int32:
@@ -96,10 +125,7 @@ def find_new_point(
         # What is stopped at one end only would swing through with the other.
         return AT_ONCE
     if last > first:
-        normal = pairs.previous_normal[world, first]
-        if not (
-            lies_on_side(shapes, pairs, world, a, normal) or lies_on_side(shapes, pairs, world, b, normal)
-        ):
+        if not gathers(shapes, pairs, world, a, b, pairs.previous_normal[world, first]):
             return AT_ONCE
     order = in_order(shapes, a, b)
     found = nearest_convex(
@@ -108,10 +134,7 @@ def find_new_point(
     if order[0] != a:
         flip_candidates(pairs.candidate_terms, world, found)
     if last == first and found > 0:
-        normal = candidate_normal(pairs.candidate_terms, world, 0)
-        if not (
-            lies_on_side(shapes, pairs, world, a, normal) or lies_on_side(shapes, pairs, world, b, normal)
-        ):
+        if not gathers(shapes, pairs, world, a, b, candidate_normal(pairs.candidate_terms, world, 0)):
             return AT_ONCE
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
@@ -9,6 +10,8 @@ from pathlib import Path
 _CALL = "p.setAdditionalSearchPath(pybullet_data.getDataPath())"
 # How alike names have to be for one to be meant by the other.
 _LIKENESS = 0.75
+# Longer ones are nobody's, and take long to compare.
+_LONGEST_NAME = 255
 
 
 def shipped_folder() -> Path | None:
@@ -29,7 +32,8 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
     folder = shipped_folder()
     near = _near(name, Path(name).parent)
     if folder is not None and not name.is_absolute() and folder not in searched:
-        if (folder / name).is_file():
+        # `os.path`, for which a name that no file can have is none.
+        if os.path.isfile(folder / name):
             return f"; pybullet_data has one: call {_CALL} before"
         if meant := _near(name, folder / name.parent, name.parent):
             return f"; did you mean {meant} of pybullet_data? Then call {_CALL} before"
@@ -40,6 +44,8 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
 
 def _near(name: Path, folder: Path, prefix: Path | None = None) -> str:
     """A file in a folder whose name is like the one that is missing."""
+    if len(name.name) > _LONGEST_NAME:
+        return ""
     try:
         names = [path.name for path in folder.iterdir() if path.suffix.lower() == name.suffix.lower()]
     except (OSError, ValueError):

@@ -156,7 +156,11 @@ def _rolling_of(hull: Polyhedron) -> Rolling:
 
 
 def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
-    hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MOST_HULL_VERTICES)
+    try:
+        hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MOST_HULL_VERTICES)
+    except ValueError as problem:
+        # Points whose sizes differ by more than the digits of a number.
+        raise DescriptionError(f"its points make no convex hull: {problem}") from problem
     return _polyhedral(ShapeKind.HULL, hull, MARGIN)
 
 

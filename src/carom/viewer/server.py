@@ -21,7 +21,7 @@ from carom.viewer.access import Access
 from carom.viewer.board import Board
 from carom.viewer.messages import MAX_INCOMING_BYTES, received
 from carom.viewer.page_files import page_files
-from carom.viewer.replay_page import replay_page
+from carom.viewer.replay.page import replay_page
 
 _log = logging.getLogger("carom")
 # Of the library: browsers that turn away in the middle of a request are no news.

@@ -13,27 +13,27 @@ from carom.description.pose import Vector3
 from carom.viewer.access import Access
 from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
-from carom.viewer.chores import Chores
-from carom.viewer.controls import Controls
 from carom.viewer.details import NOTHING, Details, Wish
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
-from carom.viewer.drives import drive
-from carom.viewer.gate import Gate
-from carom.viewer.hands import Hands
+from carom.viewer.input.controls import Controls
+from carom.viewer.input.drives import drive
+from carom.viewer.input.hands import Hands
+from carom.viewer.input.keys import Keyboard, key_code
+from carom.viewer.input.leaving import ESCAPE, Leaving
+from carom.viewer.input.mouse import Mouse
 from carom.viewer.items import Slider
-from carom.viewer.keys import Keyboard, key_code
-from carom.viewer.leaving import ESCAPE, Leaving
-from carom.viewer.moments import Moments
-from carom.viewer.mouse import Mouse
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
 from carom.viewer.rays import Rays
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
-from carom.viewer.sleeping import Sleeping
-from carom.viewer.turnstile import Turnstile
+from carom.viewer.steps.chores import Chores
+from carom.viewer.steps.gate import Gate
+from carom.viewer.steps.moments import Moments
+from carom.viewer.steps.sleeping import Sleeping
+from carom.viewer.steps.turnstile import Turnstile
 
 if TYPE_CHECKING:
     from carom.world import World

@@ -1,4 +1,4 @@
-// A history as bytes, and back; src/carom/viewer/recording.py has the format.
+// A history as bytes, and back; src/carom/viewer/replay/recording.py has the format.
 
 const FORMAT = 1;
 

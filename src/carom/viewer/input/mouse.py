@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from carom.viewer.keys import DOWN, RELEASED, TRIGGERED
+from carom.viewer.input.keys import DOWN, RELEASED, TRIGGERED
 
 MOVED, CLICKED = 1, 2
 _NO_BUTTON = -1

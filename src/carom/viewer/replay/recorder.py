@@ -12,8 +12,8 @@ from carom.viewer.board import Board, boards
 from carom.viewer.details import Details, Wish
 from carom.viewer.messages import decoded
 from carom.viewer.notebook import replay_frame
-from carom.viewer.recording import Recording
-from carom.viewer.replay_page import replay_of
+from carom.viewer.replay.page import replay_of
+from carom.viewer.replay.recording import Recording
 from carom.viewer.scene_feed import SceneFeed
 
 if TYPE_CHECKING:

@@ -1,0 +1,1 @@
+"""What users do on pages: keys, the mouse, sliders, pulling and driving, and leaving."""
