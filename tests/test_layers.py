@@ -26,6 +26,8 @@ MAY_IMPORT = {
     "carom.collision": {"carom.errors", "carom.geometry", "carom.model"},
     "carom.engine": KERNELS,
     "carom.remote": {"carom.errors"},
+    # It takes any vector environment, and so needs none of ours.
+    "carom.cluster": {"carom.errors"},
     "carom.control": {"carom.checks"},
     "carom.saved": MODEL,
     # World, bodies, joints, links: the modules directly under carom that are not named here.

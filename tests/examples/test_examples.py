@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.cluster.small_ray import ray_here
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -194,6 +195,17 @@ def test_what_is_restored_goes_the_same_way(example):
     first, other, again = example("save_and_restore").main()["ends"]
     assert first == again
     assert other[0] > first[0]
+
+
+def test_the_rollout_plays_all_episodes_and_leaning_is_better_than_guessing(example, tmp_path, capsys):
+    pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+    with ray_here():
+        plot = tmp_path / "returns.svg"
+        returns = example("cluster_rollout").main(["--episodes", "12", "--envs", "4", "--plot", str(plot)])
+    assert len(returns["lean"]) == len(returns["guess"]) == 12
+    assert returns["lean"].mean() > 1.5 * returns["guess"].mean()
+    assert plot.stat().st_size > 1000
+    assert "12 episodes on" in capsys.readouterr().out
 
 
 def test_every_example_is_tested():

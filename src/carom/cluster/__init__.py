@@ -1,0 +1,29 @@
+"""Rollouts on many machines, by Ray: a vector environment on each; losing one changes no episode."""
+
+from __future__ import annotations
+
+try:
+    import gymnasium as _gymnasium  # noqa: F401
+    import ray as _ray  # noqa: F401
+except ImportError as missing:
+    raise ImportError(
+        f"carom.cluster needs {missing.name}; install it with: pip install carom[ray]", name=missing.name
+    ) from missing
+
+from carom.cluster.collection import Collection, Report, Steps
+from carom.cluster.episode import Episode
+from carom.cluster.errors import ClusterError, EpisodeError
+from carom.cluster.policies import Policy, PolicyWithMemory
+from carom.cluster.rollouts import Rollouts
+
+__all__ = [
+    "ClusterError",
+    "Collection",
+    "Episode",
+    "EpisodeError",
+    "Policy",
+    "PolicyWithMemory",
+    "Report",
+    "Rollouts",
+    "Steps",
+]

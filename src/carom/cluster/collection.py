@@ -1,0 +1,117 @@
+"""What a rollout has collected."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import overload
+
+import numpy as np
+
+from carom.cluster.episode import Episode
+
+
+@dataclass(frozen=True)
+class Report:
+    """How a collection came about; what is in it does not depend on that.
+
+    Attributes:
+        episodes_of_nodes: How many of its episodes each node played.
+        lost_nodes: Nodes, or processes on them, that died meanwhile, and what Ray says about it.
+        repeated: How many episodes were begun again elsewhere because of that.
+    """
+
+    episodes_of_nodes: dict[str, int] = field(default_factory=dict)
+    lost_nodes: list[str] = field(default_factory=list)
+    repeated: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """The steps of many episodes, one after the other.
+
+    Attributes:
+        observations: What was seen before each step, (steps, ...).
+        actions: What was done, (steps, ...).
+        rewards: (steps,).
+        next_observations: What was seen after it, (steps, ...).
+        terminations: Where the episode was over, (steps,).
+        truncations: Where it was cut off, (steps,).
+        ids: The episode of each step, (steps,).
+    """
+
+    observations: np.ndarray
+    actions: np.ndarray
+    rewards: np.ndarray
+    next_observations: np.ndarray
+    terminations: np.ndarray
+    truncations: np.ndarray
+    ids: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Collection(Sequence[Episode]):
+    """Episodes in the order of their ids, which follow each other without a gap.
+
+    Attributes:
+        episodes: The episodes.
+        report: Who played them.
+    """
+
+    episodes: tuple[Episode, ...]
+    report: Report
+
+    def __len__(self) -> int:
+        return len(self.episodes)
+
+    @overload
+    def __getitem__(self, index: int) -> Episode: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Episode, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Episode | tuple[Episode, ...]:
+        return self.episodes[index]
+
+    @property
+    def ids(self) -> np.ndarray:
+        """The ids, (episodes,)."""
+        return np.array([episode.id for episode in self.episodes])
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """How many steps each had, (episodes,)."""
+        return np.array([episode.length for episode in self.episodes])
+
+    @property
+    def returns(self) -> np.ndarray:
+        """The sum of rewards of each, (episodes,)."""
+        return np.array([episode.total_reward for episode in self.episodes])
+
+    @property
+    def step_count(self) -> int:
+        """How many steps all had together."""
+        return int(self.lengths.sum())
+
+    def steps(self) -> Steps:
+        """All steps as arrays, for learning.
+
+        Raises:
+            ValueError: Observations and actions were not kept.
+        """
+        if not len(self.episodes[0].actions):
+            raise ValueError("the steps were not kept: collect with keep_steps=True")
+        episodes, lengths = self.episodes, self.lengths
+        ends = np.cumsum(lengths) - 1
+        terminations, truncations = np.zeros((2, self.step_count), dtype=bool)
+        terminations[ends] = [episode.terminated for episode in episodes]
+        truncations[ends] = [episode.truncated for episode in episodes]
+        return Steps(
+            observations=np.concatenate([episode.observations[:-1] for episode in episodes]),
+            actions=np.concatenate([episode.actions for episode in episodes]),
+            rewards=np.concatenate([episode.rewards for episode in episodes]),
+            next_observations=np.concatenate([episode.observations[1:] for episode in episodes]),
+            terminations=terminations,
+            truncations=truncations,
+            ids=np.repeat(self.ids, lengths),
+        )

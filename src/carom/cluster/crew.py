@@ -1,0 +1,186 @@
+"""The actors of a rollout: who is idle, who does what, and who is gone."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+import ray
+from ray.exceptions import RayError, RayTaskError
+
+from carom.cluster.episode import Episode
+from carom.cluster.errors import ClusterError
+from carom.cluster.ledger import Outcome
+from carom.cluster.nodes import Failed, Failure, Node, living_nodes
+
+_log = logging.getLogger("carom.cluster")
+_ALL = "all"
+_MOST_LOSSES = 3
+"""How many processes may die on a node in a collection before the node is given up."""
+_PATIENCE = 30.0
+"""How long nothing may happen before it is said what is waited for [s]."""
+
+
+@dataclass(eq=False)
+class Member:
+    """An actor on a node.
+
+    Attributes:
+        node: Where it is.
+        actor: Its handle.
+        is_ready: Whether its environment has been made.
+    """
+
+    node: Node
+    actor: Any
+    is_ready: bool = False
+
+
+@dataclass(frozen=True)
+class Returned:
+    """A batch that came back; `outcome` is None if the one who played it is gone, for the reason `lost`."""
+
+    node: Node
+    batch: range
+    outcome: Outcome | None
+    lost: str = ""
+
+
+@dataclass
+class Crew:
+    """One actor on each of some nodes.
+
+    Args:
+        make_env: Makes the vector environments; packed.
+        num_envs: How many environments each is.
+        max_episode_steps: After how many steps episodes are cut off.
+        nodes: On how many nodes at most, or "all".
+        cpus: Processors that Ray is to count as taken on each.
+    """
+
+    make_env: bytes
+    num_envs: int
+    max_episode_steps: int | None
+    nodes: int | str
+    cpus: float
+    members: list[Member] = field(default_factory=list)
+    idle: list[Member] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)
+    _jobs: dict[Any, tuple[Member, range | None]] = field(default_factory=dict)
+    _losses: Counter[str] = field(default_factory=Counter)
+
+    def begin(self) -> None:
+        """A collection begins: forget the last one, and see which nodes there are.
+
+        Raises:
+            ClusterError: There is none.
+        """
+        self.lost.clear()
+        self._losses.clear()
+        # Whoever still plays what nobody wants any more will turn to new work when done with it.
+        self._jobs = {ref: job for ref, job in self._jobs.items() if job[1] is None}
+        self.idle = [member for member in self.members if member.is_ready]
+        living = {node.id for node in living_nodes(self.cpus)}
+        for member in [member for member in self.members if member.node.id not in living]:
+            self._dismiss(member)
+        self.fill_up()
+        if not self.members:
+            raise ClusterError(f"no node of the cluster offers {self.cpus:g} processors")
+
+    def fill_up(self) -> None:
+        """Start actors on nodes that have none, as far as they are wanted."""
+        taken = {member.node.id for member in self.members}
+        for node in living_nodes(self.cpus):
+            is_enough = self.nodes != _ALL and len(self.members) >= int(self.nodes)
+            if not is_enough and node.id not in taken and self._losses[node.id] < _MOST_LOSSES:
+                member = Member(node, node.start(self.cpus))
+                self.members.append(member)
+                prepared = member.actor.prepare.remote(self.make_env, self.num_envs, self.max_episode_steps)
+                self._jobs[prepared] = (member, None)
+
+    def give(self, member: Member, batch: range, policy: Any, seed: int, keep_steps: bool) -> None:
+        """Let one of the idle play a batch; `policy` is a reference to a packed one."""
+        self.idle.remove(member)
+        self._jobs[member.actor.play.remote(policy, batch, seed, keep_steps)] = (member, batch)
+
+    def wait(self) -> Returned | None:
+        """Wait until something happens; the batch that came back, if that is what it was.
+
+        Raises:
+            ClusterError: No node is left, or an environment cannot be made on one of them.
+        """
+        if not self._jobs:
+            raise ClusterError("no node is left: " + "; ".join(self.lost))
+        done = self._next_done()
+        member, batch = self._jobs.pop(done)
+        try:
+            outcome: Any = ray.get(done)
+        except RayTaskError as error:
+            # What environments and policies raise is returned; so the policy could not even be unpacked.
+            self.idle.append(member)
+            raise ClusterError(f"the policy cannot be sent to {member.node}: {error.cause}") from error
+        except RayError as error:
+            reason = self._lose(member, error)
+            return None if batch is None else Returned(member.node, batch, None, reason)
+        if batch is None:
+            self._check_prepared(member, outcome)
+            member.is_ready = True
+        self.idle.append(member)
+        return None if batch is None else Returned(member.node, batch, _received(outcome))
+
+    def close(self) -> None:
+        """End all actors."""
+        if ray.is_initialized():
+            for member in self.members:
+                ray.kill(member.actor)
+        self.members, self.idle, self._jobs = [], [], {}
+
+    def _next_done(self) -> Any:
+        while True:
+            done, _ = ray.wait(list(self._jobs), num_returns=1, timeout=_PATIENCE)
+            if done:
+                return done[0]
+            self._say_what_is_waited_for()
+
+    def _check_prepared(self, member: Member, failure: Failure | None) -> None:
+        if failure is not None:
+            self._dismiss(member)
+            reason = failure.text.strip().splitlines()[-1]
+            error = ClusterError(f"no environment could be made on {member.node}: {reason}")
+            raise error from failure.cause()
+
+    def _lose(self, member: Member, error: RayError) -> str:
+        """An actor is gone; its node may get another one."""
+        self._dismiss(member)
+        self._losses[member.node.id] += 1
+        reason = " ".join(str(error).split())
+        self.lost.append(f"{member.node}: {reason}")
+        _log.warning("lost %s: %s", member.node, reason)
+        self.fill_up()
+        return reason
+
+    def _dismiss(self, member: Member) -> None:
+        self.members.remove(member)
+        self.idle = [other for other in self.idle if other is not member]
+        self._jobs = {ref: job for ref, job in self._jobs.items() if job[0] is not member}
+        # It may be alive and only out of reach.
+        ray.kill(member.actor)
+
+    def _say_what_is_waited_for(self) -> None:
+        starting = [str(member.node) for member in self.members if not member.is_ready]
+        if starting:
+            _log.warning(
+                "environments are still to be made on %s; Ray begins where %g processors are free",
+                ", ".join(starting),
+                self.cpus,
+            )
+
+
+def _received(outcome: list[Episode] | Failed) -> Outcome:
+    """What came back from another process, as it is used here."""
+    if isinstance(outcome, Failed):
+        return outcome.error()
+    # Arrays from there lie, not to be written, in Ray's store, which would fill up.
+    return [episode.copy() for episode in outcome]

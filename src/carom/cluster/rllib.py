@@ -1,0 +1,58 @@
+"""RLlib trains on vector environments, one in each of its environment runners."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from gymnasium.vector import AutoresetMode, VectorEnv
+
+try:
+    from ray.rllib.algorithms.algorithm_config import AlgorithmConfig
+    from ray.tune.registry import register_env
+except ImportError as missing:
+    raise ImportError(
+        "carom.cluster.rllib needs RLlib; install it with: pip install 'ray[rllib]' torch", name=missing.name
+    ) from missing
+
+from carom.cluster.nodes import MakeEnv
+
+Config = TypeVar("Config", bound=AlgorithmConfig)
+
+_NAME = "carom"
+
+
+def train_on(config: Config, make_env: MakeEnv, num_envs_per_runner: int, *, name: str = _NAME) -> Config:
+    """Let an algorithm of RLlib train on a vector environment.
+
+    RLlib's runners are spread over the nodes. What is lost with a node RLlib samples again, as
+    `config.fault_tolerance(...)` says; its episodes have no ids.
+
+    Args:
+        config: The algorithm's settings, of the new API stack. `env_runners(num_env_runners=...)` says how
+            many runners there are: as many as nodes, say, since each uses all processors it is given.
+        make_env: Makes a vector environment of as many environments as it is told. Episodes that are over
+            have to begin with the next step, as Gymnasium's do (`AutoresetMode.NEXT_STEP`).
+        num_envs_per_runner: How many environments each runner has.
+        name: What RLlib calls the environment.
+
+    Returns:
+        `config`, changed.
+    """
+
+    def made(context: Any) -> VectorEnv:
+        env = make_env(context.get("num_envs", num_envs_per_runner))
+        mode = env.metadata.get("autoreset_mode")
+        if mode != AutoresetMode.NEXT_STEP:
+            raise ValueError(
+                "RLlib counts on episodes that begin with the step after the last one: make the environment "
+                f"with autoreset_mode=AutoresetMode.NEXT_STEP, not {mode}"
+            )
+        return env
+
+    register_env(name, made)
+    config.environment(name)
+    config.env_runners(
+        num_envs_per_env_runner=num_envs_per_runner, gym_env_vectorize_mode="vector_entry_point"
+    )
+    config.resources(placement_strategy="SPREAD")
+    return config

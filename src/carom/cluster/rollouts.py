@@ -1,0 +1,150 @@
+"""`Rollouts`: episodes from all nodes of a cluster."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import ray
+
+from carom.cluster.collection import Collection, Report
+from carom.cluster.crew import Crew
+from carom.cluster.ledger import Ledger
+from carom.cluster.nodes import MakeEnv, packed
+from carom.cluster.policies import Policy
+
+
+class Rollouts:
+    """Plays episodes on the nodes of Ray's cluster, one vector environment on each.
+
+    Every episode has an id, which counts up from 0, and a seed, `seed + id`, that decides it. So it is the
+    same wherever it is played; and when a node is lost, what it was playing is played again on those that are
+    left. What is collected does not depend on how many nodes there are, or on which of them die.
+
+    If Ray is not running, `ray.init()` is called: it joins the cluster there is, or starts one of this
+    machine alone.
+
+    Attributes:
+        next_id: The id of the next episode.
+
+    Args:
+        make_env: Makes a vector environment of as many environments as it is told, on a node. It has to leave
+            it to others when episodes begin (`autoreset_mode=AutoresetMode.DISABLED`).
+        num_envs_per_node: How many environments each is.
+        nodes: On how many nodes at most, or "all" that there are when a collection begins.
+        batch_size: How many episodes are given to a node at a time, and played again if it is lost; None for
+            as many as it has environments. With more of them fewer environments stand idle while the last
+            episodes of a batch end.
+        max_episode_steps: After how many steps episodes are cut off; None leaves that to the environment.
+        cpus_per_node: Processors that Ray is to count as taken on each node. How many an environment really
+            uses is for `make_env` to say.
+        seed: Seed of episode 0.
+        attempts: How many processes may die while they play the same batch before it is given up.
+
+    Raises:
+        ValueError: A number is too small.
+        TypeError: `make_env` refers to something that cannot be sent to other processes.
+    """
+
+    def __init__(
+        self,
+        make_env: MakeEnv,
+        num_envs_per_node: int,
+        *,
+        nodes: int | str = "all",
+        batch_size: int | None = None,
+        max_episode_steps: int | None = None,
+        cpus_per_node: float = 1.0,
+        seed: int = 0,
+        attempts: int = 3,
+    ) -> None:
+        if isinstance(nodes, str) and nodes != "all":
+            raise ValueError(f"nodes must be a number or 'all', not {nodes!r}")
+        _check(num_envs_per_node=num_envs_per_node, attempts=attempts)
+        _check(nodes=nodes, batch_size=batch_size, max_episode_steps=max_episode_steps)
+        _check(0, seed=seed, cpus_per_node=cpus_per_node)
+        self.next_id = 0
+        self._seed, self._attempts = seed, attempts
+        self._batch_size = batch_size or num_envs_per_node
+        sent = packed(make_env, "make_env")
+        self._crew = Crew(sent, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
+
+    def collect(
+        self,
+        policy: Policy,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        first: int | None = None,
+        keep_steps: bool = True,
+    ) -> Collection:
+        """Play episodes.
+
+        Args:
+            policy: Called with observations (num_envs, ...), returns actions (num_envs, ...). One that draws
+                random numbers or remembers what it saw needs `begin_episodes`; see `PolicyWithMemory`.
+            episodes: How many.
+            steps: Or so many as have this many steps together, the last one being the one that reaches it.
+            first: The id of the first one: with the same one the same episodes begin again, to compare
+                policies. None goes on after the last collection.
+            keep_steps: Whether observations and actions are kept, besides the rewards.
+
+        Returns:
+            The episodes, in the order of their ids.
+
+        Raises:
+            ValueError: Not either episodes or steps are given, or a number is too small.
+            TypeError: The policy refers to something that cannot be sent to other processes.
+            EpisodeError: The policy or the environment failed; it is the cause of this exception.
+            ClusterError: No node is left, an environment cannot be made, or processes die again and again of
+                the same episodes.
+        """
+        if (episodes is None) == (steps is None):
+            raise ValueError("give either episodes or steps")
+        _check(episodes=episodes, steps=steps)
+        _check(0, first=first)
+        first = self.next_id if first is None else first
+        if not ray.is_initialized():
+            ray.init()
+        ledger = Ledger(first, self._batch_size, episodes=episodes, steps=steps, attempts=self._attempts)
+        # Who played which episode, whether it counts in the end or not.
+        players: dict[int, str] = {}
+        self._crew.begin()
+        sent = ray.put(packed(policy, "the policy"))
+        while not ledger.is_full:
+            self._hand_out(ledger, sent, keep_steps)
+            back = self._crew.wait()
+            if back is None:
+                continue
+            if back.outcome is None:
+                ledger.lose(back.batch, back.lost)
+            elif ledger.finish(back.batch, back.outcome):
+                players.update(dict.fromkeys(back.batch, str(back.node)))
+        self.next_id = first + len(ledger.counted)
+        shares = Counter(players[episode.id] for episode in ledger.counted)
+        report = Report(dict(shares), list(self._crew.lost), ledger.repeated)
+        return Collection(tuple(ledger.counted), report)
+
+    def _hand_out(self, ledger: Ledger, policy: Any, keep_steps: bool) -> None:
+        for member in list(self._crew.idle):
+            batch = ledger.take()
+            if batch is None:
+                return
+            self._crew.give(member, batch, policy, self._seed, keep_steps)
+
+    def close(self) -> None:
+        """End the processes on the nodes; Ray goes on."""
+        self._crew.close()
+
+    def __enter__(self) -> Rollouts:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _check(least: int = 1, **numbers: Any) -> None:
+    """Refuse numbers that are too small; what is None or a word has no number."""
+    for name, number in numbers.items():
+        if not isinstance(number, (str, type(None))) and number < least:
+            raise ValueError(f"{name} must be at least {least}, not {number}")
