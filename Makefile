@@ -10,6 +10,7 @@
 #   make surface      call every function of real PyBullet in every way and record what comes of it
 #   make conformance  compare Carom with real PyBullet, live
 #   make report       the comparison as tables and plots, in docs/conformance/
+#   make cluster      the tests of rollouts on several machines, which need Ray
 #   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
 #   make scaling      how the rate of many worlds grows with their number and the threads: a plot in docs/
@@ -35,7 +36,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface conformance report soak fuzz bench clients growth scaling watching gpu-report clean
+.PHONY: help demo test check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -121,6 +122,10 @@ record: oracle
 
 surface: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.surface.record
+
+cluster: $(VENV)/dev
+	$(PIP) install --group dev --group cluster
+	$(RUN) -m pytest tests/cluster
 
 conformance: oracle $(VENV)/dev
 	$(RUN) -m tests.conformance.live --oracle .oracle/bin/python

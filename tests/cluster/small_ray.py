@@ -55,7 +55,7 @@ def add_node(nodes: Any, num_cpus: int = 1, **options: Any) -> Any:
 
 
 def _ray() -> Any:
-    return pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+    return pytest.importorskip("ray", reason="needs Ray: make cluster")
 
 
 @contextmanager

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+pytest.importorskip("ray", reason="needs Ray: make cluster")
 
 from carom.cluster import ClusterError, Episode, EpisodeError
 from carom.cluster.ledger import Ledger

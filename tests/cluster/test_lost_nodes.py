@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+pytest.importorskip("ray", reason="needs Ray: make cluster")
 
 from tests.cluster.carts import ENVS, EPISODES, SEED, Diary, lean, make_env
 from tests.cluster.dice import Dice, assert_same, copy_throws

@@ -3,7 +3,7 @@
 import pytest
 from gymnasium.vector import AutoresetMode
 
-pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+pytest.importorskip("ray", reason="needs Ray: make cluster")
 pytest.importorskip("torch", reason="RLlib's networks are PyTorch's")
 
 pytestmark = [

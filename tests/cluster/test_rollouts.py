@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
-pytest.importorskip("ray", reason="Ray has no wheel for this Python")
+pytest.importorskip("ray", reason="needs Ray: make cluster")
 
 from tests.cluster.dice import Dice, Guess, Stubborn, assert_same, copy_throws
 
