@@ -5,7 +5,7 @@ from pathlib import Path
 
 import gymnasium
 import numpy as np
-import ray
+import ray  # pyright: ignore[reportMissingImports]
 from gymnasium.vector import AutoresetMode, VectorEnv
 
 import pybullet_envs  # noqa: F401  # registers the environments

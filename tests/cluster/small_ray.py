@@ -35,7 +35,7 @@ def ray_here() -> Iterator[Any]:
 def cluster_of_two() -> Iterator[Any]:
     """Two nodes of one processor each, as processes of this machine."""
     ray = _ray()
-    from ray.cluster_utils import Cluster
+    from ray.cluster_utils import Cluster  # pyright: ignore[reportMissingImports]
 
     nodes = Cluster()
     with _path_of_other_processes():

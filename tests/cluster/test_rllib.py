@@ -14,7 +14,7 @@ pytestmark = [
 
 
 def test_ppo_learns_to_balance_the_pole():
-    from ray.rllib.algorithms.ppo import PPOConfig
+    from ray.rllib.algorithms.ppo import PPOConfig  # pyright: ignore[reportMissingImports]
 
     from carom.cluster.rllib import train_on
 
@@ -39,7 +39,7 @@ def test_ppo_learns_to_balance_the_pole():
 
 
 def test_an_environment_that_begins_episodes_otherwise_is_refused():
-    from ray.rllib.algorithms.ppo import PPOConfig
+    from ray.rllib.algorithms.ppo import PPOConfig  # pyright: ignore[reportMissingImports]
 
     from carom.cluster.rllib import train_on
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 try:
     import gymnasium as _gymnasium  # noqa: F401
-    import ray as _ray  # noqa: F401
+    import ray as _ray  # noqa: F401  # pyright: ignore[reportMissingImports]
 except ImportError as missing:
     raise ImportError(
         f"carom.cluster needs {missing.name}; install it with: pip install carom[ray]", name=missing.name

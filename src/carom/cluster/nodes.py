@@ -7,10 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import ray
-import ray.cloudpickle as cloudpickle
+import ray  # pyright: ignore[reportMissingImports]
+import ray.cloudpickle as cloudpickle  # pyright: ignore[reportMissingImports]
 from gymnasium.vector import VectorEnv
-from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
+from ray.util.scheduling_strategies import (
+    NodeAffinitySchedulingStrategy,  # pyright: ignore[reportMissingImports]
+)
 
 from carom.cluster.episode import Episode
 from carom.cluster.errors import EpisodeError

@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 from gymnasium.vector import AutoresetMode, VectorEnv
 
 try:
-    from ray.rllib.algorithms.algorithm_config import AlgorithmConfig
-    from ray.tune.registry import register_env
+    from ray.rllib.algorithms.algorithm_config import AlgorithmConfig  # pyright: ignore[reportMissingImports]
+    from ray.tune.registry import register_env  # pyright: ignore[reportMissingImports]
 except ImportError as missing:
     raise ImportError(
         "carom.cluster.rllib needs RLlib; install it with: pip install 'ray[rllib]' torch", name=missing.name

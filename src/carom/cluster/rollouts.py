@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-import ray
+import ray  # pyright: ignore[reportMissingImports]
 
 from carom.cluster.collection import Collection, Report
 from carom.cluster.crew import Crew
