@@ -10,8 +10,8 @@ from typing import Any
 import ray  # pyright: ignore[reportMissingImports]
 import ray.cloudpickle as cloudpickle  # pyright: ignore[reportMissingImports]
 from gymnasium.vector import VectorEnv
-from ray.util.scheduling_strategies import (
-    NodeAffinitySchedulingStrategy,  # pyright: ignore[reportMissingImports]
+from ray.util.scheduling_strategies import (  # pyright: ignore[reportMissingImports]
+    NodeAffinitySchedulingStrategy,
 )
 
 from carom.cluster.episode import Episode
