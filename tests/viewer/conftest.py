@@ -1,6 +1,7 @@
 from collections.abc import Iterator
 
 import pytest
+from tests.viewer.browser import Page, chromium
 
 import pybullet as p
 from carom.viewer.viewer import Viewer
@@ -15,5 +16,22 @@ def viewer(monkeypatch: pytest.MonkeyPatch) -> Iterator[Viewer]:
     window = clients[p.connect(p.GUI, options="--port=0")].window
     assert isinstance(window, PageWindow)
     yield window.viewer
-    if p.isConnected():
-        p.disconnect()
+    # Whatever a test leaves open, and under whatever number, would be in the way of the next window.
+    for number in list(clients):
+        p.disconnect(number)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator:
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture
+def page(viewer: Viewer, browser) -> Iterator[Page]:
+    """The page of the viewer in a browser, once it shows something; it must not complain."""
+    page = Page(browser, viewer.address, 900, 640)
+    page.until("window.app?.scene.layout.layout > 0")
+    yield page
+    page.page.close()
+    assert page.complaints == []

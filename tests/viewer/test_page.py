@@ -8,19 +8,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 from tests.patience import PATIENCE
-from tests.viewer.browser import HEIGHT, WIDTH, Page, chromium, needs_browser, wait_for
+from tests.viewer.browser import HEIGHT, WIDTH, Page, needs_browser, wait_for
 
 import pybullet as p
 import pybullet_data
 from carom.viewer.viewer import Viewer
 
 pytestmark = needs_browser
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture

@@ -2,11 +2,10 @@
 
 import csv
 import math
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.viewer.browser import Page, chromium, needs_browser, wait_for
+from tests.viewer.browser import Page, needs_browser, wait_for
 
 import pybullet as p
 import pybullet_data
@@ -14,21 +13,6 @@ from carom.viewer.viewer import Viewer
 
 pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def page(viewer: Viewer, browser) -> Iterator[Page]:
-    page = Page(browser, viewer.address, 900, 640)
-    page.until("window.app?.scene.layout.layout > 0")
-    yield page
-    page.page.close()
-    assert page.complaints == []
 
 
 @pytest.fixture
@@ -285,6 +269,14 @@ def test_key_i_pauses_o_steps_and_g_hides_panel_and_grid(page: Page, viewer: Vie
     assert not page.page.locator("#panel").is_visible()
     assert not page.page.locator("#timeline").is_visible()
     assert not page.page.evaluate("app.options.grid")
+
+
+def test_who_pauses_twice_before_an_answer_goes_on(page: Page, viewer: Viewer):
+    told: list[bool] = []
+    viewer.on_pause = told.append
+    page.page.evaluate("() => { app.panel.togglePause(); app.panel.togglePause(); }")
+    wait_for(lambda: len(told) == 2, page)
+    assert told == [True, False]
 
 
 def test_escape_in_the_page_ends_the_connection(page: Page):

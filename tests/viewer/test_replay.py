@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from tests.viewer.browser import Page, chromium, needs_browser
+from tests.viewer.browser import Page, needs_browser
 from tests.viewer.firefox import firefox, needs_firefox
 from tests.viewer.scripts import ROOT
 
@@ -49,12 +48,6 @@ def record(file: Path, seconds: float) -> NDArray[np.float64]:
 def panda(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, NDArray[np.float64]]:
     file = tmp_path_factory.mktemp("replay") / "panda.html"
     return file, record(file, 10)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with chromium() as browser:
-        yield browser
 
 
 def test_ten_seconds_of_the_panda_are_less_than_a_megabyte(panda):

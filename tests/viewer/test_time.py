@@ -3,12 +3,11 @@
 import re
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from tests.patience import PATIENCE, until
-from tests.viewer.browser import Page, chromium, needs_browser, wait_for
+from tests.viewer.browser import Page, needs_browser, wait_for
 from tests.viewer.watcher import Watcher
 
 import pybullet as p
@@ -20,21 +19,6 @@ from pybullet._clients import clients
 
 pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture
-def page(viewer: Viewer, browser) -> Iterator[Page]:
-    page = Page(browser, viewer.address, 900, 600)
-    page.until("window.app?.scene.layout.layout > 0")
-    yield page
-    page.page.close()
-    assert page.complaints == []
 
 
 def fall(steps: int = 240) -> None:

@@ -30,10 +30,9 @@ def frame(port: int, token: str, height: int = HEIGHT) -> str:
     script = page_files()["notebook.js"].decode().replace("FACTS", facts.replace("</", "<\\/"))
     style = f"width:100%;height:{height}px;border:0"
     address = f"http://127.0.0.1:{port}/?token={token}"
-    # The address is for those who show HTML and run no scripts.
     return (
-        f'<iframe id="{identifier}" src="{address}" style="{style}" allow="fullscreen"></iframe>'
-        f"<script>{script}</script>"
+        f'<iframe id="{identifier}" style="{style}" allow="fullscreen"></iframe><script>{script}</script>'
+        f'<noscript><iframe src="{address}" style="{style}"></iframe></noscript>'
     )
 
 

@@ -34,8 +34,11 @@ export class Panel {
     button.title = folded ? "Unfold the panel" : "Fold the panel";
   }
 
+  /** Shown at once, so that who presses twice before an answer comes pauses and continues. */
   togglePause() {
-    this.send({ type: "pause", paused: !this.paused });
+    const paused = !this.paused;
+    this.send({ type: "pause", paused });
+    this.showPause({ paused });
   }
 
   showOptions() {
