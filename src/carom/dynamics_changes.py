@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from carom.description.pose import Vector3
 
 
-_OF_BODY = {
+OF_BODY = {
     "linear_damping": "tree_linear_damping",
     "angular_damping": "tree_angular_damping",
     "max_joint_velocity": "tree_max_velocity",
@@ -23,7 +23,7 @@ _SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
 _NOT_OF_SURFACE = {
-    *_OF_BODY,
+    *OF_BODY,
     _SLEEP_THRESHOLD,
     _ACTIVATION,
     *_OF_JOINT,
@@ -46,7 +46,7 @@ def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
             world.scene_changed()
         if len(surface) == len(changes):
             return
-    for name, field in _OF_BODY.items():
+    for name, field in OF_BODY.items():
         if name in changes:
             world.arrays.model.numpy[field][:, body.rows.tree] = changes[name]
     if _SLEEP_THRESHOLD in changes:

@@ -39,7 +39,7 @@ _INDEX_FIELDS = {
 }
 
 # Where each attribute of a surface is kept.
-_SURFACE_FIELDS = {
+SURFACE_FIELDS = {
     "lateral_friction": "link_lateral_friction",
     "rolling_friction": "link_rolling_friction",
     "spinning_friction": "link_spinning_friction",
@@ -265,8 +265,8 @@ class ShapeArrays:
     def write_surface(self, link_row: int, surface: Surface, names: Iterable[str] | None = None) -> None:
         """Take over how a link touches, or of all that has changed, by name, what matters for it."""
         numpy = self.table.numpy
-        for name in _SURFACE_FIELDS if names is None else names:
-            field = _SURFACE_FIELDS.get(name)
+        for name in SURFACE_FIELDS if names is None else names:
+            field = SURFACE_FIELDS.get(name)
             if field is None:
                 continue
             if field.startswith("link"):

@@ -8,25 +8,24 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.body import Body
-from carom.dynamics_changes import shape_inertia
+from carom.dynamics_changes import OF_BODY, shape_inertia
 from carom.engine.engine import Engine
 from carom.model.body_spec import BASE
 from carom.model.codes import ConstraintKind
+from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.worlds.checks import broadcast
 
-# Fields of the tables by what users call them.
+# Fields of the shapes by what users call them, of those that can differ between worlds.
 OF_SURFACE = {
-    "lateral_friction": "link_lateral_friction",
-    "rolling_friction": "link_rolling_friction",
-    "spinning_friction": "link_spinning_friction",
-    "restitution": "link_restitution",
-    "contact_stiffness": "link_stiffness",
-    "contact_damping": "link_contact_damping",
-}
-OF_BODY = {
-    "linear_damping": "tree_linear_damping",
-    "angular_damping": "tree_angular_damping",
-    "max_joint_velocity": "tree_max_velocity",
+    name: SURFACE_FIELDS[name]
+    for name in (
+        "lateral_friction",
+        "rolling_friction",
+        "spinning_friction",
+        "restitution",
+        "contact_stiffness",
+        "contact_damping",
+    )
 }
 _LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
 _ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, "joint_damping", *_LIMITS)

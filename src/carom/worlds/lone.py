@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.dynamics_changes import OF_BODY
 from carom.engine.engine import Engine
 from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BASE
 from carom.model.codes import ConstraintKind
 from carom.world import World
-from carom.worlds.dynamics import OF_BODY, OF_SURFACE
+from carom.worlds.dynamics import OF_SURFACE
 
 
 def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_time: float) -> World:
