@@ -22,8 +22,6 @@ import { Timeline } from "./time/timeline.js";
 import { Toggles } from "./panel/toggles.js";
 import { Viewpoint } from "./panel/viewpoint.js";
 
-/** After so long without a change nothing is going on [ms]. */
-const STILL_MS = 500;
 /** Simulated time after which the view is no longer moved to bodies that come [s]. */
 const SETTLED = 1;
 
@@ -243,12 +241,12 @@ export class App {
   draw(now) {
     requestAnimationFrame((now) => this.draw(now));
     const passed = now - this.last;
-    if (this.drawn) this.renderer.pace(passed);
+    if (this.drawn) this.renderer.pace.note(passed);
     this.last = now;
     this.drawn = false;
     this.player.tick(passed / 1000);
     if (this.stale) this.moved = now;
-    this.renderer.still = now - this.moved > STILL_MS;
+    this.renderer.pace.wait(now - this.moved);
     if (this.renderer.resize()) this.changed();
     this.fitCanvas();
     if (this.cameraToTell) {

@@ -46,17 +46,18 @@ export class Program {
 export class Mesh {
   constructor(gl, { vertices, triangles }, payload) {
     this.gl = gl;
-    const floats = new Float32Array(payload, 0, vertices * 8);
-    this.positions = floats.subarray(0, vertices * 3);
+    this.vertexCount = vertices;
+    this.floats = new Float32Array(payload, 0, vertices * 8);
+    this.positions = this.floats.subarray(0, vertices * 3);
     this.indices = new Uint32Array(payload, vertices * 32, triangles * 3);
-    this.count = triangles * 3;
     this.vertexBuffer = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, this.vertexBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, floats, gl.STATIC_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, this.floats, gl.STATIC_DRAW);
     this.normalsAt = vertices * 12;
     this.uvsAt = vertices * 24;
     this.indexBuffer = this.elements(this.indices);
-    this.edgeBuffer = null;
+    this.ownEdges = null;
+    this.ownEdgeBuffer = null;
     this.bounds = boundsOf(this.positions);
     /** Of the ball about the origin that holds it. */
     this.radius = radiusOf(this.positions);
@@ -71,17 +72,23 @@ export class Mesh {
     return buffer;
   }
 
-  edges() {
-    if (this.edgeBuffer === null) {
-      const edges = distinctEdges(this.positions, this.indices);
-      this.edgeCount = edges.length;
-      this.edgeBuffer = this.elements(edges);
-    }
-    return this.edgeBuffer;
+  /** Positions, normals and places in images of all vertices. */
+  get parts() {
+    const { floats, vertexCount: count } = this;
+    return [this.positions, floats.subarray(count * 3, count * 6), floats.subarray(count * 6)];
+  }
+
+  /** The ends of all edges. */
+  get edges() {
+    return (this.ownEdges ??= distinctEdges(this.positions, this.indices));
+  }
+
+  get edgeBuffer() {
+    return (this.ownEdgeBuffer ??= this.elements(this.edges));
   }
 
   dispose() {
-    for (const buffer of [this.vertexBuffer, this.indexBuffer, this.edgeBuffer]) this.gl.deleteBuffer(buffer);
+    for (const buffer of [this.vertexBuffer, this.indexBuffer, this.ownEdgeBuffer]) this.gl.deleteBuffer(buffer);
   }
 }
 

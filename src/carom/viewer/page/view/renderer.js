@@ -2,21 +2,18 @@
 
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
-import { LINE_FLOATS } from "./lines.js";
-import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, SURFACE, WIRE } from "./shaders.js";
+import { LineBatch } from "./line_batch.js";
+import { Pace } from "./pace.js";
+import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
+import { Surfaces } from "./surfaces.js";
 
 const GRID_EXTENT = 60;
 /** Far things fade from about this distance on, or this many times the camera's distance [m]. */
 const HAZE = 90;
 const HAZE_BY_DISTANCE = 16;
-/** Pictures that take longer than this make the next ones coarser, if so many in a row do [ms]. */
-const SLOW_MS = 70;
-const SLOW_PICTURES = 6;
-const LEAST_SHARPNESS = 0.33;
-/** At first, where the processor draws. */
-const MODEST_SHARPNESS = 0.5;
-/** Side of the shadow map where the processor draws. */
+/** Most elements along a side of the shadow map where the processor draws, and while something moves there. */
 const SMALL_SHADOWS = 1024;
+const MOVING_SHADOWS = 512;
 
 /** Whether there is no graphics card: every pixel then costs time that the simulation needs. */
 function drawnByTheProcessor() {
@@ -35,7 +32,7 @@ export class Renderer {
     if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
     this.canvas = canvas;
     this.gl = gl;
-    this.surface = new Program(gl, SURFACE);
+    this.surfaces = new Surfaces(gl);
     this.shadow = new Program(gl, SHADOW);
     this.wire = new Program(gl, WIRE);
     this.sky = new Program(gl, SKY);
@@ -43,36 +40,17 @@ export class Renderer {
     this.lines = new Program(gl, LINES);
     this.points = new Program(gl, POINTS);
     this.sign = new Program(gl, SIGN);
-    this.surface.sampler("image", 0);
-    this.surface.sampler("shadows", 1);
-    this.surface.sampler("reflection", 2);
     this.nothing = gl.createVertexArray();
-    this.lineBuffer = gl.createBuffer();
-    this.lineArray = this.makeLineArray();
+    this.lineBatch = new LineBatch(gl);
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
     this.byProcessor = slow;
-    this.sharpness = slow ? MODEST_SHARPNESS : 1;
-    // Without smooth edges, pictures there is time for are made with more pixels.
-    this.stillSharpness = slow ? 2 : 1;
-    this.slow = 0;
-    /** Nothing moves: there is time for a sharp picture. */
-    this.still = false;
-  }
-
-  /** Takes note of how long a picture took [ms]; slow machines get coarser ones. */
-  pace(duration) {
-    if (this.still) return;
-    this.slow = duration > SLOW_MS ? this.slow + 1 : 0;
-    if (this.slow >= SLOW_PICTURES && this.sharpness > LEAST_SHARPNESS) {
-      this.sharpness = Math.max(LEAST_SHARPNESS, this.sharpness * 0.75);
-      this.slow = 0;
-    }
+    this.pace = new Pace(slow);
   }
 
   /** Fits the picture to the window; true if its size has changed. */
   resize() {
-    const ratio = Math.min(window.devicePixelRatio, 2) * (this.still ? this.stillSharpness : this.sharpness);
+    const ratio = Math.min(window.devicePixelRatio, 2) * this.pace.sharpness;
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width === width && this.canvas.height === height) return false;
@@ -92,31 +70,34 @@ export class Renderer {
     scene.regroup(options);
     scene.fill(options, camera.eye, this.canvas.height / 2);
     const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
-    const light = this.light(camera, options);
+    // Where the processor draws, what moves is drawn without what is hardly missed.
+    const detailed = !this.byProcessor || this.pace.still;
     const shadows = options.shadows && !options.wireframe;
-    if (shadows) this.drawShadows(shown, light, options);
+    if (shadows) this.sizeShadows(options, detailed);
+    const light = this.light(camera, options);
+    if (shadows) this.drawShadows(shown, light);
     const reflecting = options.reflections && !options.wireframe;
     const shading = {
       toLight: light.direction,
       lightCamera: light.matrix,
-      shadowStrength: shadows ? options.shadowIntensity : 0,
+      shadowStrength: options.shadowIntensity,
       shadowTexel: 1 / this.map.size,
-      softShadows: this.byProcessor && !this.still ? 0 : 1,
       shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
     };
-    if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading);
+    const features = [shadows && "SHADOWED", detailed && "SOFT", detailed && "GLOSSY"].filter(Boolean);
+    if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading, features);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
     const common = this.seenFrom(camera, options);
-    this.drawSky(camera, common);
     gl.enable(gl.DEPTH_TEST);
     if (options.wireframe) this.drawWires(shown, camera);
     else {
-      const mirror = { reflecting: reflecting ? 1 : 0, reflectionSize: [this.canvas.width, this.canvas.height] };
-      const uniforms = { ...common, ...shading, ...mirror, aboveGround: 0 };
-      this.drawSurfaces(shown, scene, uniforms, reflecting ? this.reflection.texture : null);
+      if (reflecting) features.push("MIRRORING");
+      this.surfaces.begin(features, { ...common, ...shading, reflectionSize: [this.canvas.width, this.canvas.height] });
+      this.drawSurfaces(shown, scene, reflecting ? this.reflection.texture : null);
     }
+    this.drawSky(camera, common);
     if (options.grid) this.drawGrid(camera, common);
     this.drawSigns(drawings.signs, scene, camera);
     if (!options.wireframe) this.drawClear(shown, scene, camera);
@@ -138,22 +119,22 @@ export class Renderer {
   }
 
   /** Draws what the ground mirrors. */
-  drawReflection(groups, scene, mirrored, options, shading) {
+  drawReflection(groups, scene, mirrored, options, shading, features) {
     const gl = this.gl;
     this.reflection.begin(this.canvas.width, this.canvas.height);
     const common = this.seenFrom(mirrored, options);
-    this.drawSky(mirrored, common);
     gl.enable(gl.DEPTH_TEST);
     // In a mirror the corners of a triangle go round the other way.
     gl.frontFace(gl.CW);
-    this.drawSurfaces(groups, scene, { ...common, ...shading, reflecting: 0, aboveGround: 1 }, null);
+    this.surfaces.begin([...features, "ABOVE_GROUND"], { ...common, ...shading });
+    this.drawSurfaces(groups, scene, null);
     gl.frontFace(gl.CCW);
+    this.drawSky(mirrored, common);
   }
 
   /** Draws what cannot be seen through. */
-  drawSurfaces(groups, scene, uniforms, reflection) {
+  drawSurfaces(groups, scene, reflection) {
     const gl = this.gl;
-    this.surface.use(uniforms);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, this.map.texture);
     gl.activeTexture(gl.TEXTURE2);
@@ -179,14 +160,18 @@ export class Renderer {
     return { direction, extent: extent / reach, matrix: multiply(orthographic(extent, 0, 2 * reach), view) };
   }
 
-  drawShadows(groups, light, options) {
+  /** Sees to a shadow map of the size that is wanted. */
+  sizeShadows(options, detailed) {
+    const most = this.byProcessor ? (detailed ? SMALL_SHADOWS : MOVING_SHADOWS) : Infinity;
+    const wanted = Math.min(options.shadowResolution, most);
+    if (this.map.wanted === wanted) return;
+    this.map.dispose();
+    this.map = new ShadowMap(this.gl, wanted);
+    this.map.wanted = wanted;
+  }
+
+  drawShadows(groups, light) {
     const gl = this.gl;
-    const wanted = this.byProcessor ? Math.min(options.shadowResolution, SMALL_SHADOWS) : options.shadowResolution;
-    if (this.map.wanted !== wanted) {
-      this.map.dispose();
-      this.map = new ShadowMap(gl, wanted);
-      this.map.wanted = wanted;
-    }
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.map.target);
     gl.viewport(0, 0, this.map.size, this.map.size);
     gl.enable(gl.DEPTH_TEST);
@@ -200,14 +185,16 @@ export class Renderer {
     gl.disable(gl.POLYGON_OFFSET_FILL);
   }
 
+  /** Draws the sky where nothing else has been drawn. */
   drawSky(camera, common) {
     const gl = this.gl;
-    gl.disable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
     gl.bindVertexArray(this.nothing);
     const { forward, right, up } = camera;
     const aspect = camera.width / camera.height;
     this.sky.use({ ...common, forward, rightward: right, overhead: up, aspect });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.depthFunc(gl.LESS);
   }
 
   drawGroup(group) {
@@ -221,7 +208,7 @@ export class Renderer {
   drawSolid(group, scene) {
     const gl = this.gl;
     const texture = scene.textures.get(group.texture);
-    this.surface.set("textured", texture ? 1 : 0);
+    this.surfaces.use(texture !== undefined);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, texture ?? null);
     this.drawGroup(group);
@@ -233,7 +220,7 @@ export class Renderer {
     if (clear.length === 0) return;
     const depth = (group) => group.middle.reduce((sum, x, i) => sum + (x - camera.eye[i]) * camera.forward[i], 0);
     clear.sort((a, b) => depth(b) - depth(a));
-    this.surface.use({});
+    this.surfaces.interrupted();
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
@@ -266,30 +253,10 @@ export class Renderer {
     gl.disable(gl.BLEND);
   }
 
-  makeLineArray() {
-    const gl = this.gl;
-    const array = gl.createVertexArray();
-    gl.bindVertexArray(array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
-    let at = 0;
-    [3, 3, 3, 1].forEach((size, place) => {
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, size, gl.FLOAT, false, LINE_FLOATS * 4, at);
-      gl.vertexAttribDivisor(place, 1);
-      at += size * 4;
-    });
-    gl.bindVertexArray(null);
-    return array;
-  }
-
-  drawLines({ used: lines }, camera) {
-    if (lines.length === 0) return;
-    const gl = this.gl;
+  drawLines(lines, camera) {
+    if (lines.count === 0) return;
     this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height] });
-    gl.bindVertexArray(this.lineArray);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
-    gl.bufferData(gl.ARRAY_BUFFER, lines, gl.DYNAMIC_DRAW);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.length / LINE_FLOATS);
+    this.lineBatch.draw(lines);
   }
 
   drawSigns(signs, scene, camera) {

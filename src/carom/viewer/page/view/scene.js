@@ -11,10 +11,10 @@ export const POSE_FLOATS = 7;
 const GLASS = 0.35;
 
 export class Scene {
-  /** @param {boolean} plain textures cost as little as they can */
-  constructor(gl, plain) {
+  /** @param {boolean} byProcessor whether there is no graphics card */
+  constructor(gl, byProcessor) {
     this.gl = gl;
-    this.plain = plain;
+    this.byProcessor = byProcessor;
     this.clear();
   }
 
@@ -51,7 +51,7 @@ export class Scene {
   }
 
   addTexture(header, payload) {
-    this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.plain));
+    this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.byProcessor));
   }
 
   removeTexture({ texture }) {
@@ -136,8 +136,8 @@ export class Scene {
         const key = [...numbers, shape.texture, shape.twoSided, !!shape.collision, clear && groups.size].join();
         if (!groups.has(key)) {
           const levels = shape.meshes.map(([mesh, reach]) => ({ mesh: this.meshes.get(mesh), reach: reach ?? Infinity }));
-          if (!levels.every(({ mesh }) => mesh?.count)) continue;
-          groups.set(key, new Group(this.gl, levels, shape, clear));
+          if (!levels.every(({ mesh }) => mesh?.indices.length)) continue;
+          groups.set(key, new Group(this.gl, levels, shape, clear, this.byProcessor));
         }
         groups.get(key).add(body, glassy ? { ...shape, rgba: [...shape.rgba.slice(0, 3), shape.rgba[3] * GLASS] } : shape);
       }

@@ -14,20 +14,19 @@ uniform float haze;
 vec3 linear(vec3 c) { return c * c; }
 vec3 display(vec3 c) { return sqrt(clamp(c, 0.0, 1.0)); }
 
+const vec3 HORIZON = vec3(0.76, 0.84, 0.91), ZENITH = vec3(0.30, 0.48, 0.72), BELOW = vec3(0.52, 0.56, 0.61);
+
 vec3 sky(vec3 direction) {
   if (plainBackdrop > 0.5) return linear(backdrop);
   float height = dot(direction, upward);
-  vec3 zenith = vec3(0.30, 0.48, 0.72), horizon = vec3(0.76, 0.84, 0.91), ground = vec3(0.52, 0.56, 0.61);
-  vec3 above = mix(horizon, zenith, sqrt(clamp(height, 0.0, 1.0)));
-  return height >= 0.0 ? above : mix(horizon, ground, sqrt(clamp(-height * 2.5, 0.0, 1.0)));
+  return mix(HORIZON, height >= 0.0 ? ZENITH : BELOW, sqrt(min(height >= 0.0 ? height : -2.5 * height, 1.0)));
 }
 
+// Far things fade into what is behind them at the horizon.
 vec3 hazy(vec3 colour, vec3 point) {
   vec3 offset = point - eye;
-  float amount = 1.0 - exp(-dot(offset, offset) / (haze * haze));
-  // Far things fade into what is behind them at the horizon.
-  vec3 level = offset - upward * dot(offset, upward);
-  return mix(colour, sky(normalize(level + 1e-6)), amount);
+  vec3 horizon = plainBackdrop > 0.5 ? linear(backdrop) : HORIZON;
+  return mix(horizon, colour, exp(-dot(offset, offset) / (haze * haze)));
 }
 `;
 
@@ -45,8 +44,24 @@ uniform mat4 camera;
 vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * position.z + origin; }
 `;
 
-export const SURFACE = {
-  vertex: `#version 300 es
+/**
+ * The program of surfaces. What is not needed is left out of it: where the processor draws, a program does the work of
+ * branches that are not taken, too.
+ *
+ * @param {string[]} features any of
+ *   TEXTURED: an image is on the surface
+ *   SHADOWED: it lies in the shadow of others
+ *   SOFT: edges of shadows are smoothed; else each pixel looks at one place
+ *   GLOSSY: light is reflected as by something smooth
+ *   ABOVE_GROUND: only what is above the ground is drawn
+ *   MIRRORING: the ground shows the picture of what it mirrors
+ */
+export function surface(features) {
+  const head = ["#version 300 es", ...features.map((name) => `#define ${name}`)].join("\n");
+  return { vertex: `${head}\n${SURFACE_VERTEX}`, fragment: `${head}\n${SURFACE_FRAGMENT}` };
+}
+
+const SURFACE_VERTEX = `
 ${INSTANCE}
 uniform mat4 lightCamera;
 out vec3 point;
@@ -66,8 +81,9 @@ void main() {
   shine = specular;
   shadowPoint = (lightCamera * vec4(point, 1.0)).xyz * 0.5 + 0.5;
   gl_Position = camera * vec4(point, 1.0);
-}`,
-  fragment: `#version 300 es
+}`;
+
+const SURFACE_FRAGMENT = `
 ${COMMON}
 precision highp sampler2DShadow;
 in vec3 point;
@@ -77,66 +93,72 @@ in vec4 colour;
 in vec3 shine;
 in vec3 shadowPoint;
 uniform sampler2D image;
-uniform float textured;
 uniform sampler2DShadow shadows;
 uniform float shadowStrength;
 uniform float shadowTexel;
 uniform float shadowBias;
-// Edges of shadows are smoothed; else each pixel looks at one place.
-uniform float softShadows;
-// Only what is above the ground; else everything.
-uniform float aboveGround;
-// What the ground mirrors, if it does, and the size of that picture in pixels.
+// What the ground mirrors, and the size of that picture in pixels.
 uniform sampler2D reflection;
 uniform vec2 reflectionSize;
-uniform float reflecting;
 out vec4 result;
 
 float lit(float slope) {
-  if (shadowStrength <= 0.0) return 1.0;
   vec3 p = shadowPoint;
   vec2 edge = min(p.xy, 1.0 - p.xy);
-  float inside = smoothstep(0.0, 0.05, min(edge.x, edge.y));
-  if (inside <= 0.0 || p.z >= 1.0) return 1.0;
+  float inside = p.z < 1.0 ? smoothstep(0.0, 0.05, min(edge.x, edge.y)) : 0.0;
   float bias = shadowBias * (1.0 + 2.0 * slope);
-  if (softShadows < 0.5) return 1.0 - shadowStrength * inside * (1.0 - texture(shadows, vec3(p.xy, p.z - bias)));
+#ifdef SOFT
   float sum = 0.0;
   for (int i = -1; i <= 1; i++)
     for (int j = -1; j <= 1; j++)
       sum += texture(shadows, vec3(p.xy + vec2(i, j) * shadowTexel, p.z - bias));
-  return 1.0 - shadowStrength * inside * (1.0 - sum / 9.0);
+  float seen = sum / 9.0;
+#else
+  float seen = texture(shadows, vec3(p.xy, p.z - bias));
+#endif
+  return 1.0 - shadowStrength * inside * (1.0 - seen);
 }
 
 void main() {
   float level = dot(point, upward);
-  if (aboveGround > 0.5 && level < 0.002) discard;
+#ifdef ABOVE_GROUND
+  if (level < 0.002) discard;
+#endif
   vec3 base = linear(colour.rgb);
-  if (textured > 0.5) base *= linear(texture(image, texel).rgb);
-  vec3 toEye = normalize(eye - point);
+#ifdef TEXTURED
+  base *= linear(texture(image, texel).rgb);
+#endif
   vec3 n = facing;
   if (dot(n, n) < 1e-12) n = cross(dFdx(point), dFdy(point));
   n = normalize(n);
   if (!gl_FrontFacing) n = -n;
-  float towards = dot(n, toLight);
-  float sun = towards > 0.0 ? lit(1.0 - towards) : 0.0;
+  float towards = max(dot(n, toLight), 0.0);
+#ifdef SHADOWED
+  float sun = lit(1.0 - towards);
+#else
+  float sun = 1.0;
+#endif
   float height = dot(n, upward) * 0.5 + 0.5;
   vec3 ambient = mix(vec3(0.28, 0.27, 0.26), vec3(0.44, 0.47, 0.52), height);
-  vec3 light = ambient + vec3(0.60, 0.58, 0.54) * max(towards, 0.0) * sun;
-  vec3 halfway = normalize(toLight + toEye);
-  float gleam = max(dot(n, halfway), 0.0);
+  vec3 seen = base * (ambient + vec3(0.60, 0.58, 0.54) * towards * sun);
+#ifdef GLOSSY
+  vec3 toEye = normalize(eye - point);
+  float gleam = towards > 0.0 ? max(dot(n, normalize(toLight + toEye)), 0.0) : 0.0;
   gleam *= gleam; gleam *= gleam; gleam *= gleam; gleam *= gleam;
   gleam *= gleam * gleam * 0.22 * sun;
   float rim = 1.0 - max(dot(n, toEye), 0.0);
   rim *= rim * rim * rim * 0.06;
-  vec3 seen = base * light + shine * gleam + shine * rim * sky(reflect(-toEye, n));
+  seen += shine * (gleam + rim * sky(reflect(-toEye, n)));
+#endif
   result = vec4(display(hazy(seen, point)), colour.a);
-  if (reflecting > 0.5 && abs(level) < 0.002 && dot(n, upward) > 0.99) {
+#ifdef MIRRORING
+  if (abs(level) < 0.002 && dot(n, upward) > 0.99) {
     // A floor lets the mirror under it through as far as it is transparent; an opaque one is polished.
     vec3 mirrored = texture(reflection, gl_FragCoord.xy / reflectionSize).rgb;
     result = vec4(mix(result.rgb, mirrored, max(1.0 - colour.a, 0.2)), 1.0);
   }
-}`,
-};
+#endif
+}`;
 
 export const SHADOW = {
   vertex: `#version 300 es
@@ -241,7 +263,8 @@ void main() {
   if (b.w < nearest) b = mix(b, a, (nearest - b.w) / (a.w - b.w));
   vec2 along = (b.xy / b.w - a.xy / a.w) * pixels;
   along = length(along) > 1e-6 ? normalize(along) : vec2(1.0, 0.0);
-  bool far = gl_VertexID >= 2;
+  // Four corners for each line.
+  bool far = (gl_VertexID & 2) == 2;
   float side = (gl_VertexID & 1) == 0 ? -1.0 : 1.0;
   vec4 corner = far ? b : a;
   vec2 shift = vec2(-along.y, along.x) * side * max(width, 1.0) / pixels;

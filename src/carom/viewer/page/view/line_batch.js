@@ -1,0 +1,54 @@
+// Lines on the graphics card: all of a picture with one call, a rectangle of four corners each.
+
+import { LINE_FLOATS } from "./lines.js";
+
+const CORNERS = 4;
+/** The corners of the two triangles of a line. */
+const TRIANGLES = [0, 1, 2, 2, 1, 3];
+const ATTRIBUTES = [3, 3, 3, 1];
+
+export class LineBatch {
+  constructor(gl) {
+    this.gl = gl;
+    this.buffer = gl.createBuffer();
+    this.elements = gl.createBuffer();
+    this.wide = new Float32Array(0);
+    this.array = gl.createVertexArray();
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.elements);
+    let at = 0;
+    ATTRIBUTES.forEach((size, place) => {
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, size, gl.FLOAT, false, LINE_FLOATS * 4, at);
+      at += size * 4;
+    });
+    gl.bindVertexArray(null);
+  }
+
+  /** Draws lines with the present program. */
+  draw({ used: numbers, count }) {
+    const gl = this.gl;
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+    if (this.wide.length < numbers.length * CORNERS) this.makeRoom(2 * count);
+    let to = 0;
+    for (let from = 0; from < numbers.length; from += LINE_FLOATS) {
+      for (let corner = 0; corner < CORNERS; corner++) {
+        for (let i = 0; i < LINE_FLOATS; i++) this.wide[to++] = numbers[from + i];
+      }
+    }
+    gl.bufferData(gl.ARRAY_BUFFER, this.wide.subarray(0, to), gl.DYNAMIC_DRAW);
+    gl.drawElements(gl.TRIANGLES, count * TRIANGLES.length, gl.UNSIGNED_INT, 0);
+  }
+
+  makeRoom(lines) {
+    const gl = this.gl;
+    this.wide = new Float32Array(lines * CORNERS * LINE_FLOATS);
+    const elements = new Uint32Array(lines * TRIANGLES.length);
+    for (let i = 0; i < elements.length; i++) {
+      elements[i] = Math.floor(i / TRIANGLES.length) * CORNERS + TRIANGLES[i % TRIANGLES.length];
+    }
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, elements, gl.STATIC_DRAW);
+  }
+}

@@ -1,0 +1,117 @@
+"""Pictures that take too long get coarser while something moves, and many equal shapes cost few calls."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.viewer.browser import Page, needs_browser
+
+import pybullet_data
+from carom import World
+
+pytestmark = needs_browser
+
+SIDE = 10
+WIDTH, HEIGHT = 900, 640
+# Draws the present moment once, and counts the calls that draw something.
+CALLS = """() => {
+  const { gl } = app.renderer;
+  const names = ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"];
+  let [calls, instances] = [0, 0];
+  for (const name of names) {
+    gl[name] = (...told) => {
+      calls += 1;
+      if (name.endsWith("Instanced")) instances += told.at(-1);
+      Object.getPrototypeOf(gl)[name].apply(gl, told);
+    };
+  }
+  app.drawScene();
+  for (const name of names) delete gl[name];
+  return [calls, instances];
+}"""
+
+
+@pytest.fixture(scope="module")
+def hundred(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A replay of a hundred boxes that fall on a plane."""
+    data = Path(pybullet_data.getDataPath())
+    world = World()
+    world.gravity = (0, 0, -9.81)
+    world.load_urdf(data / "plane.urdf")
+    for n in range(SIDE**2):
+        world.load_urdf(data / "cube_small.urdf", (0.1 * (n % SIDE), 0.1 * (n // SIDE), 0.3))
+    file = tmp_path_factory.mktemp("pace") / "hundred.html"
+    with world.record(file):
+        world.step(240)
+    return file
+
+
+@pytest.fixture
+def replay(hundred: Path, browser) -> Iterator[Page]:
+    page = Page(browser, hundred.as_uri(), WIDTH, HEIGHT)
+    page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
+    yield page
+    page.page.close()
+    assert page.complaints == []
+
+
+def test_a_hundred_equal_boxes_are_drawn_with_few_calls(replay: Page):
+    # Boxes and the plane for the eye and for the light, the sky, the grid.
+    calls, instances = replay.page.evaluate(CALLS)
+    assert calls <= 6
+    # The browser draws by the processor, where each instance would cost as much as a call.
+    assert replay.page.evaluate("app.renderer.byProcessor")
+    assert instances <= 2
+    replay.page.evaluate("app.options.wireframe = true")
+    assert replay.page.evaluate(CALLS)[0] <= 4
+
+
+def test_lines_are_drawn_with_one_call(replay: Page):
+    alone, _ = replay.page.evaluate(CALLS)
+    replay.page.evaluate("app.player.seek(1), Object.assign(app.options, { frames: true, forces: true })")
+    calls, instances = replay.page.evaluate(CALLS)
+    assert replay.page.evaluate("app.overlays.lines.count") > 3 * SIDE**2
+    assert calls == alone + 1
+    assert instances <= 2
+
+
+def test_slow_pictures_get_coarser_while_something_moves_and_sharp_when_nothing_does(replay: Page):
+    width = replay.page.evaluate(
+        """async () => {
+          const { pace } = app.renderer;
+          const note = pace.note.bind(pace);
+          pace.note = () => {};
+          for (let picture = 0; picture < 40; picture++) {
+            app.player.seek(picture / 60);
+            await new Promise(requestAnimationFrame);
+            note(100);
+          }
+          app.player.seek(0);
+          await new Promise(requestAnimationFrame);
+          await new Promise(requestAnimationFrame);
+          return app.canvas.width;
+        }"""
+    )
+    assert width == 0.25 * WIDTH
+    replay.until(f"app.canvas.width === {2 * WIDTH}")
+    assert replay.page.evaluate("app.canvas.clientWidth") == WIDTH
+
+
+def test_fast_pictures_get_finer_again(replay: Page):
+    steps = replay.page.evaluate(
+        """async () => {
+          const pace = new app.renderer.pace.constructor(true);
+          const told = (duration, pictures) => {
+            for (let picture = 0; picture < pictures; picture++) pace.note(duration);
+            return pace.sharpness;
+          };
+          const first = pace.sharpness;
+          const single = (told(15, 2), told(900, 1), told(30, 2));
+          const slow = told(50, 5), slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
+          pace.wait(600);
+          const still = (told(500, 50), pace.sharpness);
+          pace.wait(0);
+          return [first, single, slow, slowest, enough, fast, still, pace.sharpness];
+        }"""
+    )
+    assert steps == [0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1]
