@@ -5,7 +5,7 @@ from pathlib import Path
 
 from carom.cli import main
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 def test_the_pages_about_the_drop_in_are_up_to_date():
