@@ -8,6 +8,7 @@ from dataclasses import fields
 from math import isfinite
 from pathlib import Path
 from tempfile import gettempdir
+from threading import main_thread
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
@@ -166,7 +167,9 @@ class PageWindow(RecordingWindow):
                 print(f"Wrote {Path(gettempdir(), f'timings_{self._profiles}_0.json')}", flush=True)
 
     def _say_pause(self, paused: bool) -> None:
-        print(_PAUSED if paused else _GOES_ON, flush=True)
+        # When a script that was paused has been ended by Ctrl-C, its pages go, and nothing goes on.
+        if main_thread().is_alive():
+            print(_PAUSED if paused else _GOES_ON, flush=True)
 
     def _show_options(self) -> None:
         options = {field.name: getattr(self.options, field.name) for field in fields(self.options)}

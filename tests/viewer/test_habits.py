@@ -2,15 +2,17 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from tests.patience import PATIENCE, until
-from tests.viewer.scripts import ROOT
+from tests.viewer.scripts import ROOT, started
 from tests.viewer.watcher import Watcher
 
 import pybullet as p
@@ -112,6 +114,43 @@ def test_a_pause_ends_with_the_last_page(viewer: Viewer, capsys: pytest.CaptureF
     thread.join(PATIENCE)
     assert not viewer.gate.closed
     assert "goes on" in capsys.readouterr().out
+
+
+def test_a_pause_is_told_once(viewer: Viewer, capsys: pytest.CaptureFixture[str]):
+    for paused in (False, True, True, False, False):
+        viewer.pause(paused)
+    said = capsys.readouterr().out
+    assert said.count("is paused") == 1
+    assert said.count("goes on") == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
+def test_nothing_goes_on_after_ctrl_c(tmp_path: Path):
+    file = tmp_path / "endless.py"
+    file.write_text(
+        """
+import atexit
+import signal
+import pybullet as p
+from pybullet._clients import clients
+
+p.connect(p.GUI, options="--port=0")
+atexit.register(clients[0].window.viewer.pause, False)  # the last page is gone, and a while has passed
+signal.signal(signal.SIGINT, signal.default_int_handler)
+while True:
+    p.stepSimulation()
+""",
+        encoding="utf-8",
+    )
+    script, address = started(file)
+    assert script.stdout is not None
+    with Watcher(address) as page:
+        page.tell("pause", paused=True)
+        assert "paused" in script.stdout.readline()
+        script.send_signal(signal.SIGINT)
+        said, _ = script.communicate(timeout=PATIENCE)
+    assert "KeyboardInterrupt" in said
+    assert "goes on" not in said
 
 
 def test_a_pause_lasts_while_a_page_is_loaded_again(viewer: Viewer):

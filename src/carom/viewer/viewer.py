@@ -180,13 +180,15 @@ class Viewer:
 
     def pause(self, paused: bool) -> None:
         """Holds the simulation, or lets it go on."""
+        changed = self.gate.closed != paused
         if paused:
             self.gate.close()
         else:
             self.gate.open()
         self._update_hold()
         self._board.put("pause", {"type": "pause", "paused": paused})
-        self.on_pause(paused)
+        if changed:
+            self.on_pause(paused)
 
     def set_speed(self, speed: float | None) -> None:
         """Bounds the speed of the simulation.
@@ -340,7 +342,7 @@ class Viewer:
 
     def _go_on_unwatched(self) -> None:
         """Nobody is left who could end a pause; a page that is loaded again is back by now."""
-        if not self.page_count and self.gate.closed:
+        if self.is_open and not self.page_count and self.gate.closed:
             self.pause(False)
 
     def _take_key(self, page: int, told: dict[str, Any]) -> None:
