@@ -123,6 +123,19 @@ def test_keys_are_down_triggered_and_released(page: Page, key: str, code: int):
     assert p.getKeyboardEvents() == {}
 
 
+def test_the_mouse_is_told_to_the_script(page: Page):
+    seen: list[tuple] = []
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
+    page.page.mouse.move(100, 150)
+    page.page.mouse.down()
+    page.page.mouse.up()
+    wait_for(lambda: seen.extend(p.getMouseEvents()) or sum(event[0] == 2 for event in seen) == 2, page)
+    pressed, released = (event for event in seen if event[0] == 2)
+    assert pressed == (2, 100, 150, 0, p.KEY_IS_DOWN | p.KEY_WAS_TRIGGERED)
+    assert released == (2, 100, 150, 0, p.KEY_WAS_RELEASED)
+    assert any(event[:3] == (1, 100, 150) for event in seen)
+
+
 def test_shortcuts_change_the_view_unless_switched_off(page: Page):
     page.page.focus("#view")
     box = page.page.locator("input[name=wireframe]")

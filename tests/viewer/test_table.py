@@ -1,0 +1,74 @@
+"""Every row of the table beside other viewers is tried in a real browser."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parent
+PAGE = FOLDER.parents[1] / "docs" / "viewer.md"
+# What a test has that opens a browser, or that of its own.
+BROWSERS = ("page", "browser", "chromium", "firefox")
+TRIED = {
+    "runs in a browser, also from another machine": ["elsewhere.the_page_works_through_a_tunnel"],
+    "pause, single step, slow motion": ["page.a_paused_simulation_goes_step_by_step", "time.slow_motion"],
+    "reset, and going back to a marked state": [
+        "time.reset_goes_back_to_the_state_before_the_first_step",
+        "time.a_mark_can_be_gone_back_to",
+    ],
+    "scrub through the past while it goes on": ["time.the_past_is_seen_while_the_simulation_goes_on"],
+    "play back at any speed, loop": ["replay.a_replay_is_scrubbed_played_and_looped"],
+    "replay as one HTML file": ["time.a_replay_is_saved_from_the_page", "replay.firefox_plays_it_too"],
+    "picture and film from the window": ["time.a_picture_and_a_film_are_saved_from_the_page"],
+    "contact points and forces": ["panel.contacts_forces_and_cones_are_drawn"],
+    "friction cones": ["panel.contacts_forces_and_cones_are_drawn"],
+    "joint axes, torques, limits": ["panel.joints_and_masses_are_drawn"],
+    "centres of mass, inertia boxes": ["panel.joints_and_masses_are_drawn"],
+    "transparent bodies, collision shapes": [
+        "panel.transparent_bodies_and_collision_shapes_of_each_body_in_a_colour"
+    ],
+    "constraints and rays": ["panel.constraints_and_rays_are_drawn"],
+    "list of bodies, selection, mass and pose": [
+        "panel.a_click_selects_a_body_and_its_joints_are_driven_without_code"
+    ],
+    "sliders for all joints without code": [
+        "panel.a_click_selects_a_body_and_its_joints_are_driven_without_code"
+    ],
+    "pull bodies with the mouse": ["page.a_body_is_dragged_with_the_mouse"],
+    "sliders and buttons of a script": ["page.a_slider_moves_what_the_script_reads"],
+    "keys and mouse events for a script": [
+        "page.keys_are_down_triggered_and_released",
+        "page.the_mouse_is_told_to_the_script",
+    ],
+    "plots of state, forces, sensors, own values": ["panel.everything_is_plotted_zoomed_and_saved"],
+    "zoom in plots, export to CSV": ["panel.everything_is_plotted_zoomed_and_saved"],
+    "camera: fit, follow, presets, numbers": ["panel.camera_presets_numbers_and_following"],
+    "camera images of the script beside the view": ["page.plots_names_and_previews"],
+}
+
+
+def rows() -> list[list[str]]:
+    """The cells of the table, row after row."""
+    table = PAGE.read_text(encoding="utf-8").partition("## Beside other viewers")[2].partition("\n## ")[0]
+    lines = re.findall(r"^\| \w.*\|$", table, re.MULTILINE)
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+
+def test_every_row_has_a_test_and_every_test_a_row():
+    assert [row[0] for row in rows()] == list(TRIED)
+
+
+def test_nothing_is_missing_here_that_another_viewer_has():
+    assert {row[1] for row in rows()} == {"●"}
+
+
+@pytest.mark.parametrize("name", sorted({name for names in TRIED.values() for name in names}))
+def test_the_test_of_a_row_opens_a_browser(name: str):
+    module, _, function = name.partition(".")
+    source = ast.parse((FOLDER / f"test_{module}.py").read_text(encoding="utf-8"))
+    tests = {node.name: node for node in source.body if isinstance(node, ast.FunctionDef)}
+    test = tests[f"test_{function}"]
+    used = {argument.arg for argument in test.args.args}
+    used |= {node.id for node in ast.walk(test) if isinstance(node, ast.Name)}
+    assert used & set(BROWSERS), f"{name} opens no browser"
