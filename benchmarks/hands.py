@@ -107,7 +107,7 @@ def scrub_a_replay() -> list[list[str]]:
         page.page.close()
     what = f"scrubbing a replay of {BODIES} bodies, {WIDTH} x {HEIGHT}, without a graphics card"
     verdict = "PASS" if pictures >= WANTED_PICTURES else "FAIL"
-    cost = f"{pictures:.0f} pictures a second, {sharpness:g} picture elements for each pixel along an edge"
+    cost = f"{pictures:.0f} pictures a second, {sharpness:g} of the pixels along an edge"
     return [[what, cost, f"≥ {WANTED_PICTURES:.0f}", verdict]]
 
 

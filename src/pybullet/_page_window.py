@@ -28,7 +28,7 @@ _COUNTS = {"width": 1, "height": 1, "port": 0}
 _PAUSED = (
     "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
 )
-_GOES_ON = "The simulation goes on."
+_GOES_ON = "The simulation continues."
 # A colour component that is not stated, or is no number.
 _DEFAULT_SHADE = 0.8
 

@@ -113,7 +113,7 @@ def test_a_pause_ends_with_the_last_page(viewer: Viewer, capsys: pytest.CaptureF
         thread = in_background(p.stepSimulation)
     thread.join(PATIENCE)
     assert not viewer.gate.closed
-    assert "goes on" in capsys.readouterr().out
+    assert "continues" in capsys.readouterr().out
 
 
 def test_a_pause_is_told_once(viewer: Viewer, capsys: pytest.CaptureFixture[str]):
@@ -121,7 +121,7 @@ def test_a_pause_is_told_once(viewer: Viewer, capsys: pytest.CaptureFixture[str]
         viewer.pause(paused)
     said = capsys.readouterr().out
     assert said.count("is paused") == 1
-    assert said.count("goes on") == 1
+    assert said.count("continues") == 1
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
@@ -150,7 +150,7 @@ while True:
         script.send_signal(signal.SIGINT)
         said, _ = script.communicate(timeout=PATIENCE)
     assert "KeyboardInterrupt" in said
-    assert "goes on" not in said
+    assert "continues" not in said
 
 
 def test_a_pause_lasts_while_a_page_is_loaded_again(viewer: Viewer):

@@ -290,14 +290,14 @@ def test_escape_in_the_page_ends_the_connection(page: Page):
 def test_the_panel_folds_and_a_phone_starts_with_it_folded(viewer: Viewer, browser):
     phone = Page(browser, viewer.address, 390, 700)
     assert not phone.page.locator("#pause").is_visible()
-    phone.page.get_by_title("Unfold the panel").click()
+    phone.page.get_by_title("Expand the panel").click()
     assert phone.page.locator("#pause").is_visible()
     box = phone.page.locator("#panel").bounding_box()
     assert box is not None
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= 390
-    phone.page.get_by_title("Fold the panel").click()
+    phone.page.get_by_title("Collapse the panel").click()
     assert not phone.page.locator("#pause").is_visible()
-    phone.page.get_by_title("More").click()
+    phone.page.get_by_title("More controls").click()
     phone.page.get_by_role("button", name="Picture").wait_for()
     phone.page.close()

@@ -17,7 +17,7 @@ function watch() {
   const connection = new Connection(
     (header, payload) => app.receive(header, payload),
     (connected) => {
-      say(connected ? null : "The simulation has ended. Waiting for the next…");
+      say(connected ? null : "The simulation has ended. Waiting for the next one…");
       if (connected) app.begin();
     },
   );

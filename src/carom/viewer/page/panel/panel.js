@@ -31,7 +31,7 @@ export class Panel {
     this.root.classList.toggle("folded", folded);
     const button = document.getElementById("fold");
     button.textContent = folded ? "▾" : "▴";
-    button.title = folded ? "Unfold the panel" : "Fold the panel";
+    button.title = folded ? "Expand the panel" : "Collapse the panel";
   }
 
   /** Shown at once, so that who presses twice before an answer comes pauses and continues. */

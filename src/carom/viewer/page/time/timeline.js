@@ -52,7 +52,7 @@ export class Timeline {
     const frames = this.player.history.frames;
     const frame = frames.findLast((frame) => frame.header.time <= time + 1e-9) ?? frames.at(-1);
     const button = Object.assign(document.createElement("button"), { className: "tick" });
-    button.title = `Marked at ${time.toFixed(3)} s: click to look, double-click to go on from there`;
+    button.title = `Mark at ${time.toFixed(3)} s: click to view this state, double-click to continue the simulation from it`;
     const clock = frame?.clock ?? 0;
     button.addEventListener("click", () => this.player.seek(clock));
     button.addEventListener("dblclick", () => {
@@ -80,7 +80,7 @@ export class Timeline {
     const { time } = history.frames[Math.max(player.index, 0)].header;
     this.label.textContent = player.live ? `${time.toFixed(2)} s` : `${time.toFixed(3)} s, ${(clock - history.end).toFixed(2)}`;
     this.playing.textContent = player.running ? "❚❚" : "▶";
-    this.playing.title = player.running ? "Stop" : "Play what has been seen";
+    this.playing.title = player.running ? "Pause the playback" : "Play the recording";
     this.live.classList.toggle("on", player.live);
     this.loop.classList.toggle("on", player.looping);
     this.root.classList.toggle("past", !player.live);
