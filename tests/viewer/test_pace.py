@@ -111,7 +111,11 @@ def test_fast_pictures_get_finer_again(replay: Page):
           pace.wait(600);
           const still = (told(500, 50), pace.sharpness);
           pace.wait(0);
-          return [first, single, slow, slowest, enough, fast, still, pace.sharpness];
+          const moving = pace.sharpness;
+          pace.hold(true);
+          pace.wait(9999);
+          const filmed = (told(500, 50), pace.sharpness);
+          return [first, single, slow, slowest, enough, fast, still, moving, filmed];
         }"""
     )
-    assert steps == [0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1]
+    assert steps == [0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1, 1]

@@ -122,16 +122,15 @@ def test_a_mark_can_be_gone_back_to(page: Page, ball: int):
     wait_for(mark_is_gone, page)
 
 
-def test_slow_motion(page: Page, ball: int):
+def test_slow_motion(page: Page, viewer: Viewer, ball: int):
     page.page.locator("#speed").select_option("0.1")
-    wait_for(lambda: p.isConnected() and page.page.locator("#speed").input_value() == "0.1", page)
+    wait_for(lambda: viewer.gate.speed == 0.1, page)
     began = time.monotonic()
     for _ in range(24):
         p.stepSimulation()
     assert time.monotonic() - began > 0.8
     page.page.locator("#speed").select_option("")
-    wait_for(lambda: page.page.evaluate("app.panel.speed.value") == "", page)
-    time.sleep(0.2)
+    wait_for(lambda: viewer.gate.speed is None, page)
     began = time.monotonic()
     for _ in range(24):
         p.stepSimulation()

@@ -56,6 +56,10 @@ export class App {
     this.bindMouse();
     this.bodies.selectionChanged = (body, link) => this.select(body, link);
     this.saving.changed = () => this.changed();
+    this.saving.filming = (filming) => {
+      this.renderer.pace.hold(filming);
+      if (this.renderer.resize()) this.changed();
+    };
     this.answers = this.makeAnswers();
     this.stale = true;
     this.cameraToTell = false;

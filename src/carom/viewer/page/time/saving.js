@@ -27,6 +27,8 @@ export class Saving {
     this.filmButton.addEventListener("click", () => this.toggleFilm());
     document.getElementById("save").addEventListener("click", () => this.saveReplay());
     this.changed = () => {};
+    /** Called with whether a film is made. */
+    this.filming = () => {};
   }
 
   askForPicture() {
@@ -66,9 +68,11 @@ export class Saving {
     const kind = FILM_KINDS.find((kind) => MediaRecorder.isTypeSupported(kind));
     const film = new MediaRecorder(this.canvas.captureStream(FILM_FPS), { mimeType: kind, videoBitsPerSecond: FILM_BITS });
     const parts = [];
+    this.filming(true);
     film.ondataavailable = ({ data }) => parts.push(data);
     film.onstop = () => {
       this.film = null;
+      this.filming(false);
       this.filmButton.classList.remove("on");
       download(new Blob(parts, { type: kind }), `${this.title()}.${kind.startsWith("video/mp4") ? "mp4" : "webm"}`);
     };

@@ -21,6 +21,12 @@ export class Pace {
     this.step = byProcessor ? MODEST : STEPS.length - 1;
     this.durations = [];
     this.unchanged = 0;
+    this.held = null;
+  }
+
+  /** Keeps all pictures as fine as those that move are now: films cannot change their size. Or ends that. */
+  hold(holding) {
+    this.held = holding ? STEPS[this.step] : null;
   }
 
   /** Nothing has moved for a while: there is time for all details. */
@@ -30,6 +36,7 @@ export class Pace {
 
   /** Picture elements for each of the page, along an edge, in the next picture. */
   get sharpness() {
+    if (this.held !== null) return this.held;
     if (!this.still) return STEPS[this.step];
     // Pictures that the processor draws have no smoothed edges: more elements take their place.
     return this.byProcessor && this.unchanged > RESTING_MS ? 2 : 1;
@@ -46,7 +53,7 @@ export class Pace {
 
   /** Takes note of how long a picture took while something moved [ms]. */
   note(duration) {
-    if (this.still) return;
+    if (this.still || this.held !== null) return;
     this.durations.push(duration);
     if (this.durations.length < PICTURES) return;
     const middle = this.durations.sort((a, b) => a - b)[PICTURES >> 1];
