@@ -6,7 +6,7 @@ only where single precision decides between two answers is it asked.
 
 from __future__ import annotations
 
-from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
+from math import acos, asin, atan2, cos, hypot, inf, isfinite, pi, sin, sqrt
 from struct import Struct
 
 from carom.description.pose import Quaternion, Vector3
@@ -398,7 +398,9 @@ def calculateVelocityQuaternion(
     # Of quaternions that are not of unit length PyBullet looks at w alone.
     is_unit = abs(sine * sine + w * w - 1.0) < _UNIT
     angle = 2.0 * (atan2(sine, w) if is_unit else acos(max(-1.0, min(1.0, w))))
-    scale = angle / (sine * duration)
+    scale = angle / (sine * duration) if sine * duration else inf
+    if not isfinite(scale):
+        fail(f"deltaTime is {duration:g}, which is too small.")
     return (x * scale, y * scale, z * scale)
 
 
