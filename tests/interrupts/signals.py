@@ -142,10 +142,12 @@ def main() -> None:
     p.connect(p.DIRECT)
     with TemporaryDirectory() as folder:
         os.chdir(folder)
-        calls, broken_off = ring(asked.seconds, asked.seed, Path(folder))
-        # What still rings when Python's handler is gone ends the process.
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        os.chdir("/")
+        try:
+            calls, broken_off = ring(asked.seconds, asked.seed, Path(folder))
+        finally:
+            # What still rings when Python's handler is gone ends the process.
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            os.chdir("/")
     print(f"{calls} calls, {broken_off} broken off")
     assert broken_off > calls // 20
 
