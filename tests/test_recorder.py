@@ -70,6 +70,15 @@ def test_slow_motion_and_steps_longer_than_pictures(tmp_path: Path) -> None:
     assert len(pictures(tmp_path / "fast.mp4")) == 21
 
 
+def test_the_film_of_a_step_of_years_comes_to_an_end(tmp_path: Path) -> None:
+    world = ball_in_the_air()
+    world.parameters.time_step = 1e9
+    world.apply_parameters()
+    with Recorder(tmp_path / "years.mp4", camera(), world):
+        world.step()
+    assert len(pictures(tmp_path / "years.mp4")) == 241
+
+
 def test_a_film_without_steps_is_a_proper_file(tmp_path: Path) -> None:
     Recorder(tmp_path / "nothing.mp4", camera(), ball_in_the_air()).stop()
     assert (tmp_path / "nothing.mp4").stat().st_size > 0

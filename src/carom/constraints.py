@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -86,19 +88,42 @@ class JointConstraints:
             elif code == JointCode.SPHERICAL:
                 self.all.append(JointConstraint(body, joint, ConstraintKind.SPHERICAL_MOTOR))
 
-    def remove_body(self, body: Body) -> None:
-        """Remove the constraints of a body, the last first."""
-        for constraint in reversed(self.all.copy()):
+    def way_back(self) -> Callable[[], None]:
+        """What takes away all that is added from now on."""
+        constraints, count = self.all, len(self.all)
+        forget_links = self.tags.way_back()
+
+        def go_back() -> None:
+            del constraints[count:]
+            self.all = constraints
+            forget_links()
+
+        return go_back
+
+    def removal(self, body: Body) -> Callable[[], None]:
+        """Make ready to remove the constraints of a body, the last first.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        kept = self.all.copy()
+        for constraint in reversed(self.all):
             if constraint.body is body or (constraint.user is not None and constraint.user.child is body):
-                remove_unordered(self.all, constraint)
-        self.tags.remove(body.id, 1 + body.joint_count)
+                remove_unordered(kept, constraint)
+        forget_links = self.tags.removal(body.id, 1 + body.joint_count)
+
+        def remove() -> None:
+            self.all = kept
+            forget_links()
+
+        return remove
 
     def set_limit(self, body: Body, joint: int, lower: float, upper: float) -> None:
         """Set, add or (with lower > upper) remove the limit of a joint."""
         limit = self.limit_of(body, joint)
         if lower > upper:
             if limit is not None:
-                remove_unordered(self.all, limit)
+                self.all = self._all_but(limit)
         elif limit is None:
             self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
         else:
@@ -108,9 +133,14 @@ class JointConstraints:
         """Append a constraint that a user creates."""
         self.all.append(JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user))
 
-    def remove_user(self, user: UserConstraint) -> None:
-        """Remove a constraint that a user created."""
-        remove_unordered(self.all, next(c for c in self.all if c.user is user))
+    def user_removal(self, user: UserConstraint) -> Callable[[], None]:
+        """Make ready to remove a constraint that a user created; what is returned can be called again."""
+        return partial(setattr, self, "all", self._all_but(next(c for c in self.all if c.user is user)))
+
+    def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
+        kept = self.all.copy()
+        remove_unordered(kept, constraint)
+        return kept
 
     def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
         """Constraints that can act, and the island of each.

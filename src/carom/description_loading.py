@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,12 @@ class DescriptionLoading(ABC):
     @abstractmethod
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
         """Add a body at rest."""
+
+    @abstractmethod
+    def _add_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+    ) -> list[Body]:
+        """Add bodies at rest, all or none."""
 
     def load_urdf(
         self,
@@ -84,11 +90,14 @@ class DescriptionLoading(ABC):
 
         return self.load_all(mjcf_bodies(Path(path), _search(), flags=flags))
 
-    def load_all(self, bodies: Sequence[tuple[BodySpec, Pose]]) -> list[Body]:
+    def load_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None
+    ) -> list[Body]:
         """Add bodies at rest, all or none.
 
         Args:
             bodies: What they are, and the world pose of the link frame of their base.
+            also: Is told of the new bodies; if it raises an exception they are taken out again.
 
         Raises:
             carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
@@ -96,7 +105,7 @@ class DescriptionLoading(ABC):
         from carom.loading import make_shapes
 
         make_shapes(bodies)
-        return [self._add(spec, pose.position, pose.orientation) for spec, pose in bodies]
+        return self._add_all(bodies, also)
 
 
 def _search() -> AssetSearch:

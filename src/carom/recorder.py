@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 # Times are sums of time steps: how far a picture may be early [of the time between two].
 _EARLY = 1e-6
+# So many pictures of one step at most: the film of a longer one is cut short.
+_MOST_OF_A_STEP = 240
 
 
 class Film:
@@ -71,6 +73,7 @@ class Film:
         if not self.automatic or self._due > _EARLY:
             return
         picture = self._take()
+        self._due = max(self._due, 1.0 - _MOST_OF_A_STEP)
         while self._due <= _EARLY:
             self._file.add(picture)
             self._due += 1.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.collision.manifold import THERE
 from carom.saved.records import Reader
-from carom.snapshot import BodyLayout, Layout, Snapshot, layout, put_back, take
+from carom.snapshot import BodyLayout, Layout, Snapshot, layout, return_to, take
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -122,14 +122,14 @@ def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: b
     snapshot = saved.snapshot()
     check_arrays(world, snapshot)
     if whole:
-        put_back(world, present, snapshot)
+        return_to(world, present, snapshot)()
         return
     others = take(world, present)
     for name, rows in others.state.items():
         if not name.startswith("tree"):
             rows[len(rows) - len(snapshot.state[name]) :] = snapshot.state[name]
     world.touch.forget_contacts()
-    put_back(world, present, others)
+    return_to(world, present, others)()
 
 
 def check_arrays(world: World, snapshot: Snapshot) -> None:

@@ -7,7 +7,7 @@ bodies are made of, constraints, gravity and the other parameters are not state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -128,8 +128,8 @@ def take(world: World, layout: Layout) -> Snapshot:
     return snapshot
 
 
-def put_back(world: World, layout: Layout, snapshot: Snapshot) -> None:
-    """Gives a world the state of a snapshot.
+def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], None]:
+    """Make ready to give a world the state of a snapshot.
 
     Contacts are forgotten, and found again at the next step, where bodies have other shapes now or have
     been removed and loaded in another order.
@@ -139,21 +139,32 @@ def put_back(world: World, layout: Layout, snapshot: Snapshot) -> None:
         layout: Its layout.
         snapshot: The state.
 
+    Returns:
+        What does it. It can be called again, after it was broken off.
+
     Raises:
-        StateError: The world has other bodies; nothing has changed.
+        StateError: The world has other bodies.
     """
-    if layout == snapshot.layout:
-        _write(world, snapshot)
-        _write_contacts(world, snapshot)
-    else:
-        _write(world, _reordered(snapshot, layout))
-        world.touch.forget_contacts()
-    impulses = world.arrays.state.numpy["user_impulse"][0]
-    if len(snapshot.user_impulses) == world.touch.user_count:
-        impulses[: world.touch.user_count] = snapshot.user_impulses
-    world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
-    if snapshot.state["tree_activity"].any():
+    same = layout == snapshot.layout
+    if not same:
+        snapshot = _reordered(snapshot, layout)
+    elif world.touch.contacts.reserve({_CONTACT: int(snapshot.contacts["count_contacts"][THERE])}):
         world.scene_changed()
+
+    def put_back() -> None:
+        _write(world, snapshot)
+        if same:
+            _write_contacts(world, snapshot)
+        else:
+            world.touch.forget_contacts()
+        impulses = world.arrays.state.numpy["user_impulse"][0]
+        if len(snapshot.user_impulses) == world.touch.user_count:
+            impulses[: world.touch.user_count] = snapshot.user_impulses
+        world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
+        if snapshot.state["tree_activity"].any():
+            world.scene_changed()
+
+    return put_back
 
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
@@ -176,8 +187,6 @@ def _write(world: World, snapshot: Snapshot) -> None:
 
 def _write_contacts(world: World, snapshot: Snapshot) -> None:
     count = int(snapshot.contacts["count_contacts"][THERE])
-    if world.touch.contacts.reserve({_CONTACT: count}):
-        world.scene_changed()
     for name, rows in _contact_rows(world, count):
         rows[:] = snapshot.contacts[name]
 

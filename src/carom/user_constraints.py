@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -124,21 +125,37 @@ class UserConstraints:
         self._by_id[constraint.id] = constraint
         self.next_id = max(self.next_id, constraint.id + 1)
 
-    def remove(self, constraint_id: int) -> None:
-        """Remove a constraint.
+    def discard(self, constraint_id: int) -> None:
+        """Remove a constraint, if there is one of that number."""
+        self._by_id.pop(constraint_id, None)
 
-        Raises:
-            KeyError: There is no such constraint.
+    def way_back(self) -> Callable[[], None]:
+        """What takes away all that is added from now on."""
+        count, numbers = len(self._by_id), (self.next_id, self._next_hidden_id)
+
+        def go_back() -> None:
+            while len(self._by_id) > count:
+                self._by_id.popitem()
+            self.next_id, self._next_hidden_id = numbers
+
+        return go_back
+
+    def removal(self, body: Body) -> Callable[[], None]:
+        """Make ready to remove every constraint of a body that goes.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
         """
-        del self._by_id[constraint_id]
-
-    def remove_body(self, body: Body) -> None:
-        """Remove every constraint of a body that goes."""
-        self._by_id = {
+        kept = {
             number: constraint
             for number, constraint in self._by_id.items()
             if body is not constraint.parent and body is not constraint.child
         }
+
+        def remove() -> None:
+            self._by_id = kept
+
+        return remove
 
     @property
     def rows(self) -> dict[int, int]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from carom.model.body_spec import BASE, BodySpec
+from carom.model.undo import Undo
 
 WHOLE = -1
 """In the place of a visual shape: the text belongs to the link, or to the body if that is its base."""
@@ -60,10 +62,16 @@ class UserData:
         if datum is not None:
             datum.value = value
             return datum
-        number = self._free.pop() if self._free else len(self._by_id)
+        number = self._free[-1] if self._free else len(self._by_id)
         datum = UserDatum(number, body, link, shape, key, value)
-        self._by_id[number] = datum
-        self._of_body.setdefault(body, []).append(datum)
+        data, free = [*self.of_body(body), datum], self._free[:-1]
+
+        def put() -> None:
+            self._by_id[number] = datum
+            self._of_body[body] = data
+            self._free = free
+
+        Undo().at_once(put)
         return datum
 
     def put(self, datum: UserDatum) -> None:
@@ -91,14 +99,44 @@ class UserData:
 
     def remove(self, datum: UserDatum) -> None:
         """Take a text away."""
-        others = self._of_body[datum.body]
+        others = self._of_body[datum.body].copy()
         others[others.index(datum)] = others[-1]
         others.pop()
-        del self._by_id[datum.id]
-        self._free.append(datum.id)
+        free = [*self._free, datum.id]
 
-    def remove_body(self, body: int) -> None:
-        """Take away all texts of a body that goes."""
-        for datum in self._of_body.pop(body, []):
-            del self._by_id[datum.id]
-            self._free.append(datum.id)
+        def remove() -> None:
+            self._by_id.pop(datum.id, None)
+            self._of_body[datum.body] = others
+            self._free = free
+
+        Undo().at_once(remove)
+
+    def way_back(self) -> Callable[[], None]:
+        """What takes away the texts of all bodies that are added from now on."""
+        texts, bodies, free = len(self._by_id), len(self._of_body), self._free.copy()
+
+        def go_back() -> None:
+            while len(self._by_id) > texts:
+                self._by_id.popitem()
+            while len(self._of_body) > bodies:
+                self._of_body.popitem()
+            self._free = free.copy()
+
+        return go_back
+
+    def removal(self, body: int) -> Callable[[], None]:
+        """Make ready to take away all texts of a body that goes.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        gone = [datum.id for datum in self.of_body(body)]
+        free = [*self._free, *gone]
+
+        def remove() -> None:
+            for number in gone:
+                self._by_id.pop(number, None)
+            self._of_body.pop(body, None)
+            self._free = free
+
+        return remove

@@ -14,7 +14,6 @@ from carom.body import Body
 from carom.checks import vector
 from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.description.transform import compose
 from carom.description_loading import DescriptionLoading
 from carom.engine.engine import DEVICE, Engine
 from carom.engine.touch_arrays import TouchArrays
@@ -27,12 +26,14 @@ from carom.model.builder import WorldArrays
 from carom.model.codes import UserConstraintKind
 from carom.model.launch import KernelStructs, TreeLaunch
 from carom.model.status import STATUS, WELL
+from carom.model.undo import Undo
 from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
 from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.present_poses import PresentPoses
 from carom.queries import Queries
 from carom.recordable import Recordable
-from carom.snapshot import Layout, Snapshot, layout, put_back, take
+from carom.scene_changes import add_bodies, free_base, remove_body, tie, untie
+from carom.snapshot import Layout, Snapshot, layout, return_to, take
 from carom.solver_report import solver_report
 from carom.state_views import VIEWS, StateViews
 from carom.user_constraints import UserConstraint, UserConstraints
@@ -65,6 +66,7 @@ class World(DescriptionLoading, Recordable, StateViews):
         bodies: The bodies by their numbers, in the order they were added.
         time: Simulated time [s].
         user_data: Texts attached to bodies.
+        undo: What makes the world whole again, should a change of it be broken off.
         observers: What is told of every step, such as logs.
 
     Args:
@@ -80,12 +82,13 @@ class World(DescriptionLoading, Recordable, StateViews):
         self.unspent_time: float = 0.0
         self._viewed: ArrayTable | None = None
         self._replacements = 0
+        self.undo: Undo = Undo()
         self._start_empty()
 
     def _start_empty(self) -> None:
-        self.bodies.clear()
         arrays = WorldArrays()
         self._take_arrays(arrays, TouchArrays(arrays))
+        self.bodies.clear()
         self.constraints: JointConstraints = JointConstraints()
         self.user_constraints: UserConstraints = UserConstraints()
         self.user_data: UserData = UserData()
@@ -107,7 +110,7 @@ class World(DescriptionLoading, Recordable, StateViews):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        self._start_empty()
+        self.undo.at_once(self._start_empty)
 
     # Bodies
 
@@ -161,25 +164,12 @@ class World(DescriptionLoading, Recordable, StateViews):
         """Add a body at rest."""
         px, py, pz = vector(position, 3, "position").tolist()
         qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
-        pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), spec.base.inertial_frame)
-        rows = self.arrays.append(spec, pose)
-        body_id = self.free_ids.pop() if self.free_ids else self.next_id
-        self.next_id = max(self.next_id, body_id + 1)
-        body = Body(self, body_id, spec, rows)
-        try:
-            surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
-            self.touch.shapes.append(spec, rows, surfaces)
-        except Exception:
-            self.arrays.remove(rows, [])
-            self.free_ids.append(body_id)
-            self.scene_changed()
-            raise
-        self.bodies[body_id] = body
-        self.constraints.add_body(body)
-        self.user_data.add_stated(body_id, spec)
-        self.scene_changed()
-        body.update_link_poses()
-        return body
+        return add_bodies(self, [(spec, Pose((px, py, pz), (qx, qy, qz, qw)))])[0]
+
+    def _add_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+    ) -> list[Body]:
+        return add_bodies(self, bodies, also)
 
     def remove(self, body_id: int) -> None:
         """Take a body out of the world.
@@ -187,23 +177,25 @@ class World(DescriptionLoading, Recordable, StateViews):
         Raises:
             KeyError: There is no such body.
         """
-        body = self.bodies.pop(body_id)
-        self.constraints.remove_body(body)
-        self.user_constraints.remove_body(body)
-        self.user_data.remove_body(body_id)
-        self.touch.forget_contacts()
-        self.touch.shapes.remove(body.rows)
-        self.arrays.remove(body.rows, [other.rows for other in self.bodies.values()])
-        for other in self.bodies.values():
-            other.relocate()
-        self.free_ids.append(body_id)
-        self.scene_changed()
+        remove_body(self, self.bodies[body_id])
 
-    def reset(self) -> None:
-        """Remove all bodies and set all parameters back, but for the time step and the substeps."""
+    def reset(self, also: Callable[[], None] | None = None) -> None:
+        """Remove all bodies and set all parameters back, but for the time step and the substeps.
+
+        Args:
+            also: What else belongs to it, and is done even if it is broken off; it may be called again.
+        """
         kept = self.parameters
-        self.parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
-        self._start_empty()
+        parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
+
+        def start() -> None:
+            self.parameters = parameters
+            self._start_empty()
+            if also is not None:
+                also()
+
+        self.undo.settle()
+        self.undo.at_once(start)
 
     def copy(self) -> World:
         """A world of its own with the same bodies, that goes on exactly as this one does.
@@ -231,26 +223,17 @@ class World(DescriptionLoading, Recordable, StateViews):
 
         A hidden constraint is not among `user_constraints.all`.
         """
-        constraint = self.user_constraints.add(
-            kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame, hidden=hidden
-        )
-        self.constraints.add_user(constraint)
-        self.scene_changed()
-        return constraint
+        places = (parent, parent_link, child, child_link)
+        frames = (axis, parent_frame, child_frame)
+        return tie(self, lambda: self.user_constraints.add(kind, *places, *frames, hidden=hidden))
 
     def untie(self, constraint: UserConstraint) -> None:
         """Remove a constraint made by `tie`."""
-        self.user_constraints.remove(constraint.id)
-        self.constraints.remove_user(constraint)
-        self.scene_changed()
+        untie(self, constraint)
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Let the base of a body move, or hold it where it is."""
-        self.arrays.set_base_freedom(body.rows, free=free)
-        body.fixed_base = not free
-        body.derived.clear()
-        self.constraints.base_freedom_changed(body)
-        self.scene_changed()
+        free_base(self, body, free=free)
 
     # State
 
@@ -303,7 +286,10 @@ class World(DescriptionLoading, Recordable, StateViews):
 
             restore_world(self, Path(state))
             return
-        put_back(self, self._layout, state)
+        self.undo.settle()
+        with self.undo:
+            self.undo.note(self.scene_changed)
+            self.undo.at_once(return_to(self, self._layout, state))
 
     def log(self, *names: str, every: int = 1) -> Log:
         """Record state arrays after each step, until the log is stopped.
@@ -362,19 +348,27 @@ class World(DescriptionLoading, Recordable, StateViews):
                 they were before that step. The forces applied for it, motor impulses, sensor readings
                 and contacts are gone.
         """
-        for _ in range(count):
-            if self.observers:
-                for observer in self.observers:
-                    observer.before_step()
-            (self._derived.step or self._prepare_step())()
-            if self._status[STATUS]:
-                self._look_into_status()
-            if self._substep_observers:
-                self._tell_of_substep()
-            self.time += self.parameters.time_step
-            if self.observers:
-                for observer in self.observers.copy():
-                    observer.after_step()
+        try:
+            for _ in range(count):
+                self._step()
+        except BaseException:
+            # Ctrl-C may come when arrays have grown and launches do not know yet.
+            self.scene_changed()
+            raise
+
+    def _step(self) -> None:
+        if self.observers:
+            for observer in self.observers:
+                observer.before_step()
+        (self._derived.step or self._prepare_step())()
+        if self._status[STATUS]:
+            self._look_into_status()
+        if self._substep_observers:
+            self._tell_of_substep()
+        self.time += self.parameters.time_step
+        if self.observers:
+            for observer in self.observers.copy():
+                observer.after_step()
 
     def watch_substeps(self, observer: SubstepObserver) -> None:
         """From now on tell an observer of every substep."""
@@ -454,6 +448,7 @@ class World(DescriptionLoading, Recordable, StateViews):
 
     def _prepare_step(self) -> Callable[[], None]:
         """Write constraints and settings to the arrays; returns what performs a step."""
+        self.undo.settle()
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.touch)
         self._derived.queries = None
@@ -523,6 +518,7 @@ class World(DescriptionLoading, Recordable, StateViews):
 
     def _kernel_structs(self) -> KernelStructs:
         """Structs over the present arrays, by the name kernels give them."""
+        self.undo.settle()
         self.engine.update_settings(self.parameters)
         return self.engine.structs()
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carom.constraints import JointConstraint
-from carom.description.pose import Pose, Vector3
+from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.link_dynamics import LinkDynamics
@@ -25,7 +26,8 @@ from carom.saved.files import restored
 from carom.saved.records import Reader, Writer
 from carom.saved.writing import write_whole
 from carom.saved_state import check_arrays, read_state, state_of, write_state
-from carom.snapshot import check_same, layout
+from carom.scene_changes import append, begin, change_base_freedom, note_additions
+from carom.snapshot import check_same, layout, return_to
 from carom.user_constraints import UserConstraint
 from carom.user_data import UserDatum
 from carom.version import __version__
@@ -279,40 +281,48 @@ def _saved_tie(tie: UserConstraint) -> SavedTie:
 def _load(world: World, path: Path) -> list[Body]:
     document, reader, saved = _read(path)
     state = read_state(reader, document.get("state"))
-    alone = not world.bodies
-    kept = (world.free_ids.copy(), world.next_id, world.user_constraints.next_id)
-    bodies: dict[int, Body] = {}
-    try:
-        for record in saved.bodies:
-            if record.id in bodies or not 0 <= record.id < saved.next_id:
-                raise ValueError(f"there cannot be a body {record.id}")
-            if alone:
-                world.free_ids.append(record.id)
-            bodies[record.id] = world.load(saved.specs[_index(record.spec, saved.specs)])
-            _give_dynamics(bodies[record.id], record)
-        ties = _make_ties(world, saved, bodies, alone)
-        _order_constraints(world, saved, bodies, ties)
-        _set_filters(world, saved, bodies)
-        for body in bodies.values():
-            for datum in world.user_data.of_body(body.id).copy():
-                world.user_data.remove(datum)
-        for datum in saved.user_data:
-            body = bodies[datum.body]
-            world.user_data.add(body.id, datum.link, datum.shape, datum.key, datum.value)
+    with begin(world) as undo:
+        undo.note(return_to(world, layout(world), world.snapshot()))
+        undo.note(partial(_set_parameters, world, world.parameters))
+        note_additions(world, undo)
+        alone = not world.bodies
+        bodies = _append(world, saved, alone)
         for name, part in _parts():
-            part.load(list(bodies.values()), reader, document["parts"][name])
-        write_state(world, list(bodies.values()), state, whole=alone)
-    except BaseException:
-        for body in reversed(bodies.values()):
-            world.remove(body.id)
-        world.free_ids, world.next_id, world.user_constraints.next_id = kept
-        raise
-    if alone:
-        world.free_ids, world.next_id = saved.free_ids, saved.next_id
-        world.user_constraints.next_id = saved.next_tie
-        world.parameters = saved.parameters
-        world.apply_parameters()
-    world.scene_changed()
+            part.load(bodies, reader, document["parts"][name])
+        write_state(world, bodies, state, whole=alone)
+        if alone:
+            world.free_ids, world.next_id = saved.free_ids, saved.next_id
+            world.user_constraints.next_id = saved.next_tie
+            _set_parameters(world, saved.parameters)
+        world.scene_changed()
+        undo.done()
+    return bodies
+
+
+def _set_parameters(world: World, parameters: EngineParameters) -> None:
+    world.parameters = parameters
+    world.apply_parameters()
+
+
+def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
+    """Adds everything but looks and the state."""
+    bodies: dict[int, Body] = {}
+    for record in saved.bodies:
+        if record.id in bodies or not 0 <= record.id < saved.next_id:
+            raise ValueError(f"there cannot be a body {record.id}")
+        if alone:
+            world.free_ids = [*world.free_ids, record.id]
+        bodies[record.id] = append(world, saved.specs[_index(record.spec, saved.specs)], IDENTITY)
+        _give_dynamics(bodies[record.id], record)
+    ties = _make_ties(world, saved, bodies, alone)
+    _order_constraints(world, saved, bodies, ties)
+    _set_filters(world, saved, bodies)
+    for body in bodies.values():
+        for datum in world.user_data.of_body(body.id).copy():
+            world.user_data.remove(datum)
+    for datum in saved.user_data:
+        body = bodies[datum.body]
+        world.user_data.add(body.id, datum.link, datum.shape, datum.key, datum.value)
     return list(bodies.values())
 
 
@@ -327,7 +337,7 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
     if not len(record.links) == len(record.groups) == len(record.masks) == len(record.sensors) + 1 == count:
         raise ValueError(f"body {record.id} has {count} links")
     if record.fixed_base != body.fixed_base:
-        body.world.set_base_freedom(body, free=not record.fixed_base)
+        change_base_freedom(body.world, body, free=not record.fixed_base)
     for place in range(count):
         body.set_dynamics(place - 1, record.links[place])
         body.world.touch.shapes.set_group_and_mask(

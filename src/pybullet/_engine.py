@@ -98,12 +98,15 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
     integer(flags, "flags")
     with client.lock:
         client.bodies.forget_all()
-        client.world.reset()
-        client.shapes = ShapeRegistry()
-        client.states.clear()
-        client.origins.clear()
-        client.report_analytics = False
-        client.window.remove_drawings()
+
+        def also() -> None:
+            client.shapes = ShapeRegistry()
+            client.states.clear()
+            client.origins.clear()
+            client.report_analytics = False
+            client.window.remove_drawings()
+
+        client.world.reset(also)
 
 
 @exported

@@ -50,23 +50,27 @@ class BinaryLog:
         self._pack = Struct(f"<{types}").pack
         self._steps = 0
         self._time = 0.0
-        self._start_of_step = (0, 0, 0.0)
+        self._start_of_step = (0, 0.0)
+        # Of the present step; the file may be a device, which would not give them back.
+        self._records: list[bytes] = []
 
     def before_step(self) -> None:
         """Notes where the records of the step begin."""
-        self._start_of_step = (self._file.tell(), self._steps, self._time)
+        self._records.clear()
+        self._start_of_step = (self._steps, self._time)
 
     def after_step(self) -> None:
-        """Nothing: the substeps have been written."""
+        """Writes the records of the substeps to the file."""
+        self._file.write(b"".join(self._records))
+        self._records.clear()
 
     def after_substep(self) -> None:
-        """Writes the records of a substep."""
+        """Makes the records of a substep."""
 
     def step_repeated(self) -> None:
         """Takes the records of the step back."""
-        start, self._steps, self._time = self._start_of_step
-        self._file.seek(start)
-        self._file.truncate()
+        self._records.clear()
+        self._steps, self._time = self._start_of_step
 
     def close(self) -> None:
         """Finishes the file."""
@@ -76,7 +80,7 @@ class BinaryLog:
         self._write(self._steps, self._time, *values)
 
     def _write(self, *values: Any) -> None:
-        self._file.write(_MARKER + self._pack(*values))
+        self._records.append(_MARKER + self._pack(*values))
 
     def _next(self, time_step: float) -> None:
         self._steps += 1
@@ -137,7 +141,7 @@ class RobotLog(BinaryLog):
     def _write_body(self, body: Body) -> None:
         joints = [index for index, kind in enumerate(body.joint_types) if kind in _LINKS_THAT_SHIFT]
         if len(joints) > self._room or any(kind not in _LINKS_THAT_FIT for kind in body.joint_types):
-            self._file.write(_MARKER)
+            self._records.append(_MARKER)
             return
         world = self._world
         q = [body.position_index[joint] for joint in joints]

@@ -6,7 +6,7 @@ only where single precision decides between two answers is it asked.
 
 from __future__ import annotations
 
-from math import acos, asin, atan2, cos, hypot, pi, sin, sqrt
+from math import acos, asin, atan2, cos, hypot, inf, isfinite, pi, sin, sqrt
 from struct import Struct
 
 from carom.description.pose import Quaternion, Vector3
@@ -43,6 +43,8 @@ _single = Struct("f")
 _NO_AXIS = 10.0 * 1.1920928955078125e-07
 # How far the squared length of a unit quaternion in single precision may be from 1.
 _UNIT = 1e-6
+# Squares of quaternions that have a direction, and of numbers that need no further look.
+_SHORT, _COMMON = 1e-20, 1e40
 _TWO_QUATERNIONS = "Require start and end quaternion, each with 4 components [x,y,z,w]."
 
 
@@ -141,12 +143,52 @@ def multiplyTransforms(
         >>> [round(x, 4) + 0.0 for x in position]
         [0.0, 0.0, 0.0]
     """
+    try:
+        pose = _composed(positionA, orientationA, positionB, orientationB)
+        if pose is not None:
+            return pose
+    except (TypeError, ValueError):
+        pass
     problem = "Invalid input: expected positionA [x,y,z], orientationA [x,y,z,w], positionB, orientationB."
     ax, ay, az = vector3(positionA, problem, "positionA")
     turn = unit(rotation(orientationA, problem, "orientationA"))
     x, y, z = turned(turn, vector3(positionB, problem, "positionB"))
     product = multiplied(turn, unit(rotation(orientationB, problem, "orientationB")))
     return (ax + x, ay + y, az + z), canonical(product)
+
+
+def _composed(
+    position_a: Vector, orientation_a: Vector, position_b: Vector, orientation_b: Vector
+) -> tuple[Vector3, Quaternion] | None:
+    """What `multiplyTransforms` gives, in one go, where all are numbers of Python and of common sizes."""
+    ax, ay, az = position_a
+    qx, qy, qz, qw = orientation_a
+    bx, by, bz = position_b
+    px, py, pz, pw = orientation_b
+    square_a = qx * qx + qy * qy + qz * qz + qw * qw
+    square_b = px * px + py * py + pz * pz + pw * pw
+    check = ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz + square_a + square_b
+    if type(check) is not float or not check < _COMMON or square_a < _SHORT or square_b < _SHORT:
+        return None
+    length = sqrt(square_a)
+    qx, qy, qz, qw = qx / length, qy / length, qz / length, qw / length
+    length = sqrt(square_b)
+    px, py, pz, pw = px / length, py / length, pz / length, pw / length
+    tx = 2.0 * (qy * bz - qz * by)
+    ty = 2.0 * (qz * bx - qx * bz)
+    tz = 2.0 * (qx * by - qy * bx)
+    return (
+        ax + (bx + qw * tx + qy * tz - qz * ty),
+        ay + (by + qw * ty + qz * tx - qx * tz),
+        az + (bz + qw * tz + qx * ty - qy * tx),
+    ), canonical(
+        (
+            qw * px + qx * pw + qy * pz - qz * py,
+            qw * py + qy * pw + qz * px - qx * pz,
+            qw * pz + qz * pw + qx * py - qy * px,
+            qw * pw - qx * px - qy * py - qz * pz,
+        )
+    )
 
 
 @exported
@@ -398,7 +440,9 @@ def calculateVelocityQuaternion(
     # Of quaternions that are not of unit length PyBullet looks at w alone.
     is_unit = abs(sine * sine + w * w - 1.0) < _UNIT
     angle = 2.0 * (atan2(sine, w) if is_unit else acos(max(-1.0, min(1.0, w))))
-    scale = angle / (sine * duration)
+    scale = angle / (sine * duration) if sine * duration else inf
+    if not isfinite(scale):
+        fail(f"deltaTime is {duration:g}, which is too small.")
     return (x * scale, y * scale, z * scale)
 
 

@@ -127,7 +127,8 @@ def setJointMotorControl2(
     """
     try:
         check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
-        if -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
+        # Anything else, such as an array, would be noticed only when half of the motor is written.
+        if isinstance(check, float) and -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
             joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
             joint.command(
                 controlMode, targetPosition, targetVelocity, force, positionGain, velocityGain, maxVelocity

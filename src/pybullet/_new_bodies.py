@@ -10,6 +10,7 @@ from pybullet._errors import fail, logger
 from pybullet._origins import FileLoad, Origin
 
 if TYPE_CHECKING:
+    from carom.body import Body
     from carom.description.pose import Pose
     from carom.model.body_spec import BodySpec
 
@@ -47,11 +48,15 @@ def add_bodies(
     try:
         with client.lock:
             client.bodies.forget_all()
-            ids = tuple(body.id for body in client.world.load_all(bodies))
-            if load is not None:
-                client.origins.update({number: Origin(load, index) for index, number in enumerate(ids)})
-            _look_at_fresh_files(client, [spec for spec, _ in bodies])
-            return ids
+
+            def also(added: list[Body]) -> None:
+                for index, body in enumerate(added):
+                    client.origins.pop(body.id, None)
+                    if load is not None:
+                        client.origins[body.id] = Origin(load, index)
+                _look_at_fresh_files(client, [spec for spec, _ in bodies])
+
+            return tuple(body.id for body in client.world.load_all(bodies, also))
     except CaromError as reason:
         fail(problem, str(reason))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from carom.description import Collision, Visual
+from carom.model.undo import Undo
 
 Shape = TypeVar("Shape")
 
@@ -34,8 +35,14 @@ class ShapeTable(Generic[Shape]):
 
     def add(self, shape: Shape) -> int:
         """Takes in a shape and returns its id."""
-        number = self._free.pop() if self._free else len(self._shapes)
-        self._shapes[number] = shape
+        number = self._free[-1] if self._free else len(self._shapes)
+        free = self._free[:-1]
+
+        def put() -> None:
+            self._shapes[number] = shape
+            self._free = free
+
+        Undo().at_once(put)
         return number
 
     def get(self, number: int) -> Shape | None:
@@ -44,8 +51,13 @@ class ShapeTable(Generic[Shape]):
 
     def remove(self, number: int) -> None:
         """Forgets a shape, which must be there."""
-        del self._shapes[number]
-        self._free.append(number)
+        free = [*self._free, number]
+
+        def remove() -> None:
+            self._shapes.pop(number, None)
+            self._free = free
+
+        Undo().at_once(remove)
 
 
 class ShapeRegistry:

@@ -171,4 +171,6 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
             fail(_CANNOT_LOAD, f"{problem}.")
         client.time_step = client.world.parameters.time_step
         client.report_analytics = bool(client.world.parameters.report_solver_analytics)
+        for body in bodies:
+            client.origins.pop(body.id, None)
         return tuple(body.id for body in bodies)

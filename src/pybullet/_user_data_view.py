@@ -73,7 +73,7 @@ class UserDataView:
                 if datum is not None:
                     self._known.remove(datum)
             case "removeBody":
-                self._known.remove_body(given["bodyUniqueId"])
+                self._known.removal(given["bodyUniqueId"])()
             case "resetSimulation":
                 self._known = UserData()
             case _:
@@ -102,7 +102,7 @@ class UserDataView:
     def _read_anew(self, bodies: tuple[int, ...]) -> None:
         """Copies the texts of some bodies."""
         for body in bodies:
-            self._known.remove_body(body)
+            self._known.removal(body)()
             for place in range(self._ask("getNumUserData", body)):
                 number, key, _, link, shape = self._ask("getUserDataInfo", body, place)
                 value = self._ask("getUserData", number)

@@ -88,7 +88,7 @@ def test_deleted_rows_close_up_and_leave_zeros(table, start, count, used):
     other[:] = 5
     kept = np.delete(view[:used], np.s_[start : start + count], axis=0)
     expected = np.concatenate([kept, 0 * view[:count], view[used:]])
-    table.delete("link", start, count, used)
+    table.removal({"link": (start, count)}, {"link": used}, {})()
     np.testing.assert_array_equal(view, expected)
     assert (other == 5).all()
 

@@ -49,7 +49,7 @@ def assert_same_content(arrays: WorldArrays, expected: WorldArrays) -> None:
 def test_a_removed_body_leaves_no_trace(removed):
     arrays, rows = filled(SPECS)
     gone = rows.pop(removed)
-    arrays.remove(gone, rows)
+    arrays.removal(gone, rows)()
     expected = WorldArrays()
     for n, spec in enumerate(SPECS):
         if n != removed:
@@ -60,8 +60,8 @@ def test_a_removed_body_leaves_no_trace(removed):
 
 def test_bodies_added_after_removals_are_as_in_a_fresh_world():
     arrays, rows = filled(SPECS)
-    arrays.remove(rows.pop(1), rows)
-    arrays.remove(rows.pop(0), rows)
+    arrays.removal(rows.pop(1), rows)()
+    arrays.removal(rows.pop(0), rows)()
     late = arrays.append(SPECS[0], IDENTITY)
     expected = WorldArrays()
     for n in (2, 3):
@@ -73,7 +73,7 @@ def test_bodies_added_after_removals_are_as_in_a_fresh_world():
 def test_everything_can_be_removed():
     arrays, rows = filled(SPECS)
     while rows:
-        arrays.remove(rows.pop(), rows)
+        arrays.removal(rows.pop(), rows)()
     assert not any(arrays.used.values())
     for table in arrays.tables:
         assert not any(array.any() for array in table.numpy.values())

@@ -65,8 +65,8 @@ class Scene:
 
     def remove(self, index: int) -> None:
         _, rows = self.bodies.pop(index)
-        self.shapes.remove(rows)
-        self.arrays.remove(rows, [other for _, other in self.bodies])
+        self.shapes.removal(rows)()
+        self.arrays.removal(rows, [other for _, other in self.bodies])()
 
     def column(self, name: str) -> np.ndarray:
         axis = name.partition("_")[0]

@@ -1,6 +1,7 @@
 """What pages are told over their socket, and what they can do."""
 
 import http.client
+import logging
 import socket
 import threading
 from pathlib import Path
@@ -324,3 +325,16 @@ def test_a_request_with_two_names_is_turned_away(viewer: Viewer):
         name = f"Host: {host}:{port}\r\n"
         peer.sendall(f"GET / HTTP/1.1\r\n{name}{name}\r\n".encode())
         assert peer.recv(100).startswith(b"HTTP/1.1 421")
+
+
+def test_asyncio_keeps_its_complaints_to_itself(viewer: Viewer, caplog: pytest.LogCaptureFixture):
+    """As of sockets that fail, and of tasks that nobody waits for."""
+    server, done = viewer._server, threading.Event()
+    loop = server._loop
+    assert loop is not None
+    loop.call_soon_threadsafe(lambda: loop.call_exception_handler({"message": "a socket is gone"}))
+    loop.call_soon_threadsafe(done.set)
+    assert done.wait(PATIENCE)
+    assert not caplog.records
+    logging.getLogger("asyncio").warning("of somebody else's loop")
+    assert caplog.messages == ["of somebody else's loop"]

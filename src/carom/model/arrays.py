@@ -10,7 +10,7 @@ worlds share that: kernels see it at a stride of zero.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, cast
@@ -18,6 +18,7 @@ from typing import Any, cast
 import numpy as np
 import warp as wp
 
+from carom.model.undo import Undo
 from carom.model.zeros import zeros
 
 _FIRST_CAPACITY = 16
@@ -95,8 +96,7 @@ class ArrayTable:
         self.numpy: dict[str, np.ndarray] = {}
         self._made: dict[str, Any] = {}
         self._bytes: dict[str, memoryview[int]] = {}
-        for name in self._fields:
-            self._replace(name, self._allocate(name, _FIRST_CAPACITY))
+        self._replace({name: self._allocate(name, _FIRST_CAPACITY) for name in self._fields})
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
         field = self._fields[name]
@@ -105,15 +105,27 @@ class ArrayTable:
             shape = (self._world_counts[name], *shape)
         return zeros((*shape, *field.shape), field.scalar)
 
-    def _replace(self, name: str, array: np.ndarray) -> None:
-        self._memory[name] = array
+    def _replace(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Put arrays that are ready in the place of others, all at once."""
+
+        def put() -> None:
+            self._memory.update(arrays)
+            self._follow()
+
+        Undo().at_once(put)
+
+    def _follow(self) -> None:
+        """Bring everything up to date that follows from the arrays."""
         self.replacements += 1
         self._made.clear()
-        self._bytes.pop(name, None)
-        if array.dtype.names is None:
-            self.numpy[name] = array
-        for part in array.dtype.names or ():
-            self.numpy[f"{name}_{part}"] = array[part]
+        self._bytes.clear()
+        for name, array in self._memory.items():
+            field = self._fields[name]
+            self.capacity[field.axis] = array.shape[int(field.per_world)]
+            if array.dtype.names is None:
+                self.numpy[name] = array
+            for part in array.dtype.names or ():
+                self.numpy[f"{name}_{part}"] = array[part]
 
     def is_per_world(self, name: str) -> bool:
         """Whether the array of that name in `numpy` has a world axis."""
@@ -143,14 +155,13 @@ class ArrayTable:
         if not grown:
             return False
         # All of them are there before the first is put in place: memory may be short, or the user in a hurry.
-        longer = {
-            name: self._lengthened(name, grown[field.axis])
-            for name, field in self._fields.items()
-            if field.axis in grown
-        }
-        for name, array in longer.items():
-            self._replace(name, array)
-        self.capacity.update(grown)
+        self._replace(
+            {
+                name: self._lengthened(name, grown[field.axis])
+                for name, field in self._fields.items()
+                if field.axis in grown
+            }
+        )
         return True
 
     def _lengthened(self, name: str, capacity: int) -> np.ndarray:
@@ -167,8 +178,9 @@ class ArrayTable:
         """Give each world rows of its own of a field that all have shared; true if they had not."""
         if self._world_counts[name] == world_count:
             return False
+        spread = np.repeat(self._memory[name], world_count, axis=0)
         self._world_counts[name] = world_count
-        self._replace(name, np.repeat(self._memory[name], world_count, axis=0))
+        self._replace({name: spread})
         return True
 
     def copy(self, world_count: int | None = None, rows: Mapping[str, int] | None = None) -> ArrayTable:
@@ -185,6 +197,7 @@ class ArrayTable:
         other.numpy, other._memory, other._made, other._bytes = {}, {}, {}, {}
         other._world_counts = self._world_counts.copy()
         other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
+        arrays = {}
         for name, field in self._fields.items():
             array, count = self._memory[name], other.capacity[field.axis]
             if field.per_world:
@@ -193,7 +206,8 @@ class ArrayTable:
                 array = array.copy() if world_count is None else _repeated(array[0], world_count)
             else:
                 array = array[:count].copy()
-            other._replace(name, array)
+            arrays[name] = array
+        other._replace(arrays)
         return other
 
     def bytes_per_world(self, rows: Mapping[str, int] | None = None) -> int:
@@ -209,16 +223,55 @@ class ArrayTable:
         memo[id(self)] = other = self.copy()
         return other
 
-    def delete(self, axis: str, start: int, count: int, used: int) -> None:
-        """Remove `count` of the `used` rows of an axis; later ones move up and the freed ones are zero."""
-        after = start + count
+    def removal(
+        self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int], targets: Mapping[str, str]
+    ) -> Callable[[], None]:
+        """Make ready to remove a run of rows of some axes; later ones move up and the freed ones are zero.
+
+        Args:
+            cuts: First row and number of rows, by axis.
+            used: Rows in use, by axis.
+            targets: Fields whose values are rows of an axis, and which; they follow those rows.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        moves, freed, values = [], [], []
         for name, field in self._fields.items():
-            if field.axis == axis:
-                array = self._memory[name]
-                rows = array.swapaxes(0, 1) if field.per_world else array
-                if after < used:
-                    rows[start : used - count] = rows[after:used]
-                rows[used - count : used].fill(0)
+            if field.axis in cuts:
+                start, count = cuts[field.axis]
+                end, rows = used[field.axis], self._rows(name)
+                if start + count < end:
+                    moves.append((rows[start : end - count], rows[start + count : end].copy()))
+                freed.append(rows[end - count : end])
+        for name, target in targets.items():
+            if target in cuts:
+                axis = name.partition("_")[0]
+                first, gone = cuts.get(axis, (0, 0))
+                rows = self.numpy[name][: used[axis]]
+                kept = np.concatenate((rows[:first], rows[first + gone :]))
+                start, count = cuts[target]
+                kept[kept >= start + count] -= count
+                values.append((rows[: len(kept)], kept))
+
+        def remove() -> None:
+            for rows, moved in (*moves, *values):
+                rows[...] = moved
+            for rows in freed:
+                rows.fill(0)
+
+        return remove
+
+    def clear_beyond(self, used: Mapping[str, int]) -> None:
+        """Set all rows to zero but the first ones of the named axes."""
+        for name, field in self._fields.items():
+            if field.axis in used:
+                self._rows(name)[used[field.axis] :].fill(0)
+
+    def _rows(self, name: str) -> np.ndarray:
+        """An array with its rows in front."""
+        array = self._memory[name]
+        return array.swapaxes(0, 1) if self._fields[name].per_world else array
 
     def struct(self, device: str) -> Any:
         """A Warp struct whose fields are views of these arrays: the same one until some are replaced."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -263,26 +264,43 @@ class WorldArrays:
         start = self.state.numpy["position"][:, first : first + BASE_POSITIONS]
         start[:] = (*base_pose.position, *base_pose.orientation)
 
-    def remove(self, rows: TreeRows, others: Iterable[TreeRows]) -> None:
-        """Take a body's rows out; the rows of the `others` are updated."""
-        model = self.model.numpy
-        for axis, count in rows.count.items():
-            start = rows.first[axis]
-            if count == 0:
-                continue
-            for table in self.tables:
-                if axis in table.capacity:
-                    table.delete(axis, start, count, self.used[axis])
-            for name, target in _INDEX_FIELDS.items():
-                if target == axis:
-                    indices = model[name]
-                    indices[indices >= start + count] -= count
-            self.used[axis] -= count
-            for other in others:
-                if other.first[axis] > start:
-                    other.first[axis] -= count
-        for other in others:
-            other.tree = other.first["tree"]
+    def way_back(self) -> Callable[[], None]:
+        """What takes away all bodies that are appended from now on."""
+        return partial(self._shorten, self.used.copy())
+
+    def _shorten(self, used: dict[str, int]) -> None:
+        for table in self.tables:
+            table.clear_beyond(used)
+        self.used.update(used)
+
+    def removal(self, rows: TreeRows, others: Sequence[TreeRows]) -> Callable[[], None]:
+        """Make ready to take a body's rows out.
+
+        Args:
+            rows: Its rows.
+            others: Those of all others; where they are behind it they move up.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        cuts = {axis: (rows.first[axis], count) for axis, count in rows.count.items() if count}
+        remove_model = self.model.removal(cuts, self.used, _INDEX_FIELDS)
+        remove_state = self.state.removal(cuts, self.used, {})
+        used = {axis: self.used[axis] - count for axis, count in rows.count.items()}
+        moved = [
+            (other, {axis: first - rows.count[axis] for axis, first in other.first.items()})
+            for other in others
+            if other.tree > rows.tree
+        ]
+
+        def remove() -> None:
+            remove_model()
+            remove_state()
+            self.used.update(used)
+            for other, first in moved:
+                other.first, other.tree = first, first["tree"]
+
+        return remove
 
     def structs(self, device: str) -> dict[str, Any]:
         """Warp structs over the present arrays, by the name kernels give them."""

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
 
 from carom.model.arrays import ArrayTable
 
@@ -58,16 +62,29 @@ class PairFilters:
         for name, value in zip(_FIELDS, (*pair, enabled), strict=True):
             self._table.numpy[name][at] = value
 
-    def forget_links(self, first: int, count: int) -> None:
-        """Drop the rules of links that are removed; later links move up."""
-        enabled = self._table.numpy["filter_enabled"][: len(self._pairs)].tolist()
-        kept = [
-            (tuple(link - count if link >= first + count else link for link in pair), rule)
-            for pair, rule in zip(self._pairs, enabled, strict=True)
-            if not any(first <= link < first + count for link in pair)
-        ]
-        for name in _FIELDS:
-            self._table.numpy[name][: len(self._pairs)] = 0
-        self._pairs = [(a, b) for (a, b), _ in kept]
-        for at, (pair, (_, rule)) in enumerate(zip(self._pairs, kept, strict=True)):
-            self._write(at, pair, rule)
+    def way_back(self) -> Callable[[], None]:
+        """What brings the rules back that there are now."""
+        enabled = self._table.numpy["filter_enabled"][: len(self._pairs)].copy()
+        return partial(self._write_all, self._pairs.copy(), enabled)
+
+    def removal(self, first: int, count: int) -> Callable[[], None]:
+        """Make ready to drop the rules of links that are removed; later links move up.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        after = first + count
+        kept, enabled = [], []
+        for a, b, rule in self.all:
+            if not (first <= a < after or first <= b < after):
+                kept.append((a - count if a >= after else a, b - count if b >= after else b))
+                enabled.append(rule)
+        return partial(self._write_all, kept, np.array(enabled))
+
+    def _write_all(self, pairs: list[tuple[int, int]], enabled: np.ndarray) -> None:
+        self._pairs = pairs.copy()
+        columns = (*np.array(pairs).reshape(-1, 2).T, enabled)
+        for name, column in zip(_FIELDS, columns, strict=True):
+            rows = self._table.numpy[name]
+            rows[: len(pairs)] = column
+            rows[len(pairs) :] = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -235,32 +235,55 @@ class ShapeArrays:
         for axis in ("vertex", "face", "corner", "node"):
             at[axis] += counts[axis]
 
-    def remove(self, rows: TreeRows) -> None:
-        """Take a body's shapes out, while its tree's rows are still the ones it had."""
-        numpy = self.table.numpy
+    def way_back(self) -> Callable[[], None]:
+        """What takes away the shapes of all bodies that are appended from now on, and rules for them."""
+        used, bodies, looks_ahead = self.used.copy(), len(self._bodies), self.looks_ahead
+        forget_rules = self.filters.way_back()
+
+        def go_back() -> None:
+            forget_rules()
+            self.table.clear_beyond(used)
+            self.used.update(used)
+            while len(self._bodies) > bodies:
+                self._bodies.popitem()
+            self.looks_ahead = looks_ahead
+
+        return go_back
+
+    def removal(self, rows: TreeRows) -> Callable[[], None]:
+        """Make ready to take a body's shapes out, while its tree's rows are still the ones it has.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
         first_link, link_count = rows.first["link"], rows.count["link"]
-        body = self._bodies.pop(first_link)
-        self.filters.forget_links(first_link, link_count)
-        for axis, start, count in (
-            *((axis, body.first[axis], body.count[axis]) for axis in AXES),
-            ("link", first_link, link_count),
-        ):
-            if count == 0:
-                continue
-            self.table.delete(axis, start, count, self.used[axis])
-            self.used[axis] -= count
-            for name, target in _INDEX_FIELDS.items():
-                if target == axis:
-                    numpy[name][numpy[name] >= start + count] -= count
-            for other in self._bodies.values():
-                if axis in AXES and other.first[axis] > start:
-                    other.first[axis] -= count
-        trees = numpy["shape_tree"]
-        trees[trees > rows.tree] -= 1
-        self._bodies = {
-            first - link_count if first > first_link else first: other
-            for first, other in self._bodies.items()
+        body = self._bodies[first_link]
+        count = {**body.count, "link": link_count}
+        cuts = {axis: (body.first[axis], number) for axis, number in body.count.items() if number}
+        cuts |= {"link": (first_link, link_count), "tree": (rows.tree, 1)}
+        remove_rows = self.table.removal(cuts, self.used, _INDEX_FIELDS)
+        forget_rules = self.filters.removal(first_link, link_count)
+        used = {axis: self.used[axis] - number for axis, number in count.items()}
+        moved = [
+            (other, {axis: first - count[axis] for axis, first in other.first.items()})
+            for link, other in self._bodies.items()
+            if link > first_link
+        ]
+        bodies = {
+            link - link_count if link > first_link else link: other
+            for link, other in self._bodies.items()
+            if other is not body
         }
+
+        def remove() -> None:
+            forget_rules()
+            remove_rows()
+            self.used.update(used)
+            for other, first in moved:
+                other.first = first
+            self._bodies = bodies
+
+        return remove
 
     def write_surface(self, link_row: int, surface: Surface, names: Iterable[str] | None = None) -> None:
         """Take over how a link touches, or of all that has changed, by name, what matters for it."""

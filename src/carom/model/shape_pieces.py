@@ -28,7 +28,7 @@ from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.heightfield import heightfield_surface
-from carom.geometry.hull import convex_hull
+from carom.geometry.hull import SMALLEST, convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.geometry.rolling import round_about
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
@@ -169,7 +169,7 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     angles = [2.0 * pi * side / CYLINDER_SIDES for side in range(CYLINDER_SIDES)]
     rim = [(radius * sin(angle), radius * cos(angle)) for angle in angles]
     points = np.array([(x, y, z) for z in (-0.5 * length, 0.5 * length) for x, y in rim])
-    if radius == 0.0 or length == 0.0:
+    if min(radius, length) < SMALLEST:
         return _hull_piece(points)
     points = _on_grid(points)
     # Simplifying would take corners out of the rims.

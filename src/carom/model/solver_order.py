@@ -8,7 +8,7 @@ does not keep the order of equals.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -99,28 +99,49 @@ class IslandTags:
         """Append the links of a body, base first; `moving` tells those that are not static."""
         self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))
 
+    def way_back(self) -> Callable[[], None]:
+        """What takes out all objects that are added from now on, and undoes what is reordered."""
+        objects, count = self._objects, len(self._objects)
+
+        def go_back() -> None:
+            del objects[count:]
+            self._objects = objects
+
+        return go_back
+
     def remove(self, body: Hashable, link_count: int) -> None:
         """Take out the links of a body, base first."""
-        index = {key: i for i, (key, _) in enumerate(self._objects)}
+        self.removal(body, link_count)()
+
+    def removal(self, body: Hashable, link_count: int) -> Callable[[], None]:
+        """Make ready to take out the links of a body; what is returned does it, and can be called again."""
+        kept = self._objects.copy()
+        index = {key: i for i, (key, _) in enumerate(kept)}
         for link in range(link_count):
             i = index.pop((body, link))
-            last_key, last_moves = self._objects.pop()
-            if i < len(self._objects):
-                self._objects[i] = (last_key, last_moves)
+            last_key, last_moves = kept.pop()
+            if i < len(kept):
+                kept[i] = (last_key, last_moves)
                 index[last_key] = i
+
+        def remove() -> None:
+            self._objects = kept
+
+        return remove
 
     def move_base_to_end(self, body: Hashable, moving: Sequence[bool]) -> None:
         """Take the base of a body out and append it again; `moving` renews which links move."""
-        keys = [key for key, _ in self._objects]
-        index = keys.index((body, 0))
-        last = self._objects.pop()
-        if index < len(self._objects):
-            self._objects[index] = last
-        self._objects.append(((body, 0), moving[0]))
-        for i, (key, _) in enumerate(self._objects):
+        objects = self._objects.copy()
+        index = [key for key, _ in objects].index((body, 0))
+        last = objects.pop()
+        if index < len(objects):
+            objects[index] = last
+        objects.append(((body, 0), moving[0]))
+        for i, (key, _) in enumerate(objects):
             owner, link = key  # type: ignore[misc]
             if owner == body:
-                self._objects[i] = (key, moving[link])
+                objects[i] = (key, moving[link])
+        self._objects = objects
 
     def tags(self) -> dict[Hashable, int]:
         """Island number of each body that has a moving link."""

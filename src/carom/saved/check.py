@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
-from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from carom.description import ConvexHull, Geometry, Heightfield, Pose, TriangleMesh
+from carom.formats.robot.context import MAX_MAGNITUDE
 from carom.model.body_spec import BodySpec
 
 # What may be infinite: bounds, which then do not bound.
@@ -35,16 +35,16 @@ def check_body(spec: BodySpec) -> None:
 
 
 def check_finite(value: Any) -> None:
-    """See that no number of a dataclass is infinite and every orientation has length 1.
+    """See that no number of a dataclass is infinite or very large, and every orientation has length 1.
 
     Raises:
         ValueError: One is, or has not.
     """
     for part in _parts(value):
-        if isinstance(part, float) and not isfinite(part):
-            raise ValueError("a number is infinite")
-        if isinstance(part, np.ndarray) and not np.isfinite(part).all():
-            raise ValueError("an array holds a number that is infinite")
+        if isinstance(part, float) and not abs(part) <= MAX_MAGNITUDE:
+            raise ValueError(f"a number is {part:g}")
+        if isinstance(part, np.ndarray) and not (np.abs(part) <= MAX_MAGNITUDE).all():
+            raise ValueError("an array holds a number that is not finite or very large")
         if isinstance(part, Pose) and abs(sum(q * q for q in part.orientation) - 1.0) > _UNIT_TOLERANCE:
             raise ValueError("a quaternion does not have length 1")
 

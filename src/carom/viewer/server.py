@@ -27,6 +27,15 @@ _log = logging.getLogger("carom")
 # Of the library: browsers that turn away in the middle of a request are no news.
 _quiet = logging.getLogger("carom.viewer.sockets")
 _quiet.setLevel(logging.CRITICAL)
+_THREAD_NAME = "carom viewer"
+
+
+def _not_of_a_server(record: logging.LogRecord) -> bool:
+    return record.threadName != _THREAD_NAME
+
+
+# What asyncio says of sockets that others have left is nothing to the terminal of a script.
+logging.getLogger("asyncio").addFilter(_not_of_a_server)
 
 PREFERRED_PORT = 8400
 _FRAMES_PER_SECOND = 60
@@ -99,7 +108,7 @@ class PageServer:
         self._started = Event()
         self._problem: OSError | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._thread = Thread(target=self._run, name="carom viewer", daemon=True)
+        self._thread = Thread(target=self._run, name=_THREAD_NAME, daemon=True)
         self._thread.start()
         self._started.wait()
         if self._problem is not None:

@@ -16,6 +16,8 @@ from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 from carom.formats.xml_tree import Element, parse_root
 
+# Numbers that sources hold for each vertex, and primitives for each corner.
+_MOST_COLUMNS = 1000
 MAX_PARTS = 4096
 """Most geometries a scene may show."""
 
@@ -157,7 +159,7 @@ class ColladaReader:
 
     def offset(self, entry: Element) -> int:
         """The place of an input's index among those of a corner."""
-        return int(self.numbers(entry, entry.attributes.get("offset", "0"), 1)[0])
+        return self._count(entry, "offset", "0", 0)
 
     def source_rows(self, source: Element, width: int) -> NDArray[np.float64]:
         """(k, width) the first entries of each row of a source."""
@@ -166,13 +168,10 @@ class ColladaReader:
             raise self.error(source, "<float_array> is missing")
         technique = source.first("technique_common")
         accessor = None if technique is None else technique.first("accessor")
-        stride_text = str(width) if accessor is None else accessor.attributes.get("stride", str(width))
-        stride = int(self.numbers(source, stride_text, 1)[0])
+        stride = width if accessor is None else self._count(accessor, "stride", str(width), width)
         values = self.numbers(array, array.text)
-        if stride < width or len(values) % stride:
-            raise self.error(
-                array, f"{len(values)} numbers do not make rows of {stride}, of at least {width}"
-            )
+        if len(values) % stride:
+            raise self.error(array, f"{len(values)} numbers do not make rows of {stride}")
         return values.reshape(-1, stride)[:, :width]
 
     def corner_indices(self, primitive: Element, offset: int, stride: int) -> NDArray[np.int64]:
@@ -194,6 +193,13 @@ class ColladaReader:
                 raise self.error(run, f"{len(corners)} corners do not fit the polygons announced")
             fans.append(cut_into_fans(corners, sizes))
         return np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
+
+    def _count(self, element: Element, name: str, default: str, least: int) -> int:
+        """A small whole number in an attribute."""
+        value = self.numbers(element, element.attributes.get(name, default), 1)[0]
+        if not least <= value <= _MOST_COLUMNS:
+            raise self.error(element, f"{name} has to be from {least} to {_MOST_COLUMNS}")
+        return int(value)
 
     def _integers(self, element: Element) -> NDArray[np.int64]:
         try:

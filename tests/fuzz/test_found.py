@@ -1,0 +1,104 @@
+"""What the fuzzers found, as tests that take no time."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pybullet as p
+import pybullet_data
+from carom.saved import container
+
+CYLINDER = """<robot name="thin"><link name="base"><collision><geometry>
+<cylinder radius="0.015" length="{length}"/></geometry></collision></link></robot>"""
+COLLADA = """<COLLADA version="1.4.1" xmlns="http://www.collada.org/2005/11/COLLADASchema">
+<library_geometries><geometry id="g"><mesh>
+<source id="s"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#a" count="3" stride="{stride}"/></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="{offset}"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="scene"><node><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#scene"/></scene></COLLADA>"""
+
+
+@pytest.fixture
+def client() -> Iterator[int]:
+    number = p.connect(p.DIRECT)
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    yield number
+    p.disconnect(number)
+
+
+@pytest.fixture
+def arm(client: int) -> int:
+    return p.loadURDF("kuka_iiwa/model.urdf")
+
+
+def test_a_motor_is_left_alone_by_arguments_that_are_refused(arm: int) -> None:
+    p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, targetPosition=0.3)
+    motors = _motors(arm)
+    with pytest.raises(TypeError, match="targetPosition"):
+        p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, targetPosition=np.array([1.0]))  # type: ignore[arg-type]
+    assert _motors(arm) == motors
+
+
+def test_a_log_may_be_written_to_a_device(arm: int) -> None:
+    p.setPhysicsEngineParameter(numSubSteps=3)
+    p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, "/dev/null")
+    # So many contacts at once that a step has to be begun anew.
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    p.createMultiBody(1.0, ball, batchPositions=[(0.0, 0.0, 0.01 * place) for place in range(40)])
+    p.stepSimulation()
+
+
+def test_a_velocity_over_no_time_is_refused() -> None:
+    with pytest.raises(p.error, match="deltaTime"):
+        p.calculateVelocityQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8], 5e-324)
+
+
+@pytest.mark.parametrize("length", ["1e-320", "1e-200", "0"])
+def test_cylinders_as_thin_as_nothing(client: int, tmp_path: Path, length: str) -> None:
+    file = tmp_path / "thin.urdf"
+    file.write_text(CYLINDER.format(length=length))
+    p.loadURDF(str(file))
+    p.stepSimulation()
+
+
+@pytest.mark.parametrize(("stride", "offset"), [("3", "-1"), ("0", "0"), ("1e300", "0"), ("3", "1e300")])
+def test_meshes_of_impossible_columns(client: int, tmp_path: Path, stride: str, offset: str) -> None:
+    file = tmp_path / "mesh.dae"
+    file.write_text(COLLADA.format(stride="3", offset="0"))
+    assert p.createCollisionShape(p.GEOM_MESH, fileName=str(file)) >= 0
+    file.write_text(COLLADA.format(stride=stride, offset=offset))
+    with pytest.raises(p.error, match="has to be from"):
+        p.createCollisionShape(p.GEOM_MESH, fileName=str(file))
+
+
+def test_saved_worlds_with_immense_numbers(client: int, tmp_path: Path) -> None:
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.123])
+    p.createMultiBody(1.0, box)
+    file = tmp_path / "world.bullet"
+    p.saveBullet(str(file))
+    document, blocks = container.unpacked(file.read_bytes(), file)
+    text = json.dumps(document).replace("0.123", "1e308").encode()
+    payload = struct.pack("<Q", len(text)) + text + bytes(blocks)
+    header = struct.pack("<8sIIQ32s", container.MAGIC, 1, 0, len(payload), sha256(payload).digest())
+    file.write_bytes(header + payload)
+    p.resetSimulation()
+    with pytest.raises(p.error, match=r"1e\+308"):
+        p.loadBullet(str(file))
+    assert p.getNumBodies() == 0
+
+
+def _motors(body: int) -> list[float]:
+    from pybullet._clients import clients
+
+    world = clients[0].world
+    return world.motor[world.bodies[body].first_velocity :].ravel().tolist()

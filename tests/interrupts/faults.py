@@ -1,0 +1,65 @@
+"""A fault at a chosen instruction of a call: what a signal handler does by chance, decided beforehand."""
+
+from __future__ import annotations
+
+import linecache
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import carom
+import pybullet
+
+_OURS = tuple(str(Path(package.__path__[0])) for package in (carom, pybullet))
+
+
+class Fault(BaseException):
+    """What is raised."""
+
+
+class Fuse:
+    """Counts the instructions that our code performs within a call, and raises a fault at one.
+
+    Attributes:
+        count: How many there have been.
+        where: The line at which the fault was raised.
+
+    Args:
+        place: Which one; None for none.
+    """
+
+    def __init__(self, place: int | None = None) -> None:
+        self.count = 0
+        self.where = ""
+        self._place = place
+
+    def blow(self, call: Callable[[], Any]) -> Any:
+        """Make the call; raises the fault, and whatever the call raises."""
+        before = sys.gettrace()
+        sys.settrace(self._trace)
+        try:
+            return call()
+        finally:
+            sys.settrace(before)
+
+    def _trace(self, frame: FrameType, event: str, _argument: Any) -> Any:
+        if not frame.f_code.co_filename.startswith(_OURS):
+            return None
+        frame.f_trace_opcodes, frame.f_trace_lines = True, False
+        # Instructions without a line are those that end a `with` block or an exception.
+        line: int | None = frame.f_lineno
+        if event == "opcode" and line and not _enters_or_leaves_a_context(frame.f_code.co_filename, line):
+            self.count += 1
+            if self.count == self._place:
+                self.where = f"{frame.f_code.co_filename}:{line}"
+                raise Fault
+        return self._trace
+
+
+@cache
+def _enters_or_leaves_a_context(file: str, line: int) -> bool:
+    """Whether signals cannot come there: Python lets no handler run between a lock and its `with` block."""
+    return linecache.getline(file, line).lstrip().startswith("with ")
