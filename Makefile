@@ -19,6 +19,7 @@
 #   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
+#   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
 #   make clean        remove what the above have made, the recordings and reports excepted
 
 SHELL := /bin/bash
@@ -36,7 +37,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report clean
+.PHONY: help demo test check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report wheels clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -48,8 +49,10 @@ $(VENV)/created:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
+# Without isolation: what builds the native library is installed here, and not once more for the installation.
 $(VENV)/carom: pyproject.toml | $(VENV)/created
-	$(PIP) install --editable '.[plot]'
+	$(PIP) install 'hatchling>=1.26,<2' editables
+	$(PIP) install --no-build-isolation --editable '.[plot,build]'
 	@touch $@
 
 $(VENV)/dev: $(VENV)/carom
@@ -82,7 +85,7 @@ CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
 
 .clients/carom/clients: pyproject.toml
 	$(PYTHON) -m venv .clients/carom
-	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --editable '.[decompose]' $(CLIENT_NEEDS)
+	.clients/carom/bin/python -m pip --quiet --disable-pip-version-check install --editable '.[decompose,build]' $(CLIENT_NEEDS)
 	@touch $@
 
 .clients/oracle/clients:
@@ -93,8 +96,8 @@ CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
 
 # --- what users run ------------------------------------------------------------------------------
 
-# Builds only the kernels it needs; `make test` builds them all.
 demo: $(VENV)/carom
+	$(RUN) -m carom warmup
 	$(RUN) examples/demo.py
 
 test: $(VENV)/dev
@@ -139,6 +142,11 @@ CLIENT_SOURCES ?= .clients/sources
 clients: .clients/carom/clients .clients/oracle/clients
 	$(PYTHON) -m tests.clients.run --carom .clients/carom/bin/python --oracle .clients/oracle/bin/python \
 		--work .clients --sources $(CLIENT_SOURCES) $(CLIENTS)
+
+# Hatchling builds in this environment, which has what `build-system` names.
+wheels: $(VENV)/dev
+	$(PIP) install 'hatchling>=1.26,<2'
+	PYTHONPATH=. $(RUN) -m tools.wheels.build
 
 gpu-report: $(VENV)/dev
 	PYTHONPATH=. $(RUN) -m tools.gpu.report

@@ -8,9 +8,8 @@ import pytest
 SOURCE = Path(__file__).parents[1] / "src"
 
 DESCRIPTION = {"carom.errors", "carom.description"}
-MODEL = {*DESCRIPTION, "carom.formats", "carom.geometry", "carom.model"}
-KERNELS = {*MODEL, "carom.physics", "carom.collision"}
-ENGINE = {*KERNELS, "carom.engine"}
+MODEL = {*DESCRIPTION, "carom.formats", "carom.geometry", "carom.layouts", "carom.native", "carom.model"}
+ENGINE = {*MODEL, "carom.engine"}
 
 # What each layer may import beside itself, the standard library and third parties.
 MAY_IMPORT = {
@@ -21,10 +20,13 @@ MAY_IMPORT = {
     "carom.description": {"carom.errors"},
     "carom.geometry": DESCRIPTION,
     "carom.formats": {*DESCRIPTION, "carom.geometry"},
-    "carom.model": {*DESCRIPTION, "carom.formats", "carom.geometry"},
-    "carom.physics": {"carom.errors", "carom.model", "carom.collision"},
-    "carom.collision": {"carom.errors", "carom.geometry", "carom.model"},
-    "carom.engine": KERNELS,
+    "carom.layouts": {"carom.description"},
+    "carom.native": {"carom.errors", "carom.layouts"},
+    "carom.model": {*DESCRIPTION, "carom.formats", "carom.geometry", "carom.layouts", "carom.native"},
+    # Device code: nothing that runs on the host imports it.
+    "carom.kernels": {"carom.layouts"},
+    "carom.engine": MODEL,
+    "carom.gpu": {*ENGINE, "carom.kernels"},
     "carom.remote": {"carom.errors"},
     # It takes any vector environment, and so needs none of ours.
     "carom.cluster": {"carom.errors"},

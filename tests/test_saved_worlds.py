@@ -13,8 +13,8 @@ import pybullet_data
 from carom import World
 from carom.description import Box, Collision, Pose, TriangleMesh, Visual
 from carom.errors import DescriptionError, StateError
+from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.codes import UserConstraintKind
 from carom.render.appearance import appearance_of
 from carom.saved.container import Blocks, packed
 from carom.snapshot import Snapshot

@@ -15,8 +15,8 @@ from tests.physics.robots import (
 
 from carom import Body, World
 from carom.description import JointType
+from carom.layouts.codes import MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION
 from carom.model.body_spec import BodySpec
-from carom.model.codes import MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION
 from carom.model.solver_order import quicksort_order
 
 SPECS = [

@@ -12,10 +12,7 @@ import numpy as np
 
 from carom.description.pose import Pose
 from carom.dynamics_changes import change_dynamics, write_link
-from carom.link_dynamics import LinkDynamics
-from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.builder import TreeRows
-from carom.model.codes import (
+from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
     DOF_COUNT,
@@ -23,7 +20,10 @@ from carom.model.codes import (
     POSITION_COUNT,
     Activity,
 )
-from carom.model.real import NUMPY_REAL
+from carom.layouts.types import NUMPY_REAL
+from carom.link_dynamics import LinkDynamics
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.builder import TreeRows
 
 if TYPE_CHECKING:
     from carom.joint import Joints

@@ -15,9 +15,9 @@ from carom.description.transform import compose
 from carom.errors import CaromError
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.flags import LoadFlags
 from carom.version import __version__
 
 OK, FAILED = 0, 1

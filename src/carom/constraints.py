@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.description import JointType
+from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT, ConstraintKind, JointCode
 from carom.link_dynamics import DEFAULT_LIMIT_IMPULSE
 from carom.model.builder import WorldArrays
-from carom.model.codes import MAX_ROWS_PER_CONSTRAINT, ConstraintKind, JointCode
 from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
 
 if TYPE_CHECKING:

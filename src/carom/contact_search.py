@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from carom.collision.contact_report import ContactReport, report_contacts_kernel
-from carom.model.arrays import ArrayTable, numbers_of
-from carom.model.launch import KernelStructs
-from carom.model.real import NUMPY_REAL
+from carom.layouts.queries import ContactReport
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import report_contacts_kernel
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable, numbers_of
 from carom.question import Question
 
 _VECTOR = Struct(f"3{np.dtype(NUMPY_REAL).char}")
@@ -41,13 +42,12 @@ class ContactSearch:
 
     Args:
         structs: Warp structs by the name kernels give them, `places` among them.
-        device: Warp device name.
     """
 
-    def __init__(self, structs: KernelStructs, device: str) -> None:
+    def __init__(self, structs: KernelStructs) -> None:
         asked = {"body_a": -1, "link_a": -2, "body_b": -1, "link_b": -2, "time_step": NUMPY_REAL(0.0)}
         self._search = Question(
-            report_contacts_kernel, structs, "report", ArrayTable(ContactReport), device, asked, world=0
+            report_contacts_kernel, structs, "report", ArrayTable(ContactReport), asked, world=0
         )
         self._view()
 

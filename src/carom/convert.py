@@ -13,8 +13,8 @@ from carom.formats.placed import PlacedRobot
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.formats.urdf_writer import urdf_text
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
-from carom.model.flags import LoadFlags
 from carom.model.mjcf_inertia import set_mjcf_inertias
 
 

@@ -46,7 +46,7 @@ class DescriptionLoading(ABC):
             orientation: Of the base's link frame, quaternion (x, y, z, w).
             fixed_base: Hold the base where it is.
             scale: Factor on all lengths.
-            flags: Loading flags, see `carom.model.flags.LoadFlags`.
+            flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
@@ -78,7 +78,7 @@ class DescriptionLoading(ABC):
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
-            flags: Loading flags, see `carom.model.flags.LoadFlags`.
+            flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
 
         Returns:
             The bodies, in the order of the file.

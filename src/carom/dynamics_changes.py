@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
-from carom.model.flags import ActivationChange, LoadFlags
 from carom.model.inertia import inertia_from_shapes
 
 if TYPE_CHECKING:

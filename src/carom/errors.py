@@ -40,3 +40,7 @@ class StateError(CaromError):
 
 class SimulationWarning(RuntimeWarning):
     """A world among many has been halted."""
+
+
+class NativeLibraryError(CaromError):
+    """The compiled kernels are missing, damaged or not those of this version; the message says what to do."""

@@ -12,7 +12,7 @@ from carom.alive import world_of
 from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.named import Named
 
 if TYPE_CHECKING:

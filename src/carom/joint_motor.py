@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import finite, not_negative
-from carom.model.codes import (
+from carom.layouts.codes import (
     MOTOR_DAMPING,
     MOTOR_KD,
     MOTOR_KP,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from carom.description.pose import Vector3
+from carom.layouts.contacts import MARGIN
 from carom.model.body_spec import LinkSpec
-from carom.model.bounds import MARGIN
 from carom.model.inertia import collision_margin
 
 DEFAULT_FRICTION = 0.5

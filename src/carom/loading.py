@@ -7,9 +7,9 @@ from pathlib import Path
 
 from carom.description.pose import Pose
 from carom.formats.search import AssetSearch
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
-from carom.model.flags import LoadFlags
 from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.model.shape_pieces import shape_pieces
 
@@ -45,7 +45,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
     Args:
         path: The file.
         search: Where it and what it refers to are looked for.
-        flags: Loading flags, see `carom.model.flags.LoadFlags`.
+        flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
         as_mujoco: `axisangle` turns bodies, and named classes limit joints; in PyBullet they do not.
     """
     from carom.formats.mjcf import read_mjcf

@@ -9,10 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.model.arrays import ArrayTable
-from carom.model.launch import Launch, argument_indices
-from carom.model.real import NUMPY_REAL
-from carom.physics.motor_commands import (
+from carom.layouts.motor_commands import (
     FORCES,
     KDS,
     KPS,
@@ -22,13 +19,15 @@ from carom.physics.motor_commands import (
     VELOCITIES,
     VELOCITY,
     MotorCommands,
-    command_motors_kernel,
 )
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import command_motors_kernel
+from carom.native.launch import Launch
+from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
     from carom.world import World
 
-_DEVICE = "cpu"
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
 _MODES = (VELOCITY, TORQUE, POSITION)
 
@@ -69,16 +68,15 @@ class MotorGroup:
         )
         self._refused: memoryview[int] = arrays["joint_refused"].data
         defaults = (NUMPY_REAL(force), NUMPY_REAL(kp), NUMPY_REAL(kd))
-        state = world.arrays.state.struct(_DEVICE)
+        state = world.arrays.state.struct()
         asked = (VELOCITY, 0, NUMPY_REAL(0.0))
         self._launch = Launch(
             command_motors_kernel,
             1,
-            [state, commands.struct(_DEVICE), 0, count, *defaults, *asked],
-            _DEVICE,
+            [state, commands.struct(), 0, count, *defaults, *asked],
         )
         self._run: Callable[[], None] = self._launch.brief_function
-        indices = argument_indices(command_motors_kernel)
+        indices = command_motors_kernel.indices
         self._places = [indices[name] for name in ("mode", "given", "time_step")]
         self._asked: tuple[float, ...] = ()
 
@@ -95,7 +93,7 @@ class MotorGroup:
         """Set the motors by one number for each joint, or by the default numbers where there is None.
 
         Args:
-            mode: `VELOCITY`, `TORQUE` or `POSITION` of `physics.motor_commands`.
+            mode: `VELOCITY`, `TORQUE` or `POSITION` of `carom.layouts.motor_commands`.
             time_step: Of a step [s].
             positions: Targets [rad or m], taken to the nearest bound when they are beyond; 0 by default.
             velocities: Targets [rad/s or m/s]; 0 by default.

@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.collision.closest import Searches, closest_points_kernel
 from carom.description.pose import Vector3
 from carom.engine.touch_arrays import TouchArrays
-from carom.model.arrays import ArrayTable
-from carom.model.launch import KernelStructs
-from carom.model.real import NUMPY_REAL
+from carom.layouts.queries import Searches
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import closest_points_kernel
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable
 from carom.question import Question
 
 _ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
@@ -48,10 +49,9 @@ class PairSearch:
     Args:
         structs: Warp structs by the name kernels give them.
         touch: The arrays of shapes.
-        device: Warp device name.
     """
 
-    def __init__(self, structs: KernelStructs, touch: TouchArrays, device: str) -> None:
+    def __init__(self, structs: KernelStructs, touch: TouchArrays) -> None:
         self._shapes = touch.shapes.table.numpy
         self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
         self._asked: ShapePairs | None = None
@@ -60,7 +60,6 @@ class PairSearch:
             structs,
             "searches",
             ArrayTable(Searches, 1),
-            device,
             {"reach": NUMPY_REAL(0.0)},
         )
         self._view()

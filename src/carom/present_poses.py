@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from carom.model.launch import KernelStructs, launch
-from carom.physics.kinematics import link_poses_kernel
+from carom.native.kernels import link_poses_kernel
+from carom.native.launch import KernelStructs
 
 
 class PresentPoses:
@@ -15,14 +15,13 @@ class PresentPoses:
     Args:
         poses: The memory of `link_pose`.
         structs: Warp structs by the name kernels give them.
-        device: Warp device name.
     """
 
     __slots__ = ("_before", "_find", "_poses")
 
-    def __init__(self, poses: memoryview[int], structs: KernelStructs, device: str) -> None:
+    def __init__(self, poses: memoryview[int], structs: KernelStructs) -> None:
         self._poses = poses
-        self._find = launch(link_poses_kernel, structs, device, first_world=0).function
+        self._find = structs.launch(link_poses_kernel, first_world=0).function
         self._before: list[bytes] = []
 
     def __enter__(self) -> memoryview[int]:

@@ -1,33 +1,26 @@
-"""Where the time of a step goes: the same step in more launches, each of them timed."""
+"""Where the time of a step goes: its launches, each of them timed."""
 
 from __future__ import annotations
 
 import time
 from types import TracebackType
 
-from carom.collision.stages import broad_phase_kernel, narrow_phase_kernel
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
-from carom.engine.program import Plan, Program, step_program
-from carom.model.launch import KernelStructs, Launch
-from carom.model.status import STATUS, WELL
-from carom.physics.kinematics import link_poses_kernel
-from carom.physics.stages import constraints_kernel, free_motion_kernel, islands_kernel, motion_kernel
+from carom.engine.program import DETECTION, MOTION, Plan, Program, step_program
+from carom.layouts.status import STATUS, WELL
+from carom.native.launch import KernelStructs, Launch
 
-# Stages by the kernels that are launched for them.
-_DETECTION = {
-    "link poses": link_poses_kernel,
-    "broad phase": broad_phase_kernel,
-    "narrow phase": narrow_phase_kernel,
-}
-_MOTION = {
-    "islands": islands_kernel,
-    "free motion": free_motion_kernel,
-    "constraints": constraints_kernel,
-    "integration": motion_kernel,
-}
-STAGES = (*_DETECTION, *_MOTION)
-_STAGE_OF = {kernel: stage for stage, kernel in (*_DETECTION.items(), *_MOTION.items())}
+STAGES = (
+    "link poses",
+    "broad phase",
+    "narrow phase",
+    "islands",
+    "free motion",
+    "constraints",
+    "integration",
+)
+_STAGE_OF = dict(zip((*DETECTION, *MOTION), STAGES, strict=True))
 
 
 class StagedStepper(Stepper):
@@ -99,10 +92,6 @@ class Profile:
         self._engine.step_by(step_program)
 
 
-def staged_program(structs: KernelStructs, device: str, plan: Plan) -> Program:
-    """The launches of a step as `step_program` gives them, in stages."""
-    program = step_program(structs, device, plan._replace(coupled=True))
-    detection = [structs.launch(kernel, device, first_world=0) for kernel in _DETECTION.values()]
-    stages = [structs.launch(kernel, device, first_world=0) for kernel in _MOTION.values()]
-    motion = [*program.motion[:-2], *stages, program.motion[-1]] if plan.sleeping else stages
-    return program._replace(detection=detection if plan.touching else [], motion=motion)
+def staged_program(structs: KernelStructs, plan: Plan) -> Program:
+    """The launches of a step as `step_program` gives them, in stages even if bodies do not touch."""
+    return step_program(structs, plan._replace(coupled=True))

@@ -9,20 +9,18 @@ from struct import Struct
 
 import numpy as np
 
-from carom.collision.closest import place_shapes_kernel
-from carom.collision.hierarchy import IN_HIERARCHY, PLACED, READINESS
-from carom.collision.manifold import THERE
-from carom.collision.places import places_struct
-from carom.collision.rays import prepare_rays_kernel
 from carom.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
+from carom.engine.places import places_struct
 from carom.engine.touch_arrays import TouchArrays
-from carom.model.arrays import ArrayTable
+from carom.layouts.codes import PLANE
+from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
+from carom.layouts.types import NUMPY_REAL
 from carom.model.bounds import Bounds, turned_box
-from carom.model.codes import PLANE
-from carom.model.launch import KernelStructs, Launch, launch
-from carom.model.real import NUMPY_REAL
+from carom.native.kernels import place_shapes_kernel, prepare_rays_kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
 from carom.pair_search import NearestPoints, PairSearch
 from carom.ray_cast import Points, RayCast, RayHit
 
@@ -35,13 +33,12 @@ class Queries:
     """Launches of the collision queries of a world, over its present arrays.
 
     Args:
-        structs: Warp structs by the name kernels give them.
+        structs: Structs by the name kernels give them.
         positions: The memory of the coordinates of all bodies.
         places: Body and link that each row of the link arrays stands for.
         present_poses: `World.present_poses`.
         touch: The arrays of shapes.
         pairs: Room for the intermediate results of collision detection.
-        device: Warp device name.
     """
 
     def __init__(
@@ -52,12 +49,10 @@ class Queries:
         present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         touch: TouchArrays,
         pairs: ArrayTable,
-        device: str,
     ) -> None:
         self._structs = structs
-        structs["places"] = places_struct(places, device)
+        structs["places"] = places_struct(places)
         self._link_count = len(places)
-        self._device = device
         self._touch = touch
         self._positions = positions
         self._present_poses = present_poses
@@ -72,21 +67,21 @@ class Queries:
     @cached_property
     def _make_ready(self) -> dict[int, Launch]:
         return {
-            PLACED: launch(place_shapes_kernel, self._structs, self._device),
-            IN_HIERARCHY: launch(prepare_rays_kernel, self._structs, self._device, first_world=0),
+            PLACED: self._structs.launch(place_shapes_kernel),
+            IN_HIERARCHY: self._structs.launch(prepare_rays_kernel, first_world=0),
         }
 
     @cached_property
     def _cast(self) -> RayCast:
-        return RayCast(self._structs, self._device)
+        return RayCast(self._structs)
 
     @cached_property
     def _search(self) -> PairSearch:
-        return PairSearch(self._structs, self._touch, self._device)
+        return PairSearch(self._structs, self._touch)
 
     @cached_property
     def _contacts(self) -> ContactSearch:
-        return ContactSearch(self._structs, self._device)
+        return ContactSearch(self._structs)
 
     @cached_property
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

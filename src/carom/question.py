@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from carom.model.arrays import ArrayTable
-from carom.model.launch import KernelStructs, Launch, argument_indices, launch
+from carom.native.kernels import Kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
 
 # A kernel is done with as many items as this before another thread would have had its turn.
 _FEW = 64
@@ -23,21 +24,19 @@ class Question:
 
     Args:
         kernel: The kernel.
-        structs: Warp structs by the name kernels give them; that of the arrays is put there.
+        structs: Structs by the name kernels give them; that of the arrays is put there.
         name: Name of the arrays among these structs.
         arrays: The arrays.
-        device: Warp device name.
         asked: The scalars that may differ from time to time, as they are at first.
         **fixed: The other scalars.
     """
 
     def __init__(
         self,
-        kernel: Any,
+        kernel: Kernel,
         structs: KernelStructs,
         name: str,
         arrays: ArrayTable,
-        device: str,
         asked: dict[str, Any],
         **fixed: int,
     ) -> None:
@@ -45,9 +44,8 @@ class Question:
         self._kernel = kernel
         self._structs = structs
         self._name = name
-        self._device = device
         self._scalars = {"count": 0, **asked, **fixed}
-        indices = argument_indices(kernel)
+        indices = kernel.indices
         self._places = [indices[scalar] for scalar in ("count", *asked)]
         self._prepare()
 
@@ -66,8 +64,8 @@ class Question:
 
     def _prepare(self) -> None:
         (self.room,) = self.arrays.capacity.values()
-        self._structs[self._name] = self.arrays.struct(self._device)
-        self._launch: Launch = launch(self._kernel, self._structs, self._device, **self._scalars)
+        self._structs[self._name] = self.arrays.struct()
+        self._launch: Launch = self._structs.launch(self._kernel, **self._scalars)
         self._run: Callable[[], None] = self._launch.function
         self._run_briefly: Callable[[], None] = self._launch.brief_function
         self._asked: tuple[float, ...] = ()

@@ -8,12 +8,12 @@ from itertools import chain
 
 import numpy as np
 
-from carom.collision.ray_packets import Rays
-from carom.collision.rays import rays_kernel
 from carom.description.pose import Vector3
-from carom.model.arrays import ArrayTable, numbers_of
-from carom.model.launch import KernelStructs
-from carom.model.real import NUMPY_REAL
+from carom.layouts.queries import Rays
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import rays_kernel
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable, numbers_of
 from carom.question import Question
 
 Points = np.ndarray | Sequence[Sequence[float]]
@@ -32,16 +32,14 @@ class RayCast:
 
     Args:
         structs: Warp structs by the name kernels give them, `places` among them.
-        device: Warp device name.
     """
 
-    def __init__(self, structs: KernelStructs, device: str) -> None:
+    def __init__(self, structs: KernelStructs) -> None:
         self._cast = Question(
             rays_kernel,
             structs,
             "rays",
             ArrayTable(Rays),
-            device,
             {"mask": -1, "hit_number": 0, "separation": NUMPY_REAL(0.0)},
             first_world=0,
             threads=1,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.collision.manifold import THERE
+from carom.layouts.contacts import THERE
 from carom.saved.records import Reader
 from carom.snapshot import BodyLayout, Layout, Snapshot, layout, return_to, take
 

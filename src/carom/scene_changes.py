@@ -14,7 +14,7 @@ from carom.body import Body
 from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BodySpec
-from carom.model.undo import Undo
+from carom.native.undo import Undo
 from carom.user_constraints import UserConstraint
 
 if TYPE_CHECKING:

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.collision.manifold import THERE
 from carom.errors import StateError
-from carom.model.codes import BASE_VELOCITIES
+from carom.layouts.codes import BASE_VELOCITIES
+from carom.layouts.contacts import THERE
 
 if TYPE_CHECKING:
-    from carom.model.arrays import ArrayTable
+    from carom.native.tables import ArrayTable
     from carom.world import World
 
 # Axes of what is not the state of bodies: what became of the last step, impulses of user constraints.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.model.arrays import ArrayTable
+from carom.native.tables import ArrayTable
 
 # Flat arrays of the state that users read or write: attribute of `StateViews`, field of `State`.
 VIEWS = {

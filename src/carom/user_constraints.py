@@ -10,8 +10,8 @@ import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.touch_arrays import TouchArrays
-from carom.model.arrays import ArrayTable
-from carom.model.codes import UserConstraintKind
+from carom.layouts.codes import UserConstraintKind
+from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
     from carom.body import Body

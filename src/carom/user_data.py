@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.undo import Undo
+from carom.native.undo import Undo
 
 WHOLE = -1
 """In the place of a visual shape: the text belongs to the link, or to the body if that is its base."""

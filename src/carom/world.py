@@ -15,20 +15,20 @@ from carom.checks import vector
 from carom.constraints import JointConstraints
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description_loading import DescriptionLoading
-from carom.engine.engine import DEVICE, Engine
+from carom.engine.engine import Engine
+from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.engine.touch_arrays import TouchArrays
 from carom.errors import SimulationError
 from carom.faults import cause_in
+from carom.layouts.codes import UserConstraintKind
+from carom.layouts.status import STATUS, WELL
 from carom.log import Log, Observer, SubstepObserver
-from carom.model.arrays import ArrayTable
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
-from carom.model.codes import UserConstraintKind
-from carom.model.launch import KernelStructs, TreeLaunch
-from carom.model.status import STATUS, WELL
-from carom.model.undo import Undo
-from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
-from carom.physics.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
+from carom.native.launch import KernelStructs, TreeLaunch
+from carom.native.tables import ArrayTable
+from carom.native.undo import Undo
 from carom.present_poses import PresentPoses
 from carom.queries import Queries
 from carom.recordable import Recordable
@@ -508,7 +508,6 @@ class World(DescriptionLoading, Recordable, StateViews):
                 self.present_poses,
                 self.touch,
                 self.engine.workspace.pairs,
-                DEVICE,
             )
         return self._derived.queries
 
@@ -537,17 +536,17 @@ class World(DescriptionLoading, Recordable, StateViews):
         """A context in which `link_pose` is up to date with the coordinates of all bodies."""
         if self._derived.present_poses is None:
             poses = self.arrays.state.bytes_of("link_pose")
-            self._derived.present_poses = PresentPoses(poses, self._kernel_structs(), DEVICE)
+            self._derived.present_poses = PresentPoses(poses, self._kernel_structs())
         return self._derived.present_poses
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
         if self._derived.pose_launch is None:
-            self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs(), DEVICE)
+            self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
         self._derived.pose_launch(body.rows.tree)
 
     def update_link_velocities(self, body: Body) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
         if self._derived.twist_launch is None:
-            self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs(), DEVICE)
+            self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
         self._derived.twist_launch(body.rows.tree)

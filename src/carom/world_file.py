@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carom.constraints import JointConstraint
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.engine.parameters import EngineParameters
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
+from carom.layouts.codes import ConstraintKind, JointCode, UserConstraintKind
 from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.codes import ConstraintKind, JointCode, UserConstraintKind
-from carom.physics.parameters import EngineParameters
 from carom.saved.check import check_body, check_finite
 from carom.saved.container import MOST_BYTES, packed, unpacked
 from carom.saved.files import restored

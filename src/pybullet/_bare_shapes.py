@@ -57,8 +57,8 @@ def bare_shape(
     Raises:
         pybullet.error: The position is not three, or the orientation not four, finite numbers.
     """
+    from carom.layouts.flags import LoadFlags
     from carom.model.body_spec import BodySpec, LinkSpec
-    from carom.model.flags import LoadFlags
 
     problem = "getClosestPoints failed."
     name = f"collisionShape{side}"

@@ -98,7 +98,7 @@ def createConstraint(
     if kind == JOINT_GEAR:
         _check_gear(parent, parent_link, child, child_link)
 
-    from carom.model.codes import UserConstraintKind
+    from carom.layouts.codes import UserConstraintKind
 
     parent_frame = _frame(parentFramePosition, parentFrameOrientation, "parentFrame")
     child_frame = _frame(childFramePosition, childFrameOrientation, "childFrame")

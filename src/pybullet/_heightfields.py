@@ -126,7 +126,7 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
 def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
     from dataclasses import replace
 
-    from carom.model.flags import LoadFlags
+    from carom.layouts.flags import LoadFlags
     from carom.render.appearance import appearance_of
 
     appearance = appearance_of(client.world)

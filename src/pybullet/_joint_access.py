@@ -11,7 +11,7 @@ from math import inf
 from struct import Struct
 from typing import TYPE_CHECKING, TypeGuard
 
-from carom.model.codes import (
+from carom.layouts.codes import (
     MOTOR_DAMPING,
     MOTOR_KD,
     MOTOR_KP,

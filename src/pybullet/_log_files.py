@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from carom.model.codes import JointCode
+from carom.layouts.codes import JointCode
 from pybullet._constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
 
 if TYPE_CHECKING:

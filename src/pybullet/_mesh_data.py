@@ -11,7 +11,7 @@ from carom.body import Body
 from carom.description import Collision, ConvexHull, Cylinder, Geometry, Mesh
 from carom.description.pose import Pose, Vector3
 from carom.geometry.hull import extreme_points
-from carom.model.flags import LoadFlags
+from carom.layouts.flags import LoadFlags
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import mesh_geometries, shape_pieces
 

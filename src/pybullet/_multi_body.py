@@ -324,8 +324,8 @@ def _joint(
 
 def _assembled(robot: Robot, flags: int) -> BodySpec:
     from carom.errors import CaromError
+    from carom.layouts.flags import LoadFlags
     from carom.model.assemble import assemble
-    from carom.model.flags import LoadFlags
 
     of_files = (
         LoadFlags.MERGE_FIXED_LINKS

@@ -50,8 +50,8 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
     if body is None:
         return
 
+    from carom.layouts.flags import LoadFlags
     from carom.link_dynamics import LinkDynamics
-    from carom.model.flags import LoadFlags
     from carom.model.scaled_shapes import scaled_collisions
 
     spec = body.spec.base

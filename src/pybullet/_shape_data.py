@@ -78,7 +78,7 @@ def getCollisionShapeData(
     client = client_of(physicsClientId)
     body, link = _body_and_link(client, objectUniqueId, linkIndex, _NO_COLLISION_DATA)
 
-    from carom.model.flags import LoadFlags
+    from carom.layouts.flags import LoadFlags
     from carom.model.inertia import placement
 
     spec = body.link_spec(link)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from carom.description import Collision, Visual
-from carom.model.undo import Undo
+from carom.native.undo import Undo
 
 Shape = TypeVar("Shape")
 

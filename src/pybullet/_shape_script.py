@@ -21,8 +21,8 @@ from carom.description import (
     Sphere,
     TriangleMesh,
 )
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import LinkSpec
-from carom.model.flags import LoadFlags
 
 if TYPE_CHECKING:
     from carom.body import Body

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.algorithms.ask import asking
-from carom.model.arrays import numbers_of
-from carom.model.real import NUMPY_REAL
+from carom.layouts.types import NUMPY_REAL
+from carom.native.tables import numbers_of
 
 NUMBERS = st.floats(-1e6, 1e6)
 

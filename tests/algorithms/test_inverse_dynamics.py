@@ -15,7 +15,7 @@ from carom.algorithms import inverse_dynamics, mass_matrix
 from carom.algorithms.motion import forces_of_motion
 from carom.algorithms.moving_tree import moving_tree
 from carom.description.transform import quaternion_from_rpy, rpy_from_quaternion
-from carom.model.codes import MOTOR_MAX_IMPULSE
+from carom.layouts.codes import MOTOR_MAX_IMPULSE
 
 GRAVITY = (0.4, -0.2, -9.81)
 COMPONENTS = st.floats(-1.0, 1.0)

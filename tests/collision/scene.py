@@ -7,25 +7,30 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import warp as wp
 from numpy.typing import ArrayLike
 
-from carom.collision.capacity import scratch_capacity
-from carom.collision.closest import Searches, closest_points_kernel, place_shapes_kernel
-from carom.collision.collide import collide_kernel
-from carom.collision.places import Places
-from carom.collision.ray_packets import Rays
-from carom.collision.rays import prepare_rays_kernel, rays_kernel
+from carom.engine.detection_capacity import scratch_capacity
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
-from carom.model.arrays import ArrayTable
-from carom.model.codes import Rolling, ShapeKind
-from carom.model.contact_structs import Contacts, Pairs, Shapes
-from carom.model.real import NUMPY_REAL
-from carom.model.status import OVERFLOW, STATUS
-from carom.model.structs import ENTRY_VIEWS, Model, Scratch, Settings, State
-from carom.physics.step_ends import abandon_step_kernel, begin_step_kernel
+from carom.layouts.codes import Rolling, ShapeKind
+from carom.layouts.contacts import Contacts, Pairs, Shapes
+from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, Settings, State
+from carom.layouts.queries import Places, Rays, Searches
+from carom.layouts.status import OVERFLOW, STATUS
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import (
+    abandon_step_kernel,
+    begin_step_kernel,
+    broad_phase_kernel,
+    closest_points_kernel,
+    narrow_phase_kernel,
+    place_shapes_kernel,
+    prepare_rays_kernel,
+    rays_kernel,
+)
+from carom.native.launch import Launch
+from carom.native.tables import ArrayTable
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 
@@ -191,43 +196,52 @@ class Scene:
         self.numpy("state")["link_pose"][0, row] = np.concatenate([position, orientation])
 
     def structs(self) -> dict[str, Any]:
-        return {name: table.struct("cpu") for name, table in self.tables.items()}
+        return {name: table.struct() for name, table in self.tables.items()}
 
     def collide(self) -> None:
         """Run collision detection, as the first substep of a step; what does not fit changes no contacts."""
         structs = self.structs()
         self._launch(begin_step_kernel, structs, "model", "state", "scratch", "pairs", scalars=(0,))
-        self._launch(collide_kernel, structs, "shapes", "model", "state", "scratch", "contacts", "pairs")
+        arrays = "shapes", "model", "state", "scratch", "pairs"
+        self._launch(broad_phase_kernel, structs, *arrays)
+        if self.status[STATUS] != OVERFLOW:
+            arrays = (
+                structs["shapes"],
+                structs["model"],
+                structs["state"],
+                structs["contacts"],
+                structs["pairs"],
+            )
+            Launch(narrow_phase_kernel, 1, [*arrays, 0])()
         if self.status[STATUS] == OVERFLOW:
             self._launch(abandon_step_kernel, structs, "model", "state", "scratch", "contacts", "pairs")
 
     def _launch(self, kernel, structs: dict[str, Any], *names: str, scalars: Sequence[int] = ()) -> None:
         first_world = 0
-        wp.launch(kernel, 1, [self.settings, *(structs[name] for name in names), *scalars, first_world])
+        arguments = [self.settings, *(structs[name] for name in names), *scalars, first_world]
+        Launch(kernel, 1, arguments)()
 
     @property
     def status(self) -> np.ndarray:
-        """What became of the last collision detection: columns of `carom.model.status`."""
+        """What became of the last collision detection: columns of `carom.layouts.status`."""
         return self.numpy("state")["status_entry"][0]
 
     def closest(self, pairs: Sequence[tuple[int, int]], reach: float = 1e6) -> np.ndarray:
         """Nearest points: (n, 8) point on b, normal on b, distance, 1 if within reach."""
         structs = self.structs()
-        wp.launch(
-            place_shapes_kernel,
-            dim=1,
-            inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"]],
-        )
+        Launch(
+            place_shapes_kernel, 1, [self.settings, structs["shapes"], structs["state"], structs["pairs"]]
+        )()
         count = len(pairs)
         table = ArrayTable(Searches)
         table.reserve({"search": count})
         for side, name in enumerate(("search_first", "search_second")):
             table.numpy[name][0, :count] = [pair[side] for pair in pairs]
-        wp.launch(
+        Launch(
             closest_points_kernel,
-            dim=1,
-            inputs=[structs["shapes"], structs["pairs"], table.struct("cpu"), count, NUMPY_REAL(reach)],
-        )
+            1,
+            [structs["shapes"], structs["pairs"], table.struct(), count, NUMPY_REAL(reach)],
+        )()
         found = table.numpy["search_count"][0, 0]
         nearest = np.zeros((count, 8))
         rows = table.numpy["search_pair"][0, :found]
@@ -238,11 +252,9 @@ class Scene:
     def rays(self, starts, ends, mask: int = -1, hit_number: int = 0, separation: float = 0.0):
         """Shape (-1 for none), fraction and normal of each ray's hit."""
         structs = self.structs()
-        wp.launch(
-            prepare_rays_kernel,
-            dim=1,
-            inputs=[self.settings, structs["shapes"], structs["state"], structs["pairs"], 0],
-        )
+        Launch(
+            prepare_rays_kernel, 1, [self.settings, structs["shapes"], structs["state"], structs["pairs"], 0]
+        )()
         starts, ends = (np.reshape(points, (-1, 3)) for points in (starts, ends))
         count, threads = len(starts), 2
         table = ArrayTable(Rays)
@@ -251,17 +263,17 @@ class Scene:
         places = ArrayTable(Places)
         places.reserve({"place": self.settings.shape_count})
         question = (0, count, threads, mask, hit_number, NUMPY_REAL(separation))
-        wp.launch(
+        Launch(
             rays_kernel,
-            dim=threads,
-            inputs=[
+            threads,
+            [
                 structs["shapes"],
                 structs["pairs"],
-                places.struct("cpu"),
-                table.struct("cpu"),
+                places.struct(),
+                table.struct(),
                 *question,
             ],
-        )
+        )()
         return tuple(table.numpy[name][:count] for name in ("ray_shape", "ray_fraction", "ray_normal"))
 
     @property

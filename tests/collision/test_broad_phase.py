@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.collision.scene import Scene, box, plane, sphere
 
-from carom.model.flags import LoadFlags
+from carom.layouts.flags import LoadFlags
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 

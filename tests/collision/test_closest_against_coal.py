@@ -19,7 +19,7 @@ from tests.collision.scene import (
     triangles,
 )
 
-from carom.model.codes import ShapeKind
+from carom.layouts.codes import ShapeKind
 
 coal = pytest.importorskip("coal", reason="it has no wheels for Windows")
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, box, capsule, cylinder, hull, plane, sphere
 
-from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
+from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.5
 UPRIGHT_X = (0, np.sqrt(0.5), 0, np.sqrt(0.5))

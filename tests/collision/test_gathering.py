@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, plane
 
-from carom.model.codes import Rolling
-from carom.model.status import CONTACTS_WANTED
+from carom.layouts.codes import Rolling
+from carom.layouts.status import CONTACTS_WANTED
 
 RADIUS, HALF_LENGTH, BREAKING = 0.1, 0.15, 0.004
 LYING = (2**-0.5, 0.0, 0.0, 2**-0.5)

@@ -7,7 +7,7 @@ import pytest
 from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth
 
 from carom import World
-from carom.model.flags import ActivationChange
+from carom.layouts.flags import ActivationChange
 
 BALLS, FALL = 40, 0.05
 

@@ -12,9 +12,9 @@ from tests.differences import differences
 
 from carom.errors import DescriptionError
 from carom.formats import read_urdf
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
-from carom.model.flags import LoadFlags
 
 ANSWERS = json.loads(Path(__file__).with_name("oracle.json").read_text(encoding="utf-8"))
 

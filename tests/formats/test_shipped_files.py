@@ -15,8 +15,8 @@ from carom.errors import DescriptionError
 from carom.formats import read_urdf
 from carom.formats.any_file import read_robots
 from carom.formats.urdf_writer import urdf_text
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
-from carom.model.flags import LoadFlags
 
 DATA = Path(pybullet_data.getDataPath())
 FILES = sorted(file for pattern in ("**/*.urdf", "**/*.sdf", "mjcf/*.xml") for file in DATA.glob(pattern))

@@ -18,9 +18,9 @@ from carom.formats.mesh.collada import read_collada
 from carom.formats.mesh.obj import read_obj
 from carom.formats.mesh.stl import read_stl
 from carom.formats.urdf.reader import parse_urdf
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.flags import LoadFlags
 
 SHIPPED = Path(__file__).parents[2] / "src" / "pybullet_data"
 LARGEST = 15_000

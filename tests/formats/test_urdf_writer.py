@@ -23,9 +23,9 @@ from carom.formats.mjcf import read_mjcf
 from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import roll_pitch_yaw, urdf_text
+from carom.layouts.flags import LoadFlags
 from carom.loading import mjcf_bodies, urdf_body
 from carom.model.assemble import assemble
-from carom.model.flags import LoadFlags
 
 URDFS = sorted(DATA.glob("*.urdf"))
 ROBOTS = [

@@ -11,8 +11,8 @@ from tests.physics.robots import random_tree
 import pybullet as p
 import pybullet_data
 from carom import World
+from carom.layouts.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
 from carom.model.body_spec import BASE
-from carom.model.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
 from pybullet._clients import clients
 
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from tests.gpu.native_device import NativeDevice
 
 from carom import World
-from carom.engine.parallel import Extent, ParallelStep
 from carom.engine.program import Plan
 from carom.engine.prospects import can_sleep
 from carom.engine.workspace import Workspace
-from carom.model.arrays import ArrayTable
-
-DEVICE = "cpu"
+from carom.gpu.parallel_step import Extent, ParallelStep
+from carom.native.tables import ArrayTable
 
 
 class SideBySide:
@@ -52,13 +51,13 @@ class SideBySide:
         workspace.couplings.reserve({"coupling": rows, "jacobian": 8 * rows, "run": 8 * rows})
         shared = {
             "settings": first.engine.structs()["settings"],
-            **arrays.structs(DEVICE),
-            **touch.structs(DEVICE),
+            **arrays.structs(),
+            **touch.structs(),
         }
         touching, sleeping = first.engine.can_touch, can_sleep(first.arrays)
         self.coupled = touching or sleeping or touch.user_count > 0
         self.step = ParallelStep(
-            workspace.bind(shared, DEVICE),
+            workspace.bind(shared),
             Extent(
                 len(worlds),
                 arrays.used["tree"],
@@ -67,7 +66,7 @@ class SideBySide:
                 workspace.pairs.capacity["pair"],
             ),
             max(1, first.parameters.substeps),
-            DEVICE,
+            NativeDevice(),
             Plan(touching, sleeping, self.coupled),
         )
 

@@ -6,7 +6,7 @@ import pytest
 from tools.gpu.compile import compile_modules
 from tools.gpu.resources import Resources, find_assembler, parse_report, resources_of
 
-from carom.warmup import CUDA_MODULES
+from carom.native.kernel_modules import CUDA_MODULES
 
 SPILLS = {
     "pair_candidates_kernel": 12_000,

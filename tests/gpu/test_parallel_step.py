@@ -7,9 +7,9 @@ import pytest
 from tests.gpu.scenes import scene
 from tests.gpu.side_by_side import SideBySide
 
-from carom.collision.manifold import THERE
 from carom.errors import SimulationError
-from carom.model.status import CONTACTS_WANTED, OVERFLOW, STATUS
+from carom.kernels.contact.manifold import THERE
+from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, STATUS
 
 COUNT = 3
 

@@ -11,7 +11,7 @@ import numpy as np
 
 import pybullet as p
 import pybullet_data
-from carom.model.arrays import ArrayTable
+from carom.native.tables import ArrayTable
 from pybullet._clients import clients
 
 _ROBOT = """<robot name="noted"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"

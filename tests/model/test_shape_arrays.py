@@ -26,11 +26,11 @@ from carom.description import (
 from carom.description.pose import IDENTITY
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
+from carom.layouts.codes import ShapeKind
+from carom.layouts.flags import LoadFlags
 from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows, WorldArrays
-from carom.model.codes import ShapeKind
-from carom.model.flags import LoadFlags
 from carom.model.shape_arrays import ShapeArrays
 
 MESHES = Path(__file__).parents[1] / "formats" / "data" / "meshes"

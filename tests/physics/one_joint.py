@@ -10,7 +10,7 @@ import numpy as np
 from tests.physics.robots import pendulum
 
 from carom import Body, World
-from carom.model.codes import (
+from carom.layouts.codes import (
     MOTOR_KD,
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,

@@ -11,8 +11,8 @@ import numpy as np
 from carom import Body, World
 from carom.description import JointType, Pose
 from carom.description.pose import IDENTITY, Quaternion, Vector3
+from carom.layouts.codes import MOTOR_MAX_IMPULSE
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
-from carom.model.codes import MOTOR_MAX_IMPULSE
 
 MOVING_TYPES = (
     JointType.REVOLUTE,

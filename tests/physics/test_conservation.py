@@ -8,8 +8,8 @@ from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulu
 
 from carom import Body, World
 from carom.description import JointType
+from carom.layouts.codes import MOTOR_VELOCITY
 from carom.model.body_spec import BodySpec
-from carom.model.codes import MOTOR_VELOCITY
 
 TIME_STEPS = [1.0 / 240, 1.0 / 480, 1.0 / 960, 1.0 / 1920]
 

@@ -19,7 +19,7 @@ from tests.physics.contact_scenes import (
 from tests.physics.robots import coordinates
 
 from carom import Body, World
-from carom.physics.parameters import DEFAULT_TIME_STEP
+from carom.engine.parameters import DEFAULT_TIME_STEP
 
 
 def exact() -> World:

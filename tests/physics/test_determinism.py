@@ -4,7 +4,7 @@ import numpy as np
 from tests.physics.robots import coordinates, put_in_motion, random_tree
 
 from carom import World
-from carom.model.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
+from carom.layouts.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
 
 
 def busy_world() -> World:

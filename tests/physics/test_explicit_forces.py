@@ -8,8 +8,8 @@ from tests.physics.one_joint import DT, INERTIA, OFF, Motor, free_rate, hanging_
 
 from carom import Body
 from carom.description import JointType
+from carom.layouts.codes import PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
 from carom.model.body_spec import BASE
-from carom.model.codes import PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
 
 
 def loose_rod(**joint: Any) -> Body:

@@ -20,7 +20,7 @@ from tests.physics.one_joint import (
 
 from carom import Body
 from carom.description import JointType
-from carom.model.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_VELOCITY, MOTOR_VELOCITY_CLAMP
+from carom.layouts.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_VELOCITY, MOTOR_VELOCITY_CLAMP
 
 
 def assert_steps_follow(body: Body, motor: Motor, q: float, v: float, count: int = 3) -> None:

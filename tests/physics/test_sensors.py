@@ -11,8 +11,8 @@ from tests.physics.robots import ALL_TYPES, coordinates, let_go, put_in_motion, 
 
 from carom import Body, World
 from carom.description import JointType, Pose
+from carom.layouts.codes import MOTOR_MAX_IMPULSE, MOTOR_VELOCITY
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.codes import MOTOR_MAX_IMPULSE, MOTOR_VELOCITY
 
 WORLD_AXES, ABOUT_JOINT = 1, 2
 

@@ -11,14 +11,8 @@ from tests.physics.robots import joint_coordinates, let_go, random_rotation
 from carom import Body, World
 from carom.algorithms import mass_matrix
 from carom.description import JointType, Pose
+from carom.layouts.codes import MOTOR_DAMPING, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION, MOTOR_TARGET_W
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
-from carom.model.codes import (
-    MOTOR_DAMPING,
-    MOTOR_KP,
-    MOTOR_MAX_IMPULSE,
-    MOTOR_POSITION,
-    MOTOR_TARGET_W,
-)
 
 DT = 1.0 / 240
 ERP = 0.2

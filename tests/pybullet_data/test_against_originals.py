@@ -26,10 +26,11 @@ from carom.formats.mjcf import read_mjcf
 from carom.formats.placed import PlacedRobot
 from carom.formats.sdf import read_sdf
 from carom.formats.urdf import read_urdf
+from carom.layouts.contacts import MARGIN
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.bounds import MARGIN, Bounds, placed_bounds
-from carom.model.flags import LoadFlags
+from carom.model.bounds import Bounds, placed_bounds
 from carom.model.mjcf_inertia import set_mjcf_inertias
 
 TYPE_NUMBERS = {

@@ -9,8 +9,8 @@ from drawing import add_collision_only, add_shape, draw
 from PIL import Image
 
 from carom.description import Box, Material, Mesh, Plane, Sphere, Visual
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.flags import LoadFlags
 from carom.render.appearance import GREY, WHITE, appearance_of
 from carom.render.renderer import renderer_of
 from carom.world import World

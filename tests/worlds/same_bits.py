@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from carom import World, Worlds
-from carom.collision.manifold import THERE
-from carom.model.arrays import ArrayTable
+from carom.layouts.contacts import THERE
+from carom.native.tables import ArrayTable
 
 # What became of the last step, and what a run of several steps counts, is no state.
 _NOT_STATE = ("status_entry",)

@@ -12,7 +12,7 @@ from tests.worlds.same_bits import assert_same_bits
 
 import pybullet_data
 from carom import Body, World, Worlds
-from carom.model.codes import UserConstraintKind
+from carom.layouts.codes import UserConstraintKind
 
 COUNT, STEPS = 4, 60
 # What has an effect only where the other body has it as well.

@@ -13,7 +13,7 @@ from tests.physics.test_contact_worlds import heap
 from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
 
 from carom import World, Worlds
-from carom.model.flags import ActivationChange
+from carom.layouts.flags import ActivationChange
 
 # The step of a scenario at which its world is copied, and how far the copies go on.
 CAPTURED_AT, STEPS = 5, 30

@@ -12,7 +12,7 @@ from pathlib import Path
 from tools.gpu.compile import ARCHITECTURE, compile_modules
 from tools.gpu.resources import find_assembler, resources_of
 
-from carom.warmup import CUDA_MODULES
+from carom.native.kernel_modules import CUDA_MODULES
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from carom.model.real import NUMPY_REAL
+from carom.layouts.types import NUMPY_REAL
 
 Ask = Callable[..., tuple[float, ...]]
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.algorithms.joint_frames import JointFrames
-from carom.algorithms.reach.structs import Chain, ChainSizes
-from carom.model.arrays import ArrayTable
+from carom.layouts.chain import Chain, ChainSizes
+from carom.layouts.codes import DOF_COUNT, POSITION_COUNT, JointCode
 from carom.model.body_spec import BASE
-from carom.model.codes import DOF_COUNT, POSITION_COUNT, JointCode
+from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
     from carom.body import Body

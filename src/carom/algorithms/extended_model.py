@@ -15,7 +15,7 @@ from carom.algorithms.moving_tree import MovingTree
 from carom.algorithms.nodes import Node
 from carom.description.pose import Vector3
 from carom.description.transform import matrix_vector, rotation_matrix, transposed
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 
 if TYPE_CHECKING:
     from carom.body import Body

@@ -17,10 +17,11 @@ from carom.algorithms.nodes import Node, joint_axes, skew
 from carom.description import Box, Capsule, Collision, Sphere
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rpy_from_quaternion
+from carom.layouts.codes import JointCode
+from carom.layouts.contacts import MARGIN
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, LinkSpec
-from carom.model.bounds import MARGIN, Bounds, shape_bounds
-from carom.model.codes import JointCode
-from carom.model.flags import LoadFlags
+from carom.model.bounds import Bounds, shape_bounds
 
 if TYPE_CHECKING:
     from carom.body import Body

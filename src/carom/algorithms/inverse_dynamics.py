@@ -10,7 +10,7 @@ import numpy as np
 from carom.algorithms.moving_tree import moving_tree
 from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotation_matrix
-from carom.model.codes import BASE_POSITIONS
+from carom.layouts.codes import BASE_POSITIONS
 
 if TYPE_CHECKING:
     from carom.body import Body

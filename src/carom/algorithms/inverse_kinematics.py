@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.chain import BodyChain
-from carom.algorithms.reach.search import DAMPED, NULL_SPACE, SELECTIVE, inverse_kinematics_kernel
-from carom.algorithms.reach.structs import Search
-from carom.model.arrays import ArrayTable, numbers_of
-from carom.model.codes import BASE_POSITIONS
-from carom.model.launch import Launch
-from carom.model.real import NUMPY_REAL
+from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE, Search
+from carom.layouts.codes import BASE_POSITIONS
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import inverse_kinematics_kernel
+from carom.native.launch import Launch
+from carom.native.tables import ArrayTable, numbers_of
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -26,7 +26,6 @@ DEFAULT_ITERATIONS = 20
 DEFAULT_THRESHOLD = 1e-4
 DEFAULT_DAMPING = 0.5
 _LEAST_DAMPING = 1e-9
-_DEVICE = "cpu"
 _NUMBER = np.dtype(NUMPY_REAL)
 _NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
@@ -154,8 +153,7 @@ class _Solver:
         self._launch = Launch(
             inverse_kinematics_kernel,
             1,
-            [sizes, chain.arrays.struct(_DEVICE), search.struct(_DEVICE), 0, 0, 0, 0, 0, 0.0, 0.0],
-            _DEVICE,
+            [sizes, chain.arrays.struct(), search.struct(), 0, 0, 0, 0, 0, 0.0, 0.0],
         )
 
     def set_targets(self, positions: Sequence[Numbers], orientations: Sequence[Numbers] | None) -> None:

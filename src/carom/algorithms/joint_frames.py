@@ -13,8 +13,8 @@ import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
 from carom.description.transform import compose, conjugate, multiplied, turn_of_z
+from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
-from carom.model.codes import JointCode
 
 if TYPE_CHECKING:
     from carom.body import Body

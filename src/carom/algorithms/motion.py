@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-import warp as wp
 
 from carom.algorithms.ask import Ask, asking
-from carom.algorithms.tree.motion import POSE, motion_kernel
-from carom.model.arrays import numbers_of
-from carom.model.codes import BASE_POSITIONS
-from carom.model.launch import Launch
-from carom.model.real import NUMPY_REAL, real
+from carom.layouts.codes import BASE_POSITIONS
+from carom.layouts.moving_tree import POSE
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import motion_kernel
+from carom.native.launch import Launch
+from carom.native.tables import array_view, numbers_of
 
 if TYPE_CHECKING:
     from carom.algorithms.moving_tree import MovingTree
-
-_DEVICE = "cpu"
 
 
 def forces_of_motion(tree: MovingTree, *, as_pybullet: bool = False) -> Ask:
@@ -41,7 +39,6 @@ def forces_of_motion(tree: MovingTree, *, as_pybullet: bool = False) -> Ask:
     positions = tree.joint_dofs if as_pybullet else tree.coordinates
     counts = (int(POSE), positions + (BASE_POSITIONS if tree.free else 0), tree.dofs, tree.dofs)
     numbers: np.ndarray = np.zeros(sum(counts), dtype=NUMPY_REAL)
-    question: Any = wp.array(numbers, dtype=real, device=_DEVICE, copy=False)
-    launch = Launch(motion_kernel, 1, [*tree.structs, question, int(as_pybullet)], _DEVICE)
+    launch = Launch(motion_kernel, 1, [*tree.structs, array_view(numbers), int(as_pybullet)])
     output = numbers_of(tree.arrays["output"])
     return asking(counts, numbers_of(numbers), launch.brief_function, output, tree.dofs)

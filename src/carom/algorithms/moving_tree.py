@@ -12,12 +12,12 @@ import numpy as np
 from carom.algorithms.ask import Ask
 from carom.algorithms.motion import forces_of_motion
 from carom.algorithms.nodes import End, Node, body_nodes
-from carom.algorithms.tree.dynamics import inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
-from carom.algorithms.tree.structs import BASE_MOTION, Tree, TreeSizes
-from carom.model.arrays import ArrayTable
-from carom.model.codes import BASE_VELOCITIES, POSITION_COUNT
-from carom.model.launch import Launch
-from carom.model.real import NUMPY_REAL
+from carom.layouts.codes import BASE_VELOCITIES, POSITION_COUNT
+from carom.layouts.moving_tree import BASE_MOTION, Tree, TreeSizes
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import Kernel, inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
+from carom.native.launch import Launch
+from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
     from carom.body import Body
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 Rows = tuple[tuple[float, ...], ...]
 Numbers = Sequence[float] | np.ndarray
 
-_DEVICE = "cpu"
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
 _SIZE = np.dtype(NUMPY_REAL).itemsize
 _JACOBIAN_ROWS = 6
@@ -81,7 +80,7 @@ class MovingTree:
         self.arrays: dict[str, Any] = table.numpy
         self._write_nodes(nodes, free=free)
         self._write_ends(ends)
-        self.structs: tuple[Any, Any] = (sizes, table.struct(_DEVICE))
+        self.structs: tuple[Any, Any] = (sizes, table.struct())
         self._jacobians: dict[int, Callable[[], None]] = {}
         self._links = range(-1, len(ends) - 1)
         self._put_base = self._writer(0, first_position)
@@ -172,8 +171,8 @@ class MovingTree:
     def _find_mass_matrix(self) -> Callable[[], None]:
         return self._launch(mass_matrix_kernel)
 
-    def _launch(self, kernel: Any, *arguments: int) -> Callable[[], None]:
-        return Launch(kernel, 1, [*self.structs, *arguments], _DEVICE).brief_function
+    def _launch(self, kernel: Kernel, *arguments: int) -> Callable[[], None]:
+        return Launch(kernel, 1, [*self.structs, *arguments]).brief_function
 
     def _rows(self, memory: memoryview) -> Rows:
         return tuple(self._row.iter_unpack(memory)) if self.dofs else ()

@@ -10,8 +10,8 @@ import numpy as np
 from carom.algorithms.joint_frames import JointFrames
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
+from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
-from carom.model.codes import JointCode
 
 if TYPE_CHECKING:
     from carom.body import Body

@@ -16,17 +16,16 @@ import numpy as np
 from carom.algorithms.extended_model import base_motion
 from carom.algorithms.extended_nodes import extended_nodes
 from carom.algorithms.moving_tree import MovingTree
-from carom.algorithms.tree.stable_pd import Control, stable_pd_kernel
-from carom.algorithms.tree.structs import BASE_MOTION
-from carom.model.arrays import ArrayTable, numbers_of
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.model.launch import Launch, argument_indices
-from carom.model.real import NUMPY_REAL
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.layouts.moving_tree import BASE_MOTION, Control
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import stable_pd_kernel
+from carom.native.launch import Launch
+from carom.native.tables import ArrayTable, numbers_of
 
 if TYPE_CHECKING:
     from carom.body import Body
 
-_DEVICE = "cpu"
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
 _UNSTATED_FORCE = 100000.0
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
@@ -106,9 +105,9 @@ class _Controller:
         given = numbers_of(tree.arrays["input"])
         self._position = given[int(BASE_MOTION) : rates]
         self._rate = given[rates : rates + tree.joint_dofs]
-        arguments = [*tree.structs, control.struct(_DEVICE), int(body.fixed_base), 0.0]
-        self._launch = Launch(stable_pd_kernel, 1, arguments, _DEVICE)
-        self._time_step_at = argument_indices(stable_pd_kernel)["time_step"]
+        arguments = [*tree.structs, control.struct(), int(body.fixed_base), 0.0]
+        self._launch = Launch(stable_pd_kernel, 1, arguments)
+        self._time_step_at = stable_pd_kernel.indices["time_step"]
 
     def torques(self, targets: Mapping[int, JointTarget], time_step: float) -> np.ndarray:
         self._take_state()

@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
+from carom.engine.parameters import EngineParameters
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.prospects import can_sleep, can_touch
 from carom.engine.settings import EngineSettings
 from carom.engine.threads import Threads
 from carom.engine.touch_arrays import TouchArrays
 from carom.engine.workspace import Workspace
+from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
-from carom.model.launch import KernelStructs, Launch
-from carom.model.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
-from carom.physics.parameters import EngineParameters
+from carom.native.launch import KernelStructs, Launch
 
-ProgramMaker = Callable[[KernelStructs, str, Plan], Program]
+ProgramMaker = Callable[[KernelStructs, Plan], Program]
 
-DEVICE = "cpu"
 MOST_STEPS = 64
 """Steps that can be asked for at once."""
 # Chunks of worlds for each thread: enough for uneven ones to even out.
@@ -43,7 +41,7 @@ class Engine:
     Attributes:
         arrays: Model and state of all bodies.
         touch: Shapes, contacts and user constraints.
-        status: What became of the last step of each world, (worlds, columns); see `model.status`.
+        status: What became of the last step of each world, (worlds, columns); see `carom.layouts.status`.
         due: Substeps of each of the steps that are asked for at once.
         changes: How often launches have had to be renewed.
         growths: How often arrays have been replaced by longer ones because something did not fit.
@@ -116,10 +114,10 @@ class Engine:
             workspace.fit(self.arrays, self.touch)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
-            **self.arrays.structs(DEVICE),
-            **self.touch.structs(DEVICE),
+            **self.arrays.structs(),
+            **self.touch.structs(),
         }
-        return [workspace.bind(shared, DEVICE) for workspace in workspaces]
+        return [workspace.bind(shared) for workspace in workspaces]
 
     # Steps
 
@@ -131,7 +129,7 @@ class Engine:
         """
         self._watched = watched
         plan = self._find_plan()
-        self.load(self._steppers, lambda structs: self._make_program(structs, DEVICE, plan))
+        self.load(self._steppers, lambda structs: self._make_program(structs, plan))
         self.run_prepared = self._steppers[0].run
         self._abandon = []
         whole = self._steppers[0].program.whole
@@ -201,7 +199,7 @@ class Engine:
 
     def _detect(self, worlds: np.ndarray | None = None) -> None:
         if not self._detection_ready:
-            self.load(self._detectors, partial(detection_program, device=DEVICE))
+            self.load(self._detectors, detection_program)
             self._detection_ready = True
         self.run(self._detectors, worlds)
 

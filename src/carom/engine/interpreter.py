@@ -1,23 +1,19 @@
-"""Performs programs of launches on the CPU, world after world, without Python in between.
+"""Performs programs of launches, world after world, without Python in between.
 
-A launch on the CPU is a C function, called with the addresses of its bounds and of its arguments. What
-calls these functions in turn is a kernel as well, whose one function is written in C: nothing else can call
-an address. A thread takes chunks of worlds from a list that all threads share, so that uneven ones even out,
-and takes each world through all of its steps while it is in the processor's caches.
+What calls the launches in turn is a native function, `carom_perform` in `native/source/perform.cpp`.
 """
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from functools import partial
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
-import warp as wp
 
 from carom.engine.program import Program
-from carom.model.launch import Launch, argument_indices
-from carom.model.real import kernel
-from carom.model.status import STEPS_DONE
+from carom.native.library import library
 
 # Numbers of a program before its launches: address of the first world's status, bytes from one status to
 # the next, and the ends of the five parts.
@@ -25,126 +21,28 @@ _HEADER = 7
 # Numbers of a launch: addresses of the function, the bounds, the arguments, and among these of the world and
 # of the number of substeps, 0 if it has none.
 _PER_LAUNCH = 5
-if TYPE_CHECKING:
-    Numbers = Any
-    Indices = Any
-else:
-    Numbers = wp.array(dtype=wp.int64)
-    Indices = wp.array(dtype=wp.int32)
-
 # More than any program has.
 _MOST_LAUNCHES = 32
 
-_PERFORM = f"""
-    typedef void (*Function)(void*, void*);
-    const long long* launches = program.data + {_HEADER};
-    auto perform = [&](long long from, long long to, int world, int substeps, const int* status) {{
-        for (long long i = from; i < to; ++i) {{
-            const long long* launch = launches + {_PER_LAUNCH} * i;
-            *(int*)launch[3] = world;
-            if (launch[4])
-                *(int*)launch[4] = substeps;
-            ((Function)launch[0])((void*)launch[1], (void*)launch[2]);
-            if (status && *status)
-                return false;
-        }}
-        return true;
-    }};
-    const long long begin_end = program.data[2], detection_end = program.data[3];
-    const long long motion_end = program.data[4], end_end = program.data[5], abandon_end = program.data[6];
-    int next = 0;
-    for (;;) {{
-        int from = next;
-        if (shared != 0)
-            from = __atomic_fetch_add(counter.data, chunk, __ATOMIC_RELAXED);
-        next = from + chunk;
-        if (from >= world_count)
-            return;
-        for (int i = from; i < next && i < world_count; ++i) {{
-            const int world = worlds.data[i];
-            int* status = (int*)(program.data[0] + world * program.data[1]);
-            if (resumed == 0)
-                status[{STEPS_DONE}] = 0;
-            for (int step = status[{STEPS_DONE}]; step < step_count; ++step) {{
-                const int substeps = due.data[step], rounds = substeps > 0 ? substeps : 1;
-                const long long round_end = substeps > 0 ? motion_end : detection_end;
-                bool well = first_substep > 0 || perform(0, begin_end, world, substeps, status);
-                for (int k = first_substep; well && k < end_substep && k < rounds; ++k)
-                    well = perform(begin_end, round_end, world, substeps, status);
-                if (well && end_substep >= rounds)
-                    well = perform(motion_end, end_end, world, substeps, status);
-                if (!well) {{
-                    perform(end_end, abandon_end, world, substeps, nullptr);
-                    break;
-                }}
-                status[{STEPS_DONE}] = step + 1;
-            }}
-        }}
-    }}
-"""
-
-
-@wp.func_native(_PERFORM)
-def _perform(
-    program: Numbers,
-    worlds: Indices,
-    due: Indices,
-    counter: Indices,
-    world_count: wp.int32,
-    step_count: wp.int32,
-    chunk: wp.int32,
-    shared: wp.int32,
-    resumed: wp.int32,
-    first_substep: wp.int32,
-    end_substep: wp.int32,
-) -> None: ...
-
-
-@kernel
-def perform_kernel(
-    program: Numbers,
-    worlds: Indices,
-    due: Indices,
-    counter: Indices,
-    world_count: wp.int32,
-    step_count: wp.int32,
-    chunk: wp.int32,
-    shared: wp.int32,
-    resumed: wp.int32,
-    first_substep: wp.int32,
-    end_substep: wp.int32,
-) -> None:
-    """Take worlds through steps.
-
-    Args:
-        program: The launches, as `Interpreter` writes them.
-        worlds: Which worlds.
-        due: Substeps of each step; where it is 0, contacts are found and nothing moves.
-        counter: Place in `worlds` of the next chunk, if threads share them.
-        world_count: How many worlds.
-        step_count: How many steps.
-        chunk: Worlds in a chunk.
-        shared: 1 if threads share the worlds.
-        resumed: 1 to go on after the steps that each world has done already.
-        first_substep: The first substep to perform; if it is not 0, a step has begun already.
-        end_substep: The substep after the last one; a step ends with its last.
-    """
-    _perform(
-        program,
-        worlds,
-        due,
-        counter,
-        world_count,
-        step_count,
-        chunk,
-        shared,
-        resumed,
-        first_substep,
-        end_substep,
-    )
-
-
 ALL_SUBSTEPS = 2**31 - 1
+
+
+class _Run(ctypes.Structure):
+    """What is asked for."""
+
+    _fields_: ClassVar[Any] = [
+        ("program", ctypes.c_void_p),  # the launches, as `Interpreter` writes them
+        ("worlds", ctypes.c_void_p),  # which worlds
+        # Substeps of each step; where it is 0, contacts are found and nothing moves.
+        ("due", ctypes.c_void_p),
+        ("counter", ctypes.c_void_p),  # place in `worlds` of the next chunk, if threads share them
+        ("world_count", ctypes.c_int32),
+        ("step_count", ctypes.c_int32),
+        ("chunk", ctypes.c_int32),  # worlds in it
+        ("resumed", ctypes.c_int32),  # 1: go on after the steps that each world has done already
+        ("first_substep", ctypes.c_int32),  # if it is not 0, a step has begun already
+        ("end_substep", ctypes.c_int32),  # a step ends with its last
+    ]
 
 
 class Stepper(Protocol):
@@ -163,7 +61,7 @@ class Stepper(Protocol):
         ...
 
     def ask(self, **asked: int) -> None:
-        """Set scalars of `perform_kernel` for all later runs."""
+        """Set numbers of `_Run` for all later runs."""
         ...
 
 
@@ -183,28 +81,20 @@ class Interpreter(Stepper):
         self._status = status
         self._numbers = np.zeros(_HEADER + _PER_LAUNCH * _MOST_LAUNCHES, dtype=np.int64)
         self.program = Program([], [], [], [], [])
-        shared = counter is not None
-        arrays = [
-            wp.array(numbers, dtype=kind, device="cpu", copy=False)
-            for numbers, kind in (
-                (self._numbers, wp.int64),
-                (worlds, wp.int32),
-                (due, wp.int32),
-                (np.zeros(1, dtype=np.int32) if counter is None else counter, wp.int32),
-            )
-        ]
-        self._asked: dict[str, int] = {
-            "world_count": len(worlds),
-            "step_count": 1,
-            "chunk": len(worlds),
-            "shared": int(shared),
-            "resumed": 0,
-            "first_substep": 0,
-            "end_substep": ALL_SUBSTEPS,
-        }
-        self._launch = Launch(perform_kernel, 1, [*arrays, *self._asked.values()])
+        # What a run points to has to be kept.
+        self._kept = (worlds, due, counter)
+        self._asked = _Run(
+            self._numbers.ctypes.data,
+            worlds.ctypes.data,
+            due.ctypes.data,
+            None if counter is None else counter.ctypes.data,
+            world_count=len(worlds),
+            step_count=1,
+            chunk=len(worlds),
+            end_substep=ALL_SUBSTEPS,
+        )
         # What it does is changed in place, so that it never changes itself.
-        self.run: Callable[[], None] = self._launch.function
+        self.run: Callable[[], None] = partial(library().perform, ctypes.byref(self._asked))
 
     def load(self, program: Program) -> None:  # noqa: D102
         ends = np.cumsum([len(part) for part in program])
@@ -217,6 +107,4 @@ class Interpreter(Stepper):
 
     def ask(self, **asked: int) -> None:  # noqa: D102
         for name, value in asked.items():
-            if self._asked[name] != value:
-                self._launch.replace(argument_indices(perform_kernel)[name], value)
-                self._asked[name] = value
+            setattr(self._asked, name, value)

@@ -4,13 +4,27 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from carom.collision.collide import collide_kernel
-from carom.model.launch import KernelStructs, Launch
-from carom.physics.coupled_step import coupled_step_kernel
-from carom.physics.kinematics import link_poses_kernel
-from carom.physics.slumber import settle_kernel, watch_kernel
-from carom.physics.step import step_kernel
-from carom.physics.step_ends import abandon_step_kernel, begin_step_kernel, end_step_kernel
+from carom.native.kernels import (
+    Kernel,
+    abandon_step_kernel,
+    begin_step_kernel,
+    broad_phase_kernel,
+    constraints_kernel,
+    end_step_kernel,
+    free_motion_kernel,
+    integration_kernel,
+    islands_kernel,
+    link_poses_kernel,
+    narrow_phase_kernel,
+    settle_kernel,
+    step_kernel,
+    watch_kernel,
+)
+from carom.native.launch import KernelStructs, Launch
+
+# Stages of a substep, in this order.
+DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
+MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
 
 
 class Plan(NamedTuple):
@@ -50,36 +64,39 @@ class Program(NamedTuple):
         return None if self.detection or self.motion or self.end else self.begin[0]
 
 
-def step_program(structs: KernelStructs, device: str, plan: Plan) -> Program:
+def step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""
-    abandon = [_launch(structs, device, abandon_step_kernel)]
+    abandon = [_launch(structs, abandon_step_kernel)]
     if not plan.coupled:
-        whole = _launch(structs, device, step_kernel, substeps=1)
+        whole = _launch(structs, step_kernel, substeps=1)
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
-    detection = [_launch(structs, device, kernel) for kernel in (link_poses_kernel, collide_kernel)]
-    motion = [_launch(structs, device, coupled_step_kernel)]
+    motion = [_launch(structs, kernel) for kernel in MOTION]
     if plan.sleeping:
-        settle = _launch(structs, device, settle_kernel, touching=int(plan.touching))
-        motion = [settle, *motion, _launch(structs, device, watch_kernel)]
+        settle = _launch(structs, settle_kernel, touching=int(plan.touching))
+        motion = [settle, *motion, _launch(structs, watch_kernel)]
     return Program(
-        begin=[_launch(structs, device, begin_step_kernel, moves=1)],
-        detection=detection if plan.touching else [],
+        begin=[_launch(structs, begin_step_kernel, moves=1)],
+        detection=_detection(structs) if plan.touching else [],
         motion=motion,
-        end=[_launch(structs, device, end_step_kernel)],
+        end=[_launch(structs, end_step_kernel)],
         abandon=abandon,
     )
 
 
-def detection_program(structs: KernelStructs, device: str) -> Program:
+def detection_program(structs: KernelStructs) -> Program:
     """The launches that find all contacts for the present coordinates."""
     return Program(
-        begin=[_launch(structs, device, begin_step_kernel, moves=0)],
-        detection=[_launch(structs, device, kernel) for kernel in (link_poses_kernel, collide_kernel)],
+        begin=[_launch(structs, begin_step_kernel, moves=0)],
+        detection=_detection(structs),
         motion=[],
         end=[],
-        abandon=[_launch(structs, device, abandon_step_kernel)],
+        abandon=[_launch(structs, abandon_step_kernel)],
     )
 
 
-def _launch(structs: KernelStructs, device: str, kernel: object, **scalars: int) -> Launch:
-    return structs.launch(kernel, device, first_world=0, **scalars)
+def _detection(structs: KernelStructs) -> list[Launch]:
+    return [_launch(structs, kernel) for kernel in DETECTION]
+
+
+def _launch(structs: KernelStructs, kernel: Kernel, **scalars: int) -> Launch:
+    return structs.launch(kernel, first_world=0, **scalars)

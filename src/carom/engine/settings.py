@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.engine.parameters import EngineParameters
 from carom.engine.touch_arrays import TouchArrays
+from carom.layouts.model import Settings
 from carom.model.builder import WorldArrays
-from carom.model.structs import Settings
-from carom.physics.parameters import EngineParameters
 
 
 class EngineSettings:

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from carom.collision.manifold import THERE
-from carom.model.arrays import ArrayTable
+from carom.layouts.contacts import THERE, Contacts, UserConstraints
 from carom.model.builder import WorldArrays
-from carom.model.contact_structs import Contacts, UserConstraints
 from carom.model.shape_arrays import ShapeArrays
+from carom.native.tables import ArrayTable
 
 # Room for contacts in each of many worlds, before any have been found.
 _LEAST_CONTACTS = 4
@@ -68,10 +67,10 @@ class TouchArrays:
         self.users.reserve({"user": self.user_count})
         self._arrays.state.reserve({"user": self.user_count})
 
-    def structs(self, device: str) -> dict[str, Any]:
-        """Warp structs over the present arrays, by the name kernels give them."""
+    def structs(self) -> dict[str, Any]:
+        """Structs over the present arrays, by the name kernels give them."""
         return {
-            "shapes": self.shapes.struct(device),
-            "contacts": self.contacts.struct(device),
-            "users": self.users.struct(device),
+            "shapes": self.shapes.struct(),
+            "contacts": self.contacts.struct(),
+            "users": self.users.struct(),
         }

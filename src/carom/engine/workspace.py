@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from carom.collision.capacity import scratch_capacity
+from carom.engine.detection_capacity import scratch_capacity
 from carom.engine.touch_arrays import TouchArrays
-from carom.model.arrays import ArrayTable
+from carom.layouts.contacts import COUPLING_ENTRY_VIEWS, ROWS_PER_PAIR, Couplings, Pairs
+from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.model.builder import WorldArrays
-from carom.model.contact_structs import COUPLING_ENTRY_VIEWS, Couplings, Pairs
-from carom.model.launch import KernelStructs
-from carom.model.structs import ENTRY_VIEWS, Scratch
-from carom.physics.couplings import ROWS_PER_PAIR
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable
 
 
 class Workspace:
@@ -61,12 +60,12 @@ class Workspace:
             capacity = self.couplings.capacity
             self.couplings.reserve({axis: 2 * capacity[axis] for axis in ("coupling", "jacobian", "run")})
 
-    def bind(self, shared: Mapping[str, Any], device: str) -> KernelStructs:
+    def bind(self, shared: Mapping[str, Any]) -> KernelStructs:
         """Structs over the present arrays, and over those that all workspaces share."""
         self.structs.update(
             shared,
-            scratch=self.scratch.struct(device),
-            pairs=self.pairs.struct(device),
-            couplings=self.couplings.struct(device),
+            scratch=self.scratch.struct(),
+            pairs=self.pairs.struct(),
+            couplings=self.couplings.struct(),
         )
         return self.structs

@@ -6,9 +6,9 @@ import logging
 
 from carom.description import Joint, JointType, Link, Robot
 from carom.description.pose import Pose, Vector3
+from carom.layouts.contacts import MARGIN
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
-from carom.model.bounds import MARGIN
-from carom.model.flags import LoadFlags
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
 from carom.model.outline import outline

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.pose import IDENTITY, Vector3
-from carom.model.bounds import MARGIN
+from carom.layouts.contacts import MARGIN
 
 BASE = -1
 DEFAULT_CONTACT = ContactParameters()

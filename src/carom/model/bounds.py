@@ -24,9 +24,7 @@ from carom.description import (
 from carom.description.pose import Vector3
 from carom.description.transform import NO_ROTATION, Matrix3
 from carom.formats.mesh import read_field_bounds, read_mesh
-
-MARGIN = 0.001
-"""Collision margin of shapes made from files [m]."""
+from carom.layouts.contacts import MARGIN
 
 _HULL_GRID = 10216
 """Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""

@@ -11,9 +11,7 @@ import numpy as np
 
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import conjugate, multiplied, rotate
-from carom.model.arrays import ArrayTable
-from carom.model.body_spec import BASE, BodySpec, LinkSpec
-from carom.model.codes import (
+from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
     DOF_COUNT,
@@ -27,8 +25,10 @@ from carom.model.codes import (
     POSITION_COUNT,
     JointCode,
 )
-from carom.model.flags import LoadFlags
-from carom.model.structs import Model, State
+from carom.layouts.flags import LoadFlags
+from carom.layouts.model import Model, State
+from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.native.tables import ArrayTable
 
 # Bullet's default, a float32 in its source.
 DEFAULT_LINK_DAMPING = float(np.float32(0.04))
@@ -302,9 +302,9 @@ class WorldArrays:
 
         return remove
 
-    def structs(self, device: str) -> dict[str, Any]:
+    def structs(self) -> dict[str, Any]:
         """Warp structs over the present arrays, by the name kernels give them."""
-        return {"model": self.model.struct(device), "state": self.state.struct(device)}
+        return {"model": self.model.struct(), "state": self.state.struct()}
 
 
 def _difference(a: Vector3, b: Vector3) -> Vector3:

@@ -32,7 +32,8 @@ from carom.description.transform import (
     rotation_matrix,
     transposed,
 )
-from carom.model.bounds import MARGIN, Bounds, placed_bounds, shape_bounds
+from carom.layouts.contacts import MARGIN
+from carom.model.bounds import Bounds, placed_bounds, shape_bounds
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends, is_swept
 
 _log = logging.getLogger(__name__)

@@ -7,9 +7,10 @@ from functools import reduce
 
 from carom.description import Collision, Mesh, Pose
 from carom.description.pose import Vector3
+from carom.layouts.contacts import MARGIN
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec
-from carom.model.bounds import MARGIN, Bounds, placed_bounds, vertex_bounds
-from carom.model.flags import LoadFlags
+from carom.model.bounds import Bounds, placed_bounds, vertex_bounds
 from carom.model.inertia import TWELFTH, box_moments, inertia_from_shapes, is_in_place, placement
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
 

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from carom.model.arrays import ArrayTable
+from carom.native.tables import ArrayTable
 
 _FIELDS = ("filter_link_a", "filter_link_b", "filter_enabled")
 

@@ -8,16 +8,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from carom.model.arrays import ArrayTable
+from carom.layouts.contacts import Shapes
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.builder import TreeRows
-from carom.model.contact_structs import Shapes
-from carom.model.flags import LoadFlags
 from carom.model.inertia import link_bounds
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, has_own_margin, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
+from carom.native.tables import ArrayTable
 
 # Collision groups of bodies that move and of fixed bases, and the groups each collides with.
 MOVING_GROUP, MOVING_MASK = 1, -1
@@ -129,9 +129,9 @@ class ShapeArrays:
         """Make room for `needed` rows on each axis; true if arrays were replaced."""
         return self.table.reserve(needed)
 
-    def struct(self, device: str) -> Any:
+    def struct(self) -> Any:
         """A Warp struct whose fields are views of the arrays."""
-        return self.table.struct(device)
+        return self.table.struct()
 
     def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> bool:
         """Add the shapes of a body whose links were appended to the model just before.

@@ -32,8 +32,8 @@ from carom.geometry.hull import SMALLEST, convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.geometry.rolling import round_about
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
-from carom.model.bounds import MARGIN
-from carom.model.codes import Rolling, ShapeKind
+from carom.layouts.codes import Rolling, ShapeKind
+from carom.layouts.contacts import MARGIN
 
 MOST_HULL_VERTICES = 128
 """Hulls of finer meshes are simplified to so many vertices."""

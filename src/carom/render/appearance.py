@@ -16,8 +16,8 @@ from weakref import WeakKeyDictionary, ref
 from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, LinkSpec
-from carom.model.flags import LoadFlags
 from carom.render.images import read_image
 from carom.render.lights import Light
 from carom.render.meshes import shape_mesh

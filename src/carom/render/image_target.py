@@ -6,19 +6,18 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import warp as wp
 from numpy.typing import NDArray
 
-from carom.model.launch import Launch
-from carom.model.real import Matrix3
-from carom.render.kernels.draw import image_kernel
-from carom.render.kernels.structs import Lighting, Matrix4, Picture
+from carom.layouts.images import Picture
+from carom.native.kernels import image_kernel
+from carom.native.launch import Launch
+from carom.native.tables import put_zeros
 from carom.render.lights import Light
 from carom.render.parallel import run_all
 from carom.render.projection import Matrix
 from carom.render.scene import SceneArrays
 from carom.render.shadows import ShadowCamera, shadow_camera
-from carom.render.view_buffers import Task, ViewBuffers, zeros
+from carom.render.view_buffers import Task, ViewBuffers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,21 +69,15 @@ class ImageTarget:
         self._shadows: dict[tuple[int, int], _Shadows] = {}
         picture = Picture()
         links = len(scene.link_rows)
-        picture.lighting = zeros(1, Lighting)
-        picture.link_rotation = zeros(links, Matrix3)
-        picture.link_to_projector = zeros(links, Matrix4)
-        picture.rgba = zeros(width * height, wp.uint32)
-        picture.depth = zeros(width * height, wp.float32)
-        picture.distance = zeros(width * height, wp.float32)
-        picture.label = zeros(width * height, wp.int32)
+        self._lighting = put_zeros(picture, "lighting", 1)
+        self._link_rotation = put_zeros(picture, "link_rotation", links)
+        self._link_to_projector = put_zeros(picture, "link_to_projector", links)
+        pixels = width * height
+        self._rgba = put_zeros(picture, "rgba", pixels).view(np.uint8).reshape(height, width, 4)
+        self._depth = put_zeros(picture, "depth", pixels).reshape(height, width)
+        self._distance = put_zeros(picture, "distance", pixels).reshape(height, width)
+        self._label = put_zeros(picture, "label", pixels).reshape(height, width)
         self._picture = picture
-        self._lighting = picture.lighting.numpy()
-        self._link_rotation = picture.link_rotation.numpy()
-        self._link_to_projector = picture.link_to_projector.numpy()
-        self._rgba = picture.rgba.numpy().view(np.uint8).reshape(height, width, 4)
-        self._depth = picture.depth.numpy().reshape(height, width)
-        self._distance = picture.distance.numpy().reshape(height, width)
-        self._label = picture.label.numpy().reshape(height, width)
         self._image_tasks = self._make_image_tasks(self._view)
 
     def draw(

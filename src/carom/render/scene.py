@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 from weakref import ref
 
 import numpy as np
-import warp as wp
 from numpy.typing import NDArray
 
 from carom.description.transform import compose, inverse, rotation_matrix
+from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
-from carom.model.real import NUMPY_REAL, Int32, Vector3, Vector4, real
+from carom.native.tables import put_array
 from carom.render.appearance import Appearance, ShapeLook
-from carom.render.kernels.structs import Scene, Vector2
 from carom.render.parallel import worker_count
 from carom.render.render_mesh import RenderMesh
 from carom.render.textures import NO_TEXTURE, Textures
@@ -168,34 +167,34 @@ class SceneArrays:
         # The lower row comes first, as texture coordinates have it.
         texels = [image[::-1].reshape(-1, 3) for image in distinct.values()]
         starts = dict(zip(distinct, _starts(list(map(len, texels))).tolist(), strict=False))
-        self.struct.texture_first = _array(np.array([starts[id(image)] for image in images]), Int32)
+        put_array(self.struct, "texture_first", np.array([starts[id(image)] for image in images]))
         sizes = np.array([image.shape[1::-1] for image in images], dtype=np.int32).reshape(-1, 2)
-        self.struct.texture_size = _array(sizes, wp.vec2i)
-        self.struct.texel = _array(np.concatenate([np.zeros((0, 3), np.uint8), *texels]), wp.vec3ub)
+        put_array(self.struct, "texture_size", sizes)
+        put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
 
 
 def _struct(columns: _Columns) -> tuple[Any, int]:
     struct = Scene()
     none = np.zeros((0, 3))
-    struct.vertex_position = _reals(np.concatenate([none, *columns.positions]), Vector3)
-    struct.vertex_normal = _reals(np.concatenate([none, *columns.normals]), Vector3)
-    struct.vertex_uv = _reals(np.concatenate([none[:, :2], *columns.uvs]), Vector2)
+    put_array(struct, "vertex_position", np.concatenate([none, *columns.positions]))
+    put_array(struct, "vertex_normal", np.concatenate([none, *columns.normals]))
+    put_array(struct, "vertex_uv", np.concatenate([none[:, :2], *columns.uvs]))
     vertex_starts = _starts(columns.vertex_counts)
     triangle_starts = _starts(columns.triangle_counts)
     corners = [triangles + start for triangles, start in zip(columns.triangles, vertex_starts, strict=False)]
-    struct.triangle_corners = _array(np.concatenate([none.astype(np.int32), *corners]), wp.vec3i)
-    struct.triangle_part = _array(np.repeat(np.arange(len(columns.links)), columns.triangle_counts), Int32)
-    struct.part_first_vertex = _array(vertex_starts, Int32)
-    struct.part_first_triangle = _array(triangle_starts, Int32)
-    struct.part_centre = _reals(np.array(columns.centres).reshape(-1, 3), Vector3)
-    struct.part_radius = _reals(np.array(columns.radii), real)
-    struct.part_link = _array(np.array(columns.links), Int32)
-    struct.part_label = _array(np.array(columns.labels), Int32)
-    struct.part_rgba = _reals(np.array(columns.rgba).reshape(-1, 4), Vector4)
-    struct.part_two_sided = _array(np.array(columns.two_sided), Int32)
-    struct.part_texture = _array(np.array(columns.textures), Int32)
+    put_array(struct, "triangle_corners", np.concatenate([none.astype(np.int32), *corners]))
+    put_array(struct, "triangle_part", np.repeat(np.arange(len(columns.links)), columns.triangle_counts))
+    put_array(struct, "part_first_vertex", vertex_starts)
+    put_array(struct, "part_first_triangle", triangle_starts)
+    put_array(struct, "part_centre", np.array(columns.centres).reshape(-1, 3))
+    put_array(struct, "part_radius", np.array(columns.radii))
+    put_array(struct, "part_link", np.array(columns.links))
+    put_array(struct, "part_label", np.array(columns.labels))
+    put_array(struct, "part_rgba", np.array(columns.rgba).reshape(-1, 4))
+    put_array(struct, "part_two_sided", np.array(columns.two_sided))
+    put_array(struct, "part_texture", np.array(columns.textures))
     chunks = _chunk_starts(columns.triangle_counts)
-    struct.chunk_first_part = _array(chunks, Int32)
+    put_array(struct, "chunk_first_part", chunks)
     return struct, len(chunks) - 1
 
 
@@ -213,13 +212,3 @@ def _chunk_starts(triangle_counts: list[int]) -> NDArray[np.int32]:
 
 def _starts(counts: list[int]) -> NDArray[np.int32]:
     return np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-
-
-def _reals(values: NDArray[Any], dtype: Any) -> Any:
-    return _array(values.astype(NUMPY_REAL), dtype)
-
-
-def _array(values: NDArray[Any], dtype: Any) -> Any:
-    scalar = wp.dtype_to_numpy(getattr(dtype, "_wp_scalar_type_", dtype))
-    contiguous = np.ascontiguousarray(values, dtype=scalar)
-    return wp.array(contiguous, dtype=dtype, device="cpu", copy=False)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-import warp as wp
 
-from carom.model.launch import Launch
-from carom.model.real import Index4, Int32, Vector3, Vector4, real
-from carom.render.kernels.draw import depth_kernel, project_kernel
-from carom.render.kernels.structs import Matrix4, View
+from carom.layouts.images import View
+from carom.native.kernels import depth_kernel, project_kernel
+from carom.native.launch import Launch
+from carom.native.tables import put_zeros
 from carom.render.parallel import worker_count
 from carom.render.projection import Matrix, facing_sign, to_pixels
 from carom.render.scene import SceneArrays
@@ -38,20 +36,18 @@ class ViewBuffers:
         view = View()
         view.width = width
         view.height = height
-        view.facing = zeros(1, real)
-        view.link_to_pixel = zeros(links, Matrix4)
-        view.vertex_pixel = zeros(scene.vertex_count, Vector4)
+        self._facing = put_zeros(view, "facing", 1)
+        self._link_to_pixel = put_zeros(view, "link_to_pixel", links)
+        put_zeros(view, "vertex_pixel", scene.vertex_count)
         for name in ("facet_first", "facet_second", "facet_third", "facet_depth"):
-            setattr(view, name, zeros(triangles, Vector3))
-        view.facet_box = zeros(triangles, Index4)
-        view.facet_triangle = zeros(triangles, Int32)
-        view.chunk_facet_count = zeros(scene.chunk_count, Int32)
-        view.pixel_depth = zeros(width * height, real)
-        view.pixel_facet = zeros(width * height, Int32)
+            put_zeros(view, name, triangles)
+        put_zeros(view, "facet_box", triangles)
+        put_zeros(view, "facet_triangle", triangles)
+        put_zeros(view, "chunk_facet_count", scene.chunk_count)
+        put_zeros(view, "pixel_depth", width * height)
+        put_zeros(view, "pixel_facet", width * height)
         self.struct = view
         self._to_pixels = to_pixels(width, height)
-        self._facing = view.facing.numpy()
-        self._link_to_pixel = view.link_to_pixel.numpy()
         self.project: list[Task] = [
             Launch(project_kernel, 1, [scene.struct, view, chunk]).function
             for chunk in range(scene.chunk_count)
@@ -77,8 +73,3 @@ class ViewBuffers:
         world_to_pixel = self._to_pixels @ world_to_clip
         self._facing[0] = 0.0 if two_sided else facing_sign(world_to_pixel)
         np.matmul(world_to_pixel, link_to_world, out=self._link_to_pixel, casting="same_kind")
-
-
-def zeros(count: int, dtype: Any) -> Any:
-    """An array of zeros for kernels."""
-    return wp.zeros(count, dtype=dtype, device="cpu")

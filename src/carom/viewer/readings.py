@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.layouts.codes import (
+    MOTOR_KD,
+    MOTOR_KP,
+    MOTOR_MAX_IMPULSE,
+    MOTOR_POSITION,
+    MOTOR_VELOCITY,
+    JointCode,
+)
 from carom.model.body_spec import BASE
-from carom.model.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION, MOTOR_VELOCITY, JointCode
 
 if TYPE_CHECKING:
     from carom.body import Body

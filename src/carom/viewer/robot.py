@@ -10,9 +10,9 @@ from carom.body import Body
 from carom.errors import DescriptionError
 from carom.formats.any_file import read_robots
 from carom.formats.search import AssetSearch
+from carom.layouts.codes import JointCode
+from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
-from carom.model.codes import JointCode
-from carom.model.flags import LoadFlags
 from carom.viewer.items import Slider
 from carom.viewer.viewer import Viewer
 from carom.world import World

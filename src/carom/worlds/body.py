@@ -10,7 +10,7 @@ from carom.body import ROUNDING, Body
 from carom.checks import Array, finite
 from carom.description import JointType
 from carom.engine.engine import Engine
-from carom.model.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.world import World
 from carom.worlds.checks import broadcast, choose, world_numbers
 from carom.worlds.dynamics import change_dynamics

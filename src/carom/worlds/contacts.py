@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.checks import Array
-from carom.collision.manifold import THERE
 from carom.engine.engine import Engine
+from carom.layouts.contacts import THERE
 
 
 class ContactSummary(NamedTuple):

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from carom.body import Body
 from carom.dynamics_changes import OF_BODY, shape_inertia
 from carom.engine.engine import Engine
+from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
-from carom.model.codes import ConstraintKind
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.worlds.checks import broadcast
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from carom.dynamics_changes import OF_BODY
 from carom.engine.engine import Engine
-from carom.model.arrays import ArrayTable
+from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
-from carom.model.codes import ConstraintKind
+from carom.native.tables import ArrayTable
 from carom.world import World
 from carom.worlds.dynamics import OF_SURFACE
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.engine.engine import DEVICE, Engine
-from carom.physics.kinematics import forward_kinematics_kernel, link_twist_kernel
+from carom.engine.engine import Engine
+from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
 
 
 class PoseFinder:
@@ -19,14 +19,11 @@ class PoseFinder:
     def __init__(self, engine: Engine, tree: int) -> None:
         self._state = engine.arrays.state.numpy
         scalars = {"tree": tree, "first_world": 0}
-        self._place = engine.task(
-            lambda structs: [structs.launch(forward_kinematics_kernel, DEVICE, **scalars)]
-        )
-        self._twist = engine.task(lambda structs: [structs.launch(link_twist_kernel, DEVICE, **scalars)])
+        self._place = engine.task(lambda structs: [structs.launch(forward_kinematics_kernel, **scalars)])
+        self._twist = engine.task(lambda structs: [structs.launch(link_twist_kernel, **scalars)])
         self._move = engine.task(
             lambda structs: [
-                structs.launch(kernel, DEVICE, **scalars)
-                for kernel in (forward_kinematics_kernel, link_twist_kernel)
+                structs.launch(kernel, **scalars) for kernel in (forward_kinematics_kernel, link_twist_kernel)
             ]
         )
 

@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, finite
-from carom.collision.places import places_struct
-from carom.collision.ray_packets import Rays
-from carom.collision.rays import prepare_rays_kernel, rays_kernel
-from carom.engine.engine import DEVICE, Engine
-from carom.model.arrays import ArrayTable
-from carom.model.launch import KernelStructs, Launch
-from carom.model.real import NUMPY_REAL
-from carom.physics.kinematics import link_poses_kernel
+from carom.engine.engine import Engine
+from carom.engine.places import places_struct
+from carom.layouts.queries import Rays
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
 
 
 class RayHits(NamedTuple):
@@ -48,7 +47,7 @@ class RayCaster:
     def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:
         self._count = engine.arrays.world_count
         self._engine = engine
-        self._places = places_struct(places, DEVICE)
+        self._places = places_struct(places)
         self._rays = ArrayTable(Rays)
         self._asked: tuple[int, int] = (0, -1)
         self._cast = engine.task(self._launches)
@@ -71,13 +70,13 @@ class RayCaster:
         return RayHits(*(array.reshape(self._count, number, *array.shape[1:]) for array in found))
 
     def _launches(self, structs: KernelStructs) -> list[Launch]:
-        structs.update(places=self._places, rays=self._rays.struct(DEVICE))
+        structs.update(places=self._places, rays=self._rays.struct())
         number, mask = self._asked
         return [
-            structs.launch(link_poses_kernel, DEVICE, first_world=0),
-            structs.launch(prepare_rays_kernel, DEVICE, first_world=0),
+            structs.launch(link_poses_kernel, first_world=0),
+            structs.launch(prepare_rays_kernel, first_world=0),
             structs.launch(
-                rays_kernel, DEVICE, first_world=0, count=number, threads=1, mask=mask, hit_number=0,
+                rays_kernel, first_world=0, count=number, threads=1, mask=mask, hit_number=0,
                 separation=float(NUMPY_REAL(0.0)),
             ),
         ]  # fmt: skip

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom.checks import Array
-from carom.collision.manifold import THERE
 from carom.engine.engine import Engine
-from carom.model.arrays import ArrayTable
+from carom.layouts.contacts import THERE
+from carom.native.tables import ArrayTable
 
 _STATUS = "status_entry"
 _CONTACT = "contact_"

@@ -15,7 +15,7 @@ from carom.body import Body
 from carom.checks import Array
 from carom.engine.engine import MOST_STEPS, Engine
 from carom.errors import SimulationWarning
-from carom.model.status import STATUS, WELL
+from carom.layouts.status import STATUS, WELL
 from carom.user_constraints import UserConstraint
 from carom.world import World
 from carom.worlds.body import BodyBatch

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from carom.joint_motor import aim_at_position
-from carom.model.codes import JointCode
+from carom.layouts.codes import JointCode
 
 if TYPE_CHECKING:
     from carom.world import World

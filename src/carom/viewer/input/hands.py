@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from carom.constraints import moving_links
 from carom.description import Pose
 from carom.description.pose import Vector3
+from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
-from carom.model.codes import UserConstraintKind
 
 if TYPE_CHECKING:
     from carom.user_constraints import UserConstraint

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.dynamics_changes import change_dynamics
+from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
-from carom.model.flags import ActivationChange
 
 if TYPE_CHECKING:
     from carom.body import Body

@@ -1,0 +1,30 @@
+"""How long the arrays of collision detection must be."""
+
+from __future__ import annotations
+
+from carom.layouts.contacts import COLUMNS, MOST_CORNERS, RADIX
+
+CANDIDATES = 64
+CORNERS = 64
+
+
+def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
+    """Least number of rows per axis of `Pairs`, but for its `pair` axis, which grows on overflow.
+
+    Args:
+        shape_count: Number of shapes.
+        contact_capacity: Rows of `Contacts`.
+    """
+    nodes = 2
+    while nodes < shape_count:
+        nodes *= 2
+    return {
+        "shape": shape_count,
+        "node": nodes,
+        "bucket": RADIX,
+        "candidate": CANDIDATES,
+        "polygon": CORNERS,
+        "polytope": 2 * MOST_CORNERS,
+        "previous": 2 * contact_capacity,
+        "count": COLUMNS,
+    }

@@ -1,0 +1,16 @@
+"""What the rows of the link arrays stand for."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from carom.layouts.queries import Places
+from carom.native.tables import ArrayTable
+
+
+def places_struct(places: Sequence[tuple[int, int]]) -> Any:
+    """A struct of the bodies and links that the rows of the link arrays stand for."""
+    table = ArrayTable(Places)
+    table.reserve({"place": len(places)})
+    for name, column in zip(("place_body", "place_link"), zip(*places, strict=True), strict=False):
+        table.numpy[name][: len(places)] = column
+    return table.struct()

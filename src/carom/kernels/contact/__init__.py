@@ -1,0 +1,1 @@
+"""Collision detection: bounds, the broad phase, pairs of shapes, contacts that persist."""

@@ -1,0 +1,124 @@
+"""Poses and bounds of all shapes in world axes."""
+
+import warp as wp
+
+from carom.kernels.maths.extremes import greater, greatest_entry, upper_corner
+from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
+from carom.kernels.types import Int32, Matrix3, Vector3, func, real
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
+
+# Half the size of what has no bounds; its square still is an ordinary number.
+UNBOUNDED = real(1.0e18)
+
+
+@func
+def local_center(shapes: Shapes, shape: Int32) -> Vector3:
+    """Centre of a shape's bounds in the shape frame."""
+    if shapes.shape_kind[shape] > PLANE:
+        return shapes.shape_center[shape]
+    return Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def local_extents(shapes: Shapes, shape: Int32) -> Vector3:
+    """Half extents of a shape's bounds in the shape frame."""
+    kind = shapes.shape_kind[shape]
+    size = shapes.shape_size[shape]
+    if kind == SPHERE:
+        return Vector3(size[0], size[0], size[0])
+    if kind == BOX:
+        return size
+    if kind == CAPSULE:
+        across = size[0] + size[2]
+        return Vector3(across, across, across + size[1])
+    if kind == CYLINDER:
+        return Vector3(size[0], size[0], size[1])
+    # Bullet adds the margin of polyhedra once to the vertices and once to their box.
+    margin = 2.0 * shapes.shape_margin[shape]
+    return size + Vector3(margin, margin, margin)
+
+
+@func
+def magnitudes(matrix: Matrix3) -> Matrix3:
+    """Absolute values of all entries."""
+    return Matrix3(
+        wp.abs(matrix[0, 0]), wp.abs(matrix[0, 1]), wp.abs(matrix[0, 2]),
+        wp.abs(matrix[1, 0]), wp.abs(matrix[1, 1]), wp.abs(matrix[1, 2]),
+        wp.abs(matrix[2, 0]), wp.abs(matrix[2, 1]), wp.abs(matrix[2, 2]),
+    )  # fmt: skip
+
+
+@func
+def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape: Int32):
+    """World pose and bounds of one shape: as in Bullet, the box around its turned local box.
+
+    A shape whose pose is not finite gets empty bounds, so that it meets nothing.
+    """
+    pose = state.link_pose[world, shapes.shape_link[shape]] * shapes.shape_pose[shape]
+    frame = wp.quat_to_matrix(wp.transform_get_rotation(pose))
+    position = wp.transform_get_translation(pose)
+    pairs.shape_position[world, shape] = position
+    pairs.shape_frame[world, shape] = frame
+    reach = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
+    center = Vector3(0.0, 0.0, 0.0)
+    kind = shapes.shape_kind[shape]
+    if kind == SPHERE:
+        # Exact, whatever rounding has done to the rotation.
+        center = position
+        reach = local_extents(shapes, shape)
+    elif kind != PLANE:
+        center = position + frame * local_center(shapes, shape)
+        reach = magnitudes(frame) * local_extents(shapes, shape)
+    total = center[0] + center[1] + center[2] + reach[0] + reach[1] + reach[2]
+    if not wp.isfinite(total):
+        center = Vector3(0.0, 0.0, 0.0)
+        reach = -Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
+    pairs.shape_lower[world, shape] = center - reach
+    pairs.shape_upper[world, shape] = center + reach
+
+
+@func
+def look_ahead(
+    shapes: Shapes,
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    shape: Int32,
+) -> real:
+    """How far ahead of a shape continuous collision detection looks [m].
+
+    As far as it moved in the last substep, from `Scratch.link_pose` on, or as its base moves in the next
+    one, if that is more than half its swept sphere's radius: slower ones are caught in time without.
+    """
+    radius = shapes.shape_ccd_radius[shape]
+    if radius <= 0.0:
+        return 0.0
+    link = shapes.shape_link[shape]
+    now = wp.transform_get_translation(state.link_pose[world, link] * shapes.shape_pose[shape])
+    before = wp.transform_get_translation(scratch.link_pose[world, link] * shapes.shape_pose[shape])
+    motion = wp.length(now - before)
+    first = model.tree[shapes.shape_tree[shape]].first_velocity
+    velocity = Vector3(
+        state.dof_velocity[world, first + 3],
+        state.dof_velocity[world, first + 4],
+        state.dof_velocity[world, first + 5],
+    )
+    motion = greater(motion, wp.length(velocity) * settings.time_step)
+    if motion > 0.5 * radius and motion < UNBOUNDED:
+        return motion
+    return 0.0
+
+
+@func
+def place_shapes(shapes: Shapes, state: State, settings: Settings, pairs: Pairs, world: Int32):
+    """World poses and bounds of all shapes."""
+    for shape in range(settings.shape_count):
+        place_shape(shapes, state, pairs, world, shape)
+
+
+@func
+def boxes_meet(lower_a: Vector3, upper_a: Vector3, lower_b: Vector3, upper_b: Vector3, reach: real) -> bool:
+    """Whether two boxes are at most `reach` apart along every axis."""
+    return greatest_entry(upper_corner(lower_a - upper_b, lower_b - upper_a)) <= reach

@@ -1,0 +1,177 @@
+"""The pairs of shapes whose bounds meet, sorted by their rows.
+
+Planes are few and meet almost everything: each is compared with all shapes. All others go through the
+hierarchy: a walk for each shape, over what comes after it in the order of the leaves, finds each pair
+once in about logarithmic time.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import boxes_meet, look_ahead, place_shapes
+from carom.kernels.contact.filters import SELF_COLLISION, may_touch
+from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
+from carom.kernels.contact.reach import bounds_reach
+from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, func, real
+from carom.layouts.contacts import BOUNDED, LEAVES, PAIRS, PLANES, READINESS, STALE
+
+
+@func
+def add_pair(
+    shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, a: Int32, b: Int32
+):
+    """Note two shapes if they may touch; pairs beyond the capacity are counted only."""
+    if may_touch(shapes, model, settings, a, b):
+        count = pairs.count_pairs[world, PAIRS]
+        if count < pairs.pair_found.shape[1]:
+            pairs.pair_found[world, count] = Index4(wp.min(a, b), wp.max(a, b), 0, 0)
+        pairs.count_pairs[world, PAIRS] = count + 1
+
+
+@func
+def bounds_meet(pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> bool:
+    """Whether the bounds of two shapes are at most `reach` apart along every axis."""
+    return boxes_meet(
+        pairs.shape_lower[world, a],
+        pairs.shape_upper[world, a],
+        pairs.shape_lower[world, b],
+        pairs.shape_upper[world, b],
+        reach,
+    )
+
+
+@func
+def compare_in_leaf(
+    shapes: Shapes,
+    model: Model,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    start: Int32,
+    leaf: Int32,
+):
+    """Pairs of shape `a` with the shapes of a leaf, from place `start` on."""
+    lower = pairs.shape_lower[world, a]
+    upper = pairs.shape_upper[world, a]
+    breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
+    avoided = Int32(-1)
+    if shapes.link_self_collision[shapes.shape_link[a]] & SELF_COLLISION == 0:
+        avoided = shapes.shape_tree[a]
+    first = wp.max(start, leaf_start(pairs, world, leaf))
+    for place in range(first, leaf_start(pairs, world, leaf + 1)):
+        b = pairs.shape_order[world, place]
+        if shapes.shape_tree[b] == avoided:
+            continue
+        reach = breaking + pairs.shape_motion[world, b]
+        if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], reach):
+            if bounds_meet(pairs, world, a, b, bounds_reach(shapes, pairs, world, a, b)):
+                add_pair(shapes, model, settings, pairs, world, a, b)
+
+
+@func
+def walk_from(
+    shapes: Shapes,
+    model: Model,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+    place: Int32,
+    own_leaf: Int32,
+):
+    """Pairs of the shape at a place in the order with all shapes at later places."""
+    a = pairs.shape_order[world, place]
+    leaf_count = pairs.count_pairs[world, LEAVES]
+    breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
+    lower = pairs.shape_lower[world, a]
+    upper = pairs.shape_upper[world, a]
+    node = leaf_count + own_leaf
+    while node > 0:
+        if boxes_meet(lower, upper, pairs.node_lower[world, node], pairs.node_upper[world, node], breaking):
+            if node < leaf_count:
+                node = 2 * node
+                continue
+            compare_in_leaf(shapes, model, settings, pairs, world, a, place + 1, node - leaf_count)
+        node = next_node(node)
+
+
+@func
+def plane_pairs(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, plane: Int32):
+    """Pairs of a plane with all shapes that reach below it."""
+    normal = pairs.shape_frame[world, plane] * shapes.shape_size[plane]
+    along = wp.abs(normal)
+    height = wp.dot(normal, pairs.shape_position[world, plane])
+    for place in range(pairs.count_pairs[world, BOUNDED]):
+        b = pairs.shape_order[world, place]
+        lower = pairs.shape_lower[world, b]
+        upper = pairs.shape_upper[world, b]
+        nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
+        if nearest <= bounds_reach(shapes, pairs, world, plane, b):
+            add_pair(shapes, model, settings, pairs, world, plane, b)
+
+
+@func
+def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
+    """Sort the pairs found by first, then by second shape, so that they do not depend on the walk."""
+    count = wp.min(pairs.count_pairs[world, PAIRS], pairs.pair_shapes.shape[1])
+    for shape in range(settings.shape_count):
+        pairs.shape_pair_end[world, shape] = 0
+    for i in range(count):
+        a = pairs.pair_found[world, i][0]
+        pairs.shape_pair_end[world, a] = pairs.shape_pair_end[world, a] + 1
+    total = Int32(0)
+    for shape in range(settings.shape_count):
+        size = pairs.shape_pair_end[world, shape]
+        pairs.shape_pair_end[world, shape] = total
+        total += size
+    for i in range(count):
+        pair = pairs.pair_found[world, i]
+        place = pairs.shape_pair_end[world, pair[0]]
+        pairs.shape_pair_end[world, pair[0]] = place + 1
+        pairs.pair_shapes[world, place] = pair
+    # Only now is every row one of this step; those of a first shape are few.
+    for i in range(1, count):
+        pair = pairs.pair_shapes[world, i]
+        place = i + 0
+        searching = place > 0
+        while searching:
+            before = pairs.pair_shapes[world, place - 1]
+            searching = before[0] == pair[0] and before[1] > pair[1]
+            if searching:
+                pairs.pair_shapes[world, place] = before
+                place -= 1
+                searching = place > 0
+        pairs.pair_shapes[world, place] = pair
+
+
+@func
+def find_pairs(
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+):
+    """Sorted pairs of shapes whose bounds meet and that may touch, from the link poses."""
+    for shape in range(settings.shape_count):
+        pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
+    place_shapes(shapes, state, settings, pairs, world)
+    find_pairs_of_placed(shapes, model, settings, pairs, world)
+
+
+@func
+def find_pairs_of_placed(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
+    """As `find_pairs`, once all shapes have been placed."""
+    build_hierarchy(shapes, settings, pairs, world)
+    pairs.count_pairs[world, READINESS] = STALE
+    pairs.count_pairs[world, PAIRS] = 0
+    leaf_count = pairs.count_pairs[world, LEAVES]
+    count = pairs.count_pairs[world, BOUNDED]
+    for place in range(count, count + pairs.count_pairs[world, PLANES]):
+        plane_pairs(shapes, model, settings, pairs, world, pairs.shape_order[world, place])
+    for leaf in range(leaf_count):
+        for place in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
+            walk_from(shapes, model, settings, pairs, world, place, leaf)
+    sort_pairs(settings, pairs, world)

@@ -1,0 +1,151 @@
+"""Contact candidates of one pair of shapes, and the choice of the four that are kept.
+
+A candidate is a row of `Pairs.candidate_terms`: a point on shape b, the normal there towards shape a,
+and the distance along it to shape a, negative where they overlap. The order of points that are equally
+good decides, so results do not depend on rounding more than need be.
+"""
+
+import warp as wp
+
+from carom.kernels.maths.extremes import greater, lesser
+from carom.kernels.types import Int32, Vector3, Vector8, Vector8Rows, func, real, shared_func
+
+# Points closer together than this count as one [m].
+SAME_POINT = real(1.0e-6)
+# Candidates less deep than the deepest by this count as deep as it [m]: of what lies flat, the same corners
+# should be chosen in every step.
+AS_DEEP = real(1.0e-7)
+# Share by which a later candidate must be better to be preferred.
+CLEARLY = real(1.0e-6)
+
+
+@func
+def add_candidate(
+    candidates: Vector8Rows, world: Int32, count: Int32, point: Vector3, normal: Vector3, distance: real
+) -> Int32:
+    """Append a candidate to the first `count`; returns their number. What does not fit is left out."""
+    if count >= candidates.shape[1]:
+        return count
+    candidates[world, count] = Vector8(
+        point[0], point[1], point[2], normal[0], normal[1], normal[2], distance, 0.0
+    )
+    return count + 1
+
+
+@func
+def candidate_point(candidates: Vector8Rows, world: Int32, row: Int32) -> Vector3:
+    """Point on shape b."""
+    terms = candidates[world, row]
+    return Vector3(terms[0], terms[1], terms[2])
+
+
+@func
+def candidate_normal(candidates: Vector8Rows, world: Int32, row: Int32) -> Vector3:
+    """Normal on shape b, towards shape a."""
+    terms = candidates[world, row]
+    return Vector3(terms[3], terms[4], terms[5])
+
+
+@func
+def candidate_distance(candidates: Vector8Rows, world: Int32, row: Int32) -> real:
+    """Distance of the two shapes there."""
+    return candidates[world, row][6]
+
+
+@func
+def candidate_on_a(candidates: Vector8Rows, world: Int32, row: Int32) -> Vector3:
+    """Point on shape a."""
+    distance = candidate_distance(candidates, world, row)
+    return candidate_point(candidates, world, row) + candidate_normal(candidates, world, row) * distance
+
+
+@func
+def exchange(candidates: Vector8Rows, world: Int32, i: Int32, j: Int32):
+    """Swap two candidates."""
+    kept = candidates[world, i]
+    candidates[world, i] = candidates[world, j]
+    candidates[world, j] = kept
+
+
+@func
+def flip_candidates(candidates: Vector8Rows, world: Int32, count: Int32):
+    """Make the candidates of (a, b) those of (b, a)."""
+    for row in range(count):
+        normal = candidate_normal(candidates, world, row)
+        distance = candidate_distance(candidates, world, row)
+        point = candidate_on_a(candidates, world, row)
+        add_candidate(candidates, world, row, point, -normal, distance)
+
+
+@func
+def deepest_outermost(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
+    """Of the deepest candidates the one farthest from the middle of all."""
+    deepest = candidate_distance(candidates, world, 0)
+    middle = Vector3(0.0, 0.0, 0.0)
+    for row in range(count):
+        deepest = lesser(deepest, candidate_distance(candidates, world, row))
+        middle += candidate_point(candidates, world, row) / real(count)
+    best = Int32(0)
+    most = real(-1.0)
+    for row in range(count):
+        score = wp.length_sq(candidate_point(candidates, world, row) - middle)
+        if candidate_distance(candidates, world, row) <= deepest + AS_DEEP and score > most * (1.0 + CLEARLY):
+            most = score
+            best = Int32(row)
+    return best
+
+
+@shared_func
+def keep_four(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
+    """Choose at most four candidates that span the contact; returns their number.
+
+    The deepest (of several the outermost), the one farthest from it, the one farthest from the line through
+    both, and the one farthest outside the triangle of these.
+    """
+    if count <= 1:
+        return count
+    best = deepest_outermost(candidates, world, count)
+    exchange(candidates, world, 0, best)
+    a = candidate_point(candidates, world, 0)
+
+    best = Int32(-1)
+    most = SAME_POINT * SAME_POINT
+    for row in range(1, count):
+        score = wp.length_sq(candidate_point(candidates, world, row) - a)
+        if score > most * (1.0 + CLEARLY):
+            most = score
+            best = row
+    if best < 0:
+        return 1
+    exchange(candidates, world, 1, best)
+    b = candidate_point(candidates, world, 1)
+
+    base = most
+    best = Int32(-1)
+    most = base * SAME_POINT * SAME_POINT
+    for row in range(2, count):
+        score = wp.length_sq(wp.cross(b - a, candidate_point(candidates, world, row) - a))
+        if score > most * (1.0 + CLEARLY):
+            most = score
+            best = row
+    if best < 0:
+        return 2
+    exchange(candidates, world, 2, best)
+    c = candidate_point(candidates, world, 2)
+
+    normal = wp.cross(b - a, c - a)
+    best = Int32(-1)
+    most = SAME_POINT * SAME_POINT * wp.sqrt(base) * wp.length(normal)
+    for row in range(3, count):
+        p = candidate_point(candidates, world, row)
+        outside = greater(
+            wp.dot(wp.cross(p - a, b - a), normal),
+            greater(wp.dot(wp.cross(p - b, c - b), normal), wp.dot(wp.cross(p - c, a - c), normal)),
+        )
+        if outside > most * (1.0 + CLEARLY):
+            most = outside
+            best = row
+    if best < 0:
+        return 3
+    exchange(candidates, world, 3, best)
+    return 4

@@ -1,0 +1,91 @@
+"""Which pairs of shapes may touch at all."""
+
+import warp as wp
+
+from carom.kernels.structs import Model, Settings, Shapes
+from carom.kernels.types import Int32, func
+from carom.layouts.flags import LoadFlags
+
+SELF_COLLISION = wp.constant(int(LoadFlags.USE_SELF_COLLISION))
+EXCLUDE_ALL_PARENTS = wp.constant(int(LoadFlags.USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS))
+INCLUDE_PARENT = wp.constant(int(LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT))
+
+
+@func
+def rigid_root(model: Model, link: Int32) -> Int32:
+    """The first of the links, from `link` towards the base, that moves against its own parent."""
+    root = link
+    while model.link[root].parent >= 0 and model.link[root].dof_count == 0:
+        root = model.link[root].parent
+    return root
+
+
+@func
+def is_below(model: Model, link: Int32, ancestor: Int32) -> bool:
+    """Whether `ancestor` is one of the links between `link` and its base, or the base."""
+    above = model.link[link].parent
+    while above >= 0 and above != ancestor:
+        above = model.link[above].parent
+    return above == ancestor
+
+
+@func
+def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
+    """Whether two links of one body may touch; neither is the other, nor rigidly joined to it."""
+    flags = shapes.link_self_collision[a]
+    if flags & SELF_COLLISION == 0:
+        return False
+    if flags & EXCLUDE_ALL_PARENTS != 0:
+        return not is_below(model, a, b) and not is_below(model, b, a)
+    if flags & INCLUDE_PARENT != 0:
+        return True
+    return model.link[a].parent != b and model.link[b].parent != a
+
+
+@func
+def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
+    """What users said about two links: 1 touch, 0 do not touch, -1 nothing."""
+    low = wp.min(a, b)
+    high = wp.max(a, b)
+    first = Int32(0)
+    last = settings.filter_count
+    while first < last:
+        middle = (first + last) // 2
+        link_a = shapes.filter_link_a[middle]
+        link_b = shapes.filter_link_b[middle]
+        if link_a == low and link_b == high:
+            return shapes.filter_enabled[middle]
+        if link_a < low or (link_a == low and link_b < high):
+            first = middle + 1
+        else:
+            last = middle
+    return -1
+
+
+@func
+def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
+    """Whether groups and masks let two links touch."""
+    a_passes = shapes.link_group[a] & shapes.link_mask[b] != 0
+    b_passes = shapes.link_group[b] & shapes.link_mask[a] != 0
+    if settings.filter_both == 1:
+        return a_passes and b_passes
+    return a_passes or b_passes
+
+
+@func
+def may_touch(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, shape_b: Int32) -> bool:
+    """Whether two shapes make contacts when they meet."""
+    a = shapes.shape_link[shape_a]
+    b = shapes.shape_link[shape_b]
+    if a == b:
+        return False
+    root_a = rigid_root(model, a)
+    root_b = rigid_root(model, b)
+    if root_a == root_b:
+        return False
+    if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):
+        return False
+    wanted = pair_filter(shapes, settings, a, b)
+    if wanted >= 0:
+        return wanted == 1
+    return masks_match(shapes, settings, a, b)

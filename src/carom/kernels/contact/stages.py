@@ -1,0 +1,30 @@
+"""The stages of collision detection, a kernel for each."""
+
+import warp as wp
+
+from carom.kernels.contact.broad_phase import find_pairs
+from carom.kernels.contact.collide import find_contacts
+from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, Shapes, State
+from carom.kernels.types import Int32, kernel
+
+
+@kernel
+def broad_phase_kernel(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    first_world: Int32,
+):
+    """Pairs of shapes whose bounds meet."""
+    find_pairs(shapes, model, state, scratch, settings, pairs, first_world + wp.tid())
+
+
+@kernel
+def narrow_phase_kernel(
+    shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, first_world: Int32
+):
+    """Contacts of these pairs; those that persist keep their impulses."""
+    find_contacts(shapes, model, state, contacts, pairs, first_world + wp.tid())

@@ -1,0 +1,1 @@
+"""Motion of trees of links: kinematics, inertia, forces, motors, integration."""

@@ -1,0 +1,116 @@
+"""Force-torque sensors: the wrench that a joint carries from its parent to its link.
+
+As in Bullet it is measured in two passes: the wrench of the unconstrained motion, plus that of a
+second motion which only the constraint forces drive.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.dynamics import generalized_forces, link_bias_forces, parallel_axis
+from carom.kernels.dynamics.mass_matrix import solve
+from carom.kernels.dynamics.rows import row_dof
+from carom.kernels.structs import Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Vector3, Vector6, func
+from carom.layouts.codes import CONSTRAINT_FEEDBACK
+
+
+@func
+def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Forget the constraint forces of the last substep."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
+        scratch.link[world, link].constraint_torque = Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def gather_constraint_forces(
+    model: Model, settings: Settings, scratch: Scratch, world: Int32, first: Int32, last: Int32
+):
+    """Turn the impulses of rows [first, last) into forces on the joint's link and on its parent."""
+    for row in range(first, last):
+        constraint = scratch.row[world, row].constraint
+        if model.tree[model.constraint[constraint].tree].sensor_count > 0:
+            link = model.constraint[constraint].link
+            parent = model.link[link].parent
+            dof = row_dof(model, scratch, world, row)
+            size = scratch.row[world, row].impulse / settings.time_step
+            angular = scratch.dof[world, dof].angular
+            if wp.dot(angular, angular) > 0.0:
+                scratch.link[world, link].constraint_torque += angular * size
+                scratch.link[world, parent].constraint_torque -= angular * size
+            else:
+                linear = scratch.dof[world, dof].linear
+                scratch.link[world, link].constraint_force += linear * size
+                scratch.link[world, parent].constraint_force -= linear * size
+
+
+@func
+def measure_joint_wrenches(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, add: Int32
+):
+    """Store in (or add to) the sensors what their joints carry.
+
+    Expects the accelerations in `dof_force` and the gathered bias forces of `generalized_forces`.
+    """
+    base = model.tree[tree].first_link
+    count = model.tree[tree].link_count
+    zero = Vector3(0.0, 0.0, 0.0)
+
+    # What the joint accelerations add to the accelerations of the links.
+    for link in range(base, base + count):
+        alpha = zero
+        acceleration = zero
+        if link > base:
+            alpha = scratch.link[world, model.link[link].parent].alpha
+            acceleration = scratch.link[world, model.link[link].parent].acceleration
+        first = model.link[link].first_dof
+        for dof in range(first, first + model.link[link].dof_count):
+            rate = scratch.dof[world, dof].force
+            alpha += scratch.dof[world, dof].angular * rate
+            acceleration += scratch.dof[world, dof].linear * rate
+        scratch.link[world, link].alpha = alpha
+        scratch.link[world, link].acceleration = acceleration
+
+    # The force for that, gathered towards the root on top of the bias forces.
+    for link in range(base, base + count):
+        mass = model.link_mass[world, link]
+        c = scratch.link[world, link].offset
+        alpha = scratch.link[world, link].alpha
+        acceleration = scratch.link[world, link].acceleration
+        inertia = scratch.link[world, link].com_inertia + mass * parallel_axis(c)
+        force = mass * (acceleration + wp.cross(alpha, c))
+        moment = inertia * alpha + mass * wp.cross(c, acceleration)
+        up = link
+        while up >= 0:
+            scratch.link[world, up].force += force
+            scratch.link[world, up].moment += moment
+            up = model.link[up].parent
+
+    for link in range(base + 1, base + count):
+        if model.link[link].sensor != 0:
+            force = scratch.link[world, link].force
+            torque = scratch.link[world, link].moment - wp.cross(scratch.link[world, link].offset, force)
+            to_link = wp.transpose(scratch.link[world, link].rotation)
+            force = to_link * force
+            torque = to_link * torque
+            if settings.feedback_in_joint != 0:
+                torque -= wp.cross(force, model.link[link].com_from_pivot)
+            if settings.feedback_in_world != 0:
+                force = scratch.link[world, link].rotation * force
+                torque = scratch.link[world, link].rotation * torque
+            wrench = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
+            if add != 0:
+                wrench += state.link_reaction[world, link]
+            state.link_reaction[world, link] = wrench
+
+
+@func
+def constraint_feedback(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Second pass: add to the sensors what the constraint forces do."""
+    link_bias_forces(model, settings, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+    generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+    solve(model, scratch, world, tree)
+    measure_joint_wrenches(model, settings, state, scratch, world, tree, 1)

@@ -1,0 +1,206 @@
+"""Where the links are, how the joints can move them, and how fast they go."""
+
+import warp as wp
+
+from carom.kernels.maths.rotation import axis_rotation, canonical, rotation_matrix
+from carom.kernels.structs import Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Quaternion, Transform, TransformRows, Vector3, Vector6, func, kernel
+from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+
+
+@func
+def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
+    """The quaternion stored from coordinate `q` on."""
+    return Quaternion(
+        state.position[world, q],
+        state.position[world, q + 1],
+        state.position[world, q + 2],
+        state.position[world, q + 3],
+    )
+
+
+@func
+def forward_kinematics(model: Model, state: State, poses: TransformRows, world: Int32, tree: Int32):
+    """Fill `poses` with the world poses of a tree's inertial frames, from its coordinates."""
+    base = model.tree[tree].first_link
+    q = model.tree[tree].first_position
+    position = Vector3(state.position[world, q], state.position[world, q + 1], state.position[world, q + 2])
+    poses[world, base] = Transform(position, canonical(load_quaternion(state, world, q + 3)))
+
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        parent_pose = poses[world, model.link[link].parent]
+        parent_orientation = wp.transform_get_rotation(parent_pose)
+        pivot = wp.transform_get_translation(parent_pose) + wp.quat_rotate(
+            parent_orientation, model.link[link].pivot_in_parent
+        )
+        # Kept in the parent's frame for as long as possible: the next link waits for the world pose only.
+        turn = model.link[link].joint_rotation
+        slide = Vector3(0.0, 0.0, 0.0)
+
+        joint_type = model.link[link].joint_type
+        q = model.link[link].first_position
+        if joint_type == REVOLUTE:
+            turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
+        elif joint_type == PRISMATIC:
+            slide = model.link[link].axis * state.position[world, q]
+        elif joint_type == SPHERICAL:
+            turn = turn * load_quaternion(state, world, q)
+        elif joint_type == PLANAR:
+            # The translations are measured along axes that do not turn with the joint.
+            pivot += wp.quat_rotate(
+                parent_orientation * turn,
+                model.link[link].planar_axis1 * state.position[world, q + 1]
+                + model.link[link].planar_axis2 * state.position[world, q + 2],
+            )
+            turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
+
+        child_orientation = canonical(parent_orientation * turn)
+        offset = wp.quat_rotate(child_orientation, model.link[link].com_from_pivot + slide)
+        poses[world, link] = Transform(pivot + offset, child_orientation)
+
+
+@func
+def base_subspace(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """What one unit of each dof of a free base does: it turns about an axis, then moves along one."""
+    zero = Vector3(0.0, 0.0, 0.0)
+    first = model.tree[tree].first_velocity
+    for axis in range(3):
+        unit = Vector3(0.0, 0.0, 0.0)
+        unit[axis] = 1.0
+        scratch.dof[world, first + axis].angular = unit
+        scratch.dof[world, first + axis].linear = zero
+        scratch.dof[world, first + 3 + axis].angular = zero
+        scratch.dof[world, first + 3 + axis].linear = unit
+
+
+@func
+def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world: Int32, tree: Int32):
+    """What one unit of each active dof does to its link: angular and linear velocity.
+
+    Linear velocities are those at the tree's reference point, the centre of mass of its base.
+    """
+    base = model.tree[tree].first_link
+    reference = wp.transform_get_translation(poses[world, base])
+    zero = Vector3(0.0, 0.0, 0.0)
+
+    if model.tree[tree].fixed == 0:
+        base_subspace(model, scratch, world, tree)
+
+    for link in range(base, base + model.tree[tree].link_count):
+        pose = poses[world, link]
+        rotation = rotation_matrix(wp.transform_get_rotation(pose))
+        offset = wp.transform_get_translation(pose) - reference
+        scratch.link[world, link].rotation = rotation
+        scratch.link[world, link].offset = offset
+
+        joint_type = model.link[link].joint_type
+        dof = model.link[link].first_dof
+        if joint_type == REVOLUTE:
+            axis_world = rotation * model.link[link].axis
+            pivot = offset - rotation * model.link[link].com_from_pivot
+            scratch.dof[world, dof].angular = axis_world
+            scratch.dof[world, dof].linear = wp.cross(pivot, axis_world)
+        elif joint_type == PRISMATIC:
+            scratch.dof[world, dof].angular = zero
+            scratch.dof[world, dof].linear = rotation * model.link[link].axis
+        elif joint_type == SPHERICAL:
+            pivot = offset - rotation * model.link[link].com_from_pivot
+            for axis in range(3):
+                column = Vector3(rotation[0, axis], rotation[1, axis], rotation[2, axis])
+                scratch.dof[world, dof + axis].angular = column
+                scratch.dof[world, dof + axis].linear = wp.cross(pivot, column)
+        elif joint_type == PLANAR:
+            axis_world = rotation * model.link[link].axis
+            scratch.dof[world, dof].angular = axis_world
+            scratch.dof[world, dof].linear = wp.cross(offset, axis_world)
+            scratch.dof[world, dof + 1].angular = zero
+            scratch.dof[world, dof + 1].linear = rotation * model.link[link].planar_axis1
+            scratch.dof[world, dof + 2].angular = zero
+            scratch.dof[world, dof + 2].linear = rotation * model.link[link].planar_axis2
+
+
+@func
+def base_omega(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
+    """Angular velocity of a tree's base [rad/s]."""
+    v = model.tree[tree].first_velocity
+    return Vector3(
+        state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
+    )
+
+
+@func
+def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
+    """Velocity of the centre of mass of a tree's base [m/s]."""
+    v = model.tree[tree].first_velocity + 3
+    return Vector3(
+        state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
+    )
+
+
+@func
+def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Velocities of all links of a tree about its reference point, from the joint rates."""
+    base = model.tree[tree].first_link
+    scratch.link[world, base].omega = base_omega(model, state, world, tree)
+    scratch.link[world, base].velocity = base_velocity(model, state, world, tree)
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        parent = model.link[link].parent
+        omega = scratch.link[world, parent].omega
+        velocity = scratch.link[world, parent].velocity
+        first = model.link[link].first_dof
+        for dof in range(first, first + model.link[link].dof_count):
+            rate = state.dof_velocity[world, dof]
+            omega += scratch.dof[world, dof].angular * rate
+            velocity += scratch.dof[world, dof].linear * rate
+        scratch.link[world, link].omega = omega
+        scratch.link[world, link].velocity = velocity
+
+
+@kernel
+def forward_kinematics_kernel(model: Model, state: State, tree: Int32, first_world: Int32):
+    """Bring the link poses of one tree up to date with its coordinates."""
+    forward_kinematics(model, state, state.link_pose, first_world + wp.tid(), tree)
+
+
+@func
+def update_link_poses(
+    settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Bring the link poses of a tree up to date; if some shape is to look ahead, keep them as they were."""
+    if settings.looks_ahead != 0:
+        base = model.tree[tree].first_link
+        for link in range(base, base + model.tree[tree].link_count):
+            scratch.link_pose[world, link] = state.link_pose[world, link]
+    forward_kinematics(model, state, state.link_pose, world, tree)
+
+
+@kernel
+def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
+    """Bring the link poses of all trees up to date with their coordinates."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        update_link_poses(settings, model, state, scratch, world, tree)
+
+
+@kernel
+def link_twist_kernel(model: Model, state: State, scratch: Scratch, tree: Int32, first_world: Int32):
+    """Velocities of the links of one tree, in world axes, for its present coordinates.
+
+    As in Bullet they are turned to world axes by `State.link_pose`, which after a step is that of
+    the start of its last substep.
+    """
+    world = first_world + wp.tid()
+    forward_kinematics(model, state, scratch.link_pose, world, tree)
+    motion_subspaces(model, scratch.link_pose, scratch, world, tree)
+    link_velocities(model, state, scratch, world, tree)
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        now = wp.transform_get_rotation(scratch.link_pose[world, link])
+        reported = wp.transform_get_rotation(state.link_pose[world, link])
+        omega = scratch.link[world, link].omega
+        velocity = scratch.link[world, link].velocity + wp.cross(omega, scratch.link[world, link].offset)
+        velocity = wp.quat_rotate(reported, wp.quat_rotate_inv(now, velocity))
+        omega = wp.quat_rotate(reported, wp.quat_rotate_inv(now, omega))
+        state.link_twist[world, link] = Vector6(
+            velocity[0], velocity[1], velocity[2], omega[0], omega[1], omega[2]
+        )

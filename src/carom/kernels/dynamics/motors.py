@@ -1,0 +1,153 @@
+"""Joint motors: velocity-level constraint rows with gains and a bound on their impulse.
+
+A motor asks for a joint rate after the step; the solver gives the impulse that reaches it, as far
+as the motor's greatest impulse allows. Explicit drives (PD, joint damping) are forces instead.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.kinematics import load_quaternion
+from carom.kernels.dynamics.rows import add_row, axis_effective_masses, dof_effective_mass
+from carom.kernels.maths.extremes import within_bounds
+from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.structs import Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Matrix3, Quaternion, Vector3, func, real
+from carom.layouts.codes import (
+    MOTOR_DAMPING,
+    MOTOR_KD,
+    MOTOR_KP,
+    MOTOR_MAX_IMPULSE,
+    MOTOR_POSITION,
+    MOTOR_TARGET_W,
+    MOTOR_VELOCITY,
+    MOTOR_VELOCITY_CLAMP,
+    PD_KD,
+    PD_KP,
+    PD_MAX_FORCE,
+    PD_POSITION,
+    PD_VELOCITY,
+)
+
+
+@func
+def unless_nan(value: real, other: real) -> real:
+    """A number, or NaN where another is that: bounds that are NaN bound nothing, and would not be noticed."""
+    return wp.where(other == other, value, other)
+
+
+@func
+def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
+    """Viscous joint friction as an explicit torque at the rates before the step."""
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
+        state.dof_torque[world, dof] -= model.dof_damping[world, dof] * state.dof_velocity[world, dof]
+
+
+@func
+def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
+    """Torque of proportional-derivative drives; it adds up over the substeps of one step."""
+    base = model.tree[tree].first_link
+    for link in range(base + 1, base + model.tree[tree].link_count):
+        if model.link[link].dof_count == 1:
+            dof = model.link[link].first_dof
+            drive = state.dof_pd[world, dof]
+            bound = drive[PD_MAX_FORCE]
+            if not bound <= 0.0:
+                position = state.position[world, model.link[link].first_position]
+                force = drive[PD_KP] * (drive[PD_POSITION] - position) + drive[PD_KD] * (
+                    drive[PD_VELOCITY] - state.dof_velocity[world, dof]
+                )
+                state.dof_torque[world, dof] += unless_nan(within_bounds(force, -bound, bound), bound)
+
+
+@func
+def motor_row(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the row of a revolute or prismatic motor; returns the next free row."""
+    link = model.constraint[constraint].link
+    dof = model.link[link].first_dof
+    motor = state.dof_motor[world, dof]
+    bound = motor[MOTOR_MAX_IMPULSE]
+    if bound == 0.0:
+        return row
+    velocity = state.dof_velocity[world, dof]
+    position_error = motor[MOTOR_POSITION] - state.position[world, model.link[link].first_position]
+    wanted = (
+        motor[MOTOR_KP] * position_error / settings.time_step
+        + velocity
+        + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - velocity)
+    )
+    clamp = motor[MOTOR_VELOCITY_CLAMP]
+    wanted = unless_nan(within_bounds(wanted, -clamp, clamp), bound + clamp)
+    effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
+    return add_row(
+        model, scratch, world, constraint, row, dof, wanted - velocity, effective_mass, -bound, bound
+    )
+
+
+@func
+def euler_xyz(r: Matrix3) -> Vector3:
+    """Angles (x, y, z) with R = Rx(x) Ry(y) Rz(z); at gimbal lock z is 0."""
+    half_pi = 0.5 * 3.14159265358979323846
+    s = r[0, 2]
+    if s >= 1.0:
+        return Vector3(wp.atan2(r[1, 0], r[1, 1]), half_pi, 0.0)
+    if s <= -1.0:
+        return Vector3(-wp.atan2(r[1, 0], r[1, 1]), -half_pi, 0.0)
+    return Vector3(wp.atan2(-r[1, 2], r[2, 2]), wp.asin(s), wp.atan2(-r[0, 1], r[0, 0]))
+
+
+@func
+def joint_quaternion(model: Model, state: State, world: Int32, link: Int32) -> Quaternion:
+    """Position of a spherical joint."""
+    return load_quaternion(state, world, model.link[link].first_position)
+
+
+@func
+def spherical_motor_rows(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the three rows of a spherical motor: kp of the orientation error per step, rate damped."""
+    link = model.constraint[constraint].link
+    first = model.link[link].first_dof
+    x = state.dof_motor[world, first]
+    y = state.dof_motor[world, first + 1]
+    z = state.dof_motor[world, first + 2]
+    if x[MOTOR_MAX_IMPULSE] == 0.0 and y[MOTOR_MAX_IMPULSE] == 0.0 and z[MOTOR_MAX_IMPULSE] == 0.0:
+        return row
+    target = Quaternion(x[MOTOR_POSITION], y[MOTOR_POSITION], z[MOTOR_POSITION], x[MOTOR_TARGET_W])
+    current = joint_quaternion(model, state, world, link)
+    error = euler_xyz(rotation_matrix(wp.quat_inverse(target) * current))
+    effective_mass = axis_effective_masses(model, scratch, world, model.constraint[constraint].tree, link)
+    for axis in range(3):
+        motor = state.dof_motor[world, first + axis]
+        bound = motor[MOTOR_MAX_IMPULSE]
+        change = -motor[MOTOR_DAMPING] * state.dof_velocity[world, first + axis]
+        change -= motor[MOTOR_KP] * error[axis] * settings.joint_erp / settings.time_step
+        change = unless_nan(change, bound)
+        row = add_row(
+            model,
+            scratch,
+            world,
+            constraint,
+            row,
+            first + axis,
+            change,
+            effective_mass[axis],
+            -bound,
+            bound,
+        )
+    return row

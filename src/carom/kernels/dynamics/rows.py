@@ -1,0 +1,119 @@
+"""Constraint rows that act on one dof of one tree.
+
+A row asks for a change of the rate of its dof; the solver finds the impulse on the dof, within
+bounds, that brings it about. Rows of an island are contiguous, in the order in which the solver visits them.
+"""
+
+import warp as wp
+
+from carom.kernels.maths.blocks import write_multiple
+from carom.kernels.structs import Model, Scratch
+from carom.kernels.types import Int32, Vector3, func, real
+
+# Rows with less inverse mass than this are switched off (double precision epsilon).
+LEAST_INVERSE_MASS = real(2.220446049250313e-16)
+
+
+@func
+def add_row(
+    model: Model,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+    dof: Int32,
+    change: real,
+    effective_mass: real,
+    lower: real,
+    upper: real,
+) -> Int32:
+    """Write a row that wants the rate of `dof` to change by `change`; returns `row + 1`."""
+    tree = model.constraint[constraint].tree
+    i = dof - model.tree[tree].first_dof
+    blocks = (model.tree[tree].dof_count + 3) // 4
+    delta = model.tree[tree].first_delta
+    response = model.tree[tree].first_block + i * blocks
+    if effective_mass == 0.0:
+        change = real(0.0)
+    scratch.row[world, row].constraint = constraint
+    scratch.row[world, row].entry = 4 * delta + i
+    scratch.row[world, row].delta = delta
+    scratch.row[world, row].response = response
+    scratch.row[world, row].blocks = blocks
+    scratch.row[world, row].change = change
+    scratch.row[world, row].effective_mass = effective_mass
+    scratch.row[world, row].lower = lower
+    scratch.row[world, row].upper = upper
+    scratch.row[world, row].impulse = real(0.0)
+    write_multiple(
+        scratch.block_response, response, effective_mass, scratch.block_inverse_mass, response, world, blocks
+    )
+    return row + 1
+
+
+@func
+def row_dof(model: Model, scratch: Scratch, world: Int32, row: Int32) -> Int32:
+    """The dof a row acts on."""
+    tree = model.constraint[scratch.row[world, row].constraint].tree
+    return model.tree[tree].first_dof + scratch.row[world, row].entry - 4 * scratch.row[world, row].delta
+
+
+@func
+def inverse_mass_entry(model: Model, scratch: Scratch, world: Int32, tree: Int32, i: Int32, j: Int32) -> real:
+    """Entry (i, j) of a tree's inverse mass matrix, in its active dofs."""
+    blocks = (model.tree[tree].dof_count + 3) // 4
+    return scratch.entry_inverse_mass[world, 4 * (model.tree[tree].first_block + i * blocks) + j]
+
+
+@func
+def inverse_or_off(inverse_mass: real) -> real:
+    """Effective mass of a row; 0 where nothing can move."""
+    if inverse_mass > LEAST_INVERSE_MASS:
+        return 1.0 / inverse_mass
+    return 0.0
+
+
+@func
+def dof_effective_mass(model: Model, scratch: Scratch, world: Int32, tree: Int32, dof: Int32) -> real:
+    """Effective mass of a row on a single dof."""
+    i = dof - model.tree[tree].first_dof
+    return inverse_or_off(inverse_mass_entry(model, scratch, world, tree, i, i))
+
+
+@func
+def angular_inverse_mass(
+    model: Model, scratch: Scratch, world: Int32, tree: Int32, last_dof: Int32, direction: Vector3
+) -> real:
+    """Angular velocity along `direction` that a unit torque along it gives the link moved by `last_dof`."""
+    total = real(0.0)
+    first = model.tree[tree].first_dof
+    i = last_dof
+    while i >= 0:
+        along_i = wp.dot(direction, scratch.dof[world, i].angular)
+        if along_i != 0.0:
+            j = last_dof
+            while j >= 0:
+                along_j = wp.dot(direction, scratch.dof[world, j].angular)
+                total += (
+                    along_i * along_j * inverse_mass_entry(model, scratch, world, tree, i - first, j - first)
+                )
+                j = model.dof[j].parent
+        i = model.dof[i].parent
+    return total
+
+
+@func
+def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: Int32, link: Int32) -> Vector3:
+    """Effective masses of the three axes of a spherical joint.
+
+    The responses of both links add as if they were strangers, as Bullet has it; the rows converge
+    all the same, only by smaller steps.
+    """
+    result = Vector3(0.0, 0.0, 0.0)
+    first = model.link[link].first_dof
+    for axis in range(3):
+        direction = scratch.dof[world, first + axis].angular
+        own = angular_inverse_mass(model, scratch, world, tree, first + 2, direction)
+        parents = angular_inverse_mass(model, scratch, world, tree, model.dof[first].parent, direction)
+        result[axis] = inverse_or_off(own + parents)
+    return result

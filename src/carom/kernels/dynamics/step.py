@@ -1,0 +1,121 @@
+"""One step of worlds whose bodies neither touch nor are tied together, in one kernel launch."""
+
+import warp as wp
+
+from carom.kernels.dynamics.dynamics import (
+    generalized_forces,
+    link_bias_forces,
+    link_inertias,
+    update_velocities,
+)
+from carom.kernels.dynamics.feedback import (
+    clear_constraint_forces,
+    constraint_feedback,
+    measure_joint_wrenches,
+)
+from carom.kernels.dynamics.integration import integrate_positions
+from carom.kernels.dynamics.kinematics import forward_kinematics, motion_subspaces
+from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, invert, solve
+from carom.kernels.dynamics.motors import explicit_pd
+from carom.kernels.dynamics.single_body import is_single_body, move_single_body
+from carom.kernels.dynamics.step_ends import begin_step, end_step
+from carom.kernels.solver.activity import has_stirred, is_asleep, stop
+from carom.kernels.solver.joint_solver import (
+    apply_delta_velocities,
+    clear_delta_velocities,
+    is_constrained,
+    solve_joints,
+)
+from carom.kernels.structs import Model, Pairs, Scratch, Settings, State
+from carom.kernels.types import Int32, func, kernel
+from carom.layouts.codes import FREE_MOTION
+from carom.layouts.status import STATUS, WELL
+
+
+@func
+def move_tree(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
+):
+    """As `free_motion`, for any tree that is awake."""
+    explicit_pd(model, state, world, tree)
+    forward_kinematics(model, state, state.link_pose, world, tree)
+    motion_subspaces(model, state.link_pose, scratch, world, tree)
+    link_inertias(model, scratch, world, tree)
+    link_bias_forces(model, settings, state, scratch, world, tree, FREE_MOTION)
+    generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
+    composite_inertia(model, scratch, world, tree)
+    factorise(model, scratch, world, tree)
+    solve(model, scratch, world, tree)
+    if model.tree[tree].sensor_count > 0:
+        measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
+        clear_constraint_forces(model, scratch, world, tree)
+    update_velocities(model, settings, state, scratch, world, tree)
+    if pushed:
+        invert(model, scratch, world, tree)
+
+
+@func
+def free_motion(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    pushed: bool,
+):
+    """Velocities after the substep if there were no constraints; what they need if something is `pushed`."""
+    if is_asleep(state, world, tree):
+        return
+    if is_single_body(model, tree):
+        move_single_body(model, settings, state, scratch, world, tree, pushed)
+    else:
+        move_tree(model, settings, state, scratch, world, tree, pushed)
+    if has_stirred(state, world, tree):
+        # Gravity and forces act on it from the next substep on.
+        stop(model, state, world, tree)
+    clear_delta_velocities(model, scratch, world, tree)
+
+
+@func
+def constrained_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
+    """Add what the solver found to the velocities, and move on by them."""
+    for tree in range(settings.tree_count):
+        if is_asleep(state, world, tree):
+            stop(model, state, world, tree)
+            continue
+        move_on(settings, model, state, scratch, world, tree)
+
+
+@func
+def move_on(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `constrained_motion`, for one tree that is awake."""
+    if model.tree[tree].sensor_count > 0:
+        constraint_feedback(model, settings, state, scratch, world, tree)
+    apply_delta_velocities(model, state, scratch, world, tree)
+    integrate_positions(model, state, world, tree, settings.time_step)
+
+
+@kernel
+def step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    substeps: Int32,
+    first_world: Int32,
+):
+    """Advance each world by one step of `substeps` substeps."""
+    world = first_world + wp.tid()
+    begin_step(settings, model, state, scratch, pairs, world, 1)
+    for _substep in range(substeps):
+        if state.status_entry[world, STATUS] == WELL:
+            for tree in range(settings.tree_count):
+                pushed = is_constrained(model, state, world, model.tree[tree].batch)
+                free_motion(model, settings, state, scratch, world, tree, pushed)
+            for tree in range(settings.tree_count):
+                solve_joints(model, settings, state, scratch, world, tree)
+            constrained_motion(settings, model, state, scratch, world)
+    if state.status_entry[world, STATUS] == WELL:
+        end_step(settings, model, state, world)

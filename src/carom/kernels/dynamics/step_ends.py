@@ -1,0 +1,98 @@
+"""How a step begins and ends, and how one is called off."""
+
+import warp as wp
+
+from carom.kernels.contact.manifold import restore_contacts
+from carom.kernels.dynamics.motors import joint_damping
+from carom.kernels.dynamics.quarantine import keep_start, return_to_start
+from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
+from carom.kernels.types import Int32, Vector6, func, kernel
+from carom.layouts.contacts import NONE_KEPT, START_CONTACTS
+from carom.layouts.status import CONTACTS_WANTED, PAIRS_WANTED, STATUS, WELL
+
+
+@func
+def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
+    """Applied forces and torques last for one step."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        state.link_wrench[world, link] = Vector6()
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
+        state.dof_torque[world, dof] = 0.0
+
+
+@func
+def begin_world(state: State, pairs: Pairs, world: Int32):
+    """Let a world be well at the start of a step, with none of its contacts put aside."""
+    state.status_entry[world, STATUS] = WELL
+    state.status_entry[world, PAIRS_WANTED] = 0
+    state.status_entry[world, CONTACTS_WANTED] = 0
+    pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
+
+
+@func
+def abandon_tree(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Put a tree back to where the step started.
+
+    The forces that were applied are gone with a step that went wrong; one that is repeated needs them.
+    """
+    return_to_start(model, state, scratch, world, tree)
+    if state.status_entry[world, STATUS] > WELL:
+        clear_forces(model, state, world, tree)
+
+
+@func
+def begin_step(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, moves: Int32
+):
+    """Keep the start of a step, and let joint friction act for all of it, if anything `moves`."""
+    begin_world(state, pairs, world)
+    for tree in range(settings.tree_count):
+        keep_start(model, state, scratch, world, tree)
+        if moves != 0:
+            joint_damping(model, state, world, tree)
+
+
+@func
+def end_step(settings: Settings, model: Model, state: State, world: Int32):
+    """Forces last until a step is complete."""
+    for tree in range(settings.tree_count):
+        clear_forces(model, state, world, tree)
+
+
+@kernel
+def begin_step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    moves: Int32,
+    first_world: Int32,
+):
+    """Begin a step; `moves` is 0 where nothing but contacts are to be found."""
+    begin_step(settings, model, state, scratch, pairs, first_world + wp.tid(), moves)
+
+
+@kernel
+def end_step_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
+    """End a step."""
+    end_step(settings, model, state, first_world + wp.tid())
+
+
+@kernel
+def abandon_step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    contacts: Contacts,
+    pairs: Pairs,
+    first_world: Int32,
+):
+    """Go back to the start, where a step went wrong or something did not fit."""
+    world = first_world + wp.tid()
+    restore_contacts(contacts, pairs, world)
+    for tree in range(settings.tree_count):
+        abandon_tree(model, state, scratch, world, tree)

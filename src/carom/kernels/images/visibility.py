@@ -1,0 +1,173 @@
+"""Which triangle is seen in which pixel.
+
+A triangle is filled without being clipped: with its corners in homogeneous pixel coordinates (x w, y w, w),
+the weights that express (column, row, 1) by the three corners are affine in column and row, all three are
+positive inside and only there, and so is the depth. What lies behind the eye has a negative weight.
+"""
+
+import warp as wp
+
+from carom.kernels.structs import Scene, View
+from carom.kernels.types import Index4, Int32, Matrix4, Vector2, Vector3, Vector4, func, real
+
+# Share of a pixel by which one may lie outside an edge and still be on it.
+_ON_EDGE = real(1.0e-7)
+_HUGE = real(1.0e9)
+
+
+@func
+def is_beyond(matrix: Matrix4, plane: Vector4, centre: Vector3, radius: real) -> bool:
+    """A ball lies wholly where a linear function of the homogeneous pixel coordinates is negative."""
+    f = plane * matrix
+    across = wp.length(Vector3(f[0], f[1], f[2]))
+    return f[0] * centre[0] + f[1] * centre[1] + f[2] * centre[2] + f[3] + radius * across < 0.0
+
+
+@func
+def is_out_of_sight(scene: Scene, view: View, part: Int32, matrix: Matrix4) -> bool:
+    """No pixel of the view can show a part."""
+    centre = scene.part_centre[part]
+    radius = scene.part_radius[part]
+    right = real(view.width - 1)
+    bottom = real(view.height - 1)
+    return (
+        is_beyond(matrix, Vector4(1.0, 0.0, 0.0, 0.0), centre, radius)
+        or is_beyond(matrix, Vector4(-1.0, 0.0, 0.0, right), centre, radius)
+        or is_beyond(matrix, Vector4(0.0, 1.0, 0.0, 0.0), centre, radius)
+        or is_beyond(matrix, Vector4(0.0, -1.0, 0.0, bottom), centre, radius)
+        or is_beyond(matrix, Vector4(0.0, 0.0, 1.0, 1.0), centre, radius)
+        or is_beyond(matrix, Vector4(0.0, 0.0, -1.0, 1.0), centre, radius)
+    )
+
+
+@func
+def widened(bounds: Vector4, p: Vector4) -> Vector4:
+    """Bounds that take in a point in front of the eye as well."""
+    if p[3] <= 0.0:
+        return Vector4(-_HUGE, -_HUGE, _HUGE, _HUGE)
+    x = p[0] / p[3]
+    y = p[1] / p[3]
+    return Vector4(wp.min(bounds[0], x), wp.min(bounds[1], y), wp.max(bounds[2], x), wp.max(bounds[3], y))
+
+
+@func
+def widened_by_edge(bounds: Vector4, a: Vector4, b: Vector4) -> Vector4:
+    """Bounds that take in the first corner of an edge and where it meets the near plane."""
+    above_a = a[2] + a[3]
+    above_b = b[2] + b[3]
+    result = bounds
+    if above_a >= 0.0:
+        result = widened(result, a)
+    if (above_a >= 0.0) != (above_b >= 0.0):
+        result = widened(result, a + (b - a) * (above_a / (above_a - above_b)))
+    return result
+
+
+@func
+def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_sided: Int32) -> bool:
+    """Prepares a triangle to be filled; false if it cannot be seen."""
+    a = view.vertex_pixel[corners[0]]
+    b = view.vertex_pixel[corners[1]]
+    c = view.vertex_pixel[corners[2]]
+    first = wp.cross(Vector3(b[0], b[1], b[3]), Vector3(c[0], c[1], c[3]))
+    volume = first[0] * a[0] + first[1] * a[1] + first[2] * a[3]
+    if volume == 0.0 or (two_sided == 0 and volume * view.facing[0] < 0.0):
+        return False
+    if a[2] > a[3] and b[2] > b[3] and c[2] > c[3]:
+        return False
+    bounds = Vector4(_HUGE, _HUGE, -_HUGE, -_HUGE)
+    bounds = widened_by_edge(bounds, a, b)
+    bounds = widened_by_edge(bounds, b, c)
+    bounds = widened_by_edge(bounds, c, a)
+    left = wp.max(wp.ceil(bounds[0] - _ON_EDGE), 0.0)
+    top = wp.max(wp.ceil(bounds[1] - _ON_EDGE), 0.0)
+    right = wp.min(wp.floor(bounds[2] + _ON_EDGE), real(view.width - 1))
+    bottom = wp.min(wp.floor(bounds[3] + _ON_EDGE), real(view.height - 1))
+    # Written so that NaN fails as well.
+    if not (left <= right and top <= bottom):
+        return False
+    scale = 1.0 / volume
+    first = first * scale
+    second = wp.cross(Vector3(c[0], c[1], c[3]), Vector3(a[0], a[1], a[3])) * scale
+    third = wp.cross(Vector3(a[0], a[1], a[3]), Vector3(b[0], b[1], b[3])) * scale
+    view.facet_first[facet] = first
+    view.facet_second[facet] = second
+    view.facet_third[facet] = third
+    view.facet_depth[facet] = first * a[2] + second * b[2] + third * c[2]
+    view.facet_box[facet] = Index4(Int32(left), Int32(top), Int32(right), Int32(bottom))
+    view.facet_triangle[facet] = triangle
+    return True
+
+
+@func
+def project_chunk(scene: Scene, view: View, chunk: Int32):
+    """Fills the facets of a chunk: they begin at the index of its first triangle."""
+    first_part = scene.chunk_first_part[chunk]
+    first_facet = scene.part_first_triangle[first_part]
+    facet = Int32(first_facet)
+    for part in range(first_part, scene.chunk_first_part[chunk + 1]):
+        matrix = view.link_to_pixel[scene.part_link[part]]
+        if scene.part_rgba[part][3] == 0.0 or is_out_of_sight(scene, view, part, matrix):
+            continue
+        for vertex in range(scene.part_first_vertex[part], scene.part_first_vertex[part + 1]):
+            p = scene.vertex_position[vertex]
+            view.vertex_pixel[vertex] = matrix * Vector4(p[0], p[1], p[2], 1.0)
+        two_sided = scene.part_two_sided[part]
+        for triangle in range(scene.part_first_triangle[part], scene.part_first_triangle[part + 1]):
+            if add_facet(view, facet, triangle, scene.triangle_corners[triangle], two_sided):
+                facet += 1
+    view.chunk_facet_count[chunk] = facet - first_facet
+
+
+@func
+def where_positive(span: Vector2, slope: real, start: real) -> Vector2:
+    """The part of a span of columns in which slope * column + start >= 0."""
+    if slope > 0.0:
+        return Vector2(wp.max(span[0], -start / slope), span[1])
+    if slope < 0.0:
+        return Vector2(span[0], wp.min(span[1], -start / slope))
+    if start < 0.0:
+        return Vector2(_HUGE, -_HUGE)
+    return span
+
+
+@func
+def fill_facet(view: View, facet: Int32, first_row: Int32, end_row: Int32):
+    """Enters a facet in the rows first_row <= row < end_row where nothing nearer has been entered."""
+    box = view.facet_box[facet]
+    top = wp.max(box[1], first_row)
+    bottom = wp.min(box[3], end_row - 1)
+    if top > bottom:
+        return
+    first = view.facet_first[facet]
+    second = view.facet_second[facet]
+    third = view.facet_third[facet]
+    depth = view.facet_depth[facet]
+    for row in range(top, bottom + 1):
+        y = real(row)
+        span = Vector2(real(box[0]), real(box[2]))
+        span = where_positive(span, first[0], first[1] * y + first[2])
+        span = where_positive(span, second[0], second[1] * y + second[2])
+        span = where_positive(span, third[0], third[1] * y + third[2])
+        start = depth[1] * y + depth[2]
+        span = where_positive(span, depth[0], start + 1.0)
+        span = where_positive(span, -depth[0], 1.0 - start)
+        if span[0] - _ON_EDGE <= span[1] + _ON_EDGE:
+            line = row * view.width
+            for column in range(Int32(wp.ceil(span[0] - _ON_EDGE)), Int32(wp.floor(span[1] + _ON_EDGE)) + 1):
+                z = depth[0] * real(column) + start
+                if z <= view.pixel_depth[line + column]:
+                    view.pixel_depth[line + column] = z
+                    view.pixel_facet[line + column] = facet
+
+
+@func
+def fill_rows(scene: Scene, view: View, first_row: Int32, end_row: Int32):
+    """Finds the nearest facet of every pixel in some rows; of equally near ones the last."""
+    for pixel in range(first_row * view.width, end_row * view.width):
+        view.pixel_depth[pixel] = 1.0
+        view.pixel_facet[pixel] = -1
+    for chunk in range(view.chunk_facet_count.shape[0]):
+        first_facet = scene.part_first_triangle[scene.chunk_first_part[chunk]]
+        for facet in range(first_facet, first_facet + view.chunk_facet_count[chunk]):
+            fill_facet(view, facet, first_row, end_row)

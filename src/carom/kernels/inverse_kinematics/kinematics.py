@@ -1,0 +1,208 @@
+"""Where a chain's ends are, how far from their targets, and how its joints move them."""
+
+import warp as wp
+
+from carom.kernels.maths.rotation import axis_rotation
+from carom.kernels.structs import Chain, ChainSizes, Search
+from carom.kernels.types import Int32, Quaternion, Reals, Vector3, Vector4, func, real
+from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+
+
+@func
+def turned_about_z(rotation: Quaternion, angle: real) -> Quaternion:
+    """A rotation after a turn about its own z axis."""
+    s = wp.sin(0.5 * angle)
+    c = wp.cos(0.5 * angle)
+    return Quaternion(
+        rotation[0] * c + rotation[1] * s,
+        rotation[1] * c - rotation[0] * s,
+        rotation[2] * c + rotation[3] * s,
+        rotation[3] * c - rotation[2] * s,
+    )
+
+
+@func
+def z_axis(rotation: Quaternion) -> Vector3:
+    """The z axis of a frame."""
+    return Vector3(
+        2.0 * (rotation[0] * rotation[2] + rotation[3] * rotation[1]),
+        2.0 * (rotation[1] * rotation[2] - rotation[3] * rotation[0]),
+        1.0 - 2.0 * (rotation[0] * rotation[0] + rotation[1] * rotation[1]),
+    )
+
+
+@func
+def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
+    """Find the frames of all joints of a chain."""
+    # What the next joint most often hangs on stays at hand.
+    last_position = Vector3(0.0, 0.0, 0.0)
+    last_rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
+    for joint in range(sizes.joints):
+        origin = chain.joint[joint].origin
+        rotation = chain.joint[joint].turn
+        kind = chain.joint[joint].kind
+        q = chain.joint[joint].first_coordinate
+        if kind == REVOLUTE:
+            rotation = turned_about_z(rotation, coordinates[q])
+        elif kind == PRISMATIC:
+            origin += z_axis(rotation) * (chain.joint[joint].slide * coordinates[q])
+        elif kind == SPHERICAL:
+            rotation = rotation * Quaternion(
+                coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3]
+            )
+        elif kind == PLANAR:
+            origin += wp.quat_rotate(
+                rotation,
+                chain.joint[joint].planar_axis1 * coordinates[q + 1]
+                + chain.joint[joint].planar_axis2 * coordinates[q + 2],
+            )
+            rotation = rotation * axis_rotation(chain.joint[joint].axis, coordinates[q])
+        parent = chain.joint[joint].parent
+        if parent >= 0:
+            if parent != joint - 1:
+                last_position = search.joint[parent].position
+                last_rotation = search.joint[parent].rotation
+            origin = last_position + wp.quat_rotate(last_rotation, origin)
+            rotation = last_rotation * rotation
+        search.joint[joint].position = origin
+        search.joint[joint].rotation = rotation
+        last_position = origin
+        last_rotation = rotation
+
+
+@func
+def end_position(chain: Chain, search: Search, end: Int32) -> Vector3:
+    """Where an end is."""
+    joint = chain.end_joint[end]
+    position = chain.end_offset[end]
+    if joint >= 0:
+        position = search.joint[joint].position + wp.quat_rotate(search.joint[joint].rotation, position)
+    return position
+
+
+@func
+def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
+    """The turn that takes one rotation to another: axis times angle, at most π."""
+    turn = target * wp.quat_inverse(start)
+    axis = Vector3(turn[0], turn[1], turn[2])
+    cosine = turn[3]
+    if cosine < 0.0:
+        axis = -axis
+        cosine = -cosine
+    sine = wp.length(axis)
+    if sine < 1.0e-12:
+        return 2.0 * axis
+    return axis * (2.0 * wp.atan2(sine, cosine) / sine)
+
+
+@func
+def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Vector3:
+    """Fill `block_error` with the ways from the ends to their targets.
+
+    Returns:
+        Greatest distance [m], greatest angle [rad], sum of the squares of all errors.
+    """
+    distance = real(0.0)
+    angle = real(0.0)
+    squares = real(0.0)
+    stride = 1 + oriented
+    for end in range(sizes.ends):
+        way = search.end_target_position[end] - end_position(chain, search, end)
+        search.block_error[end * stride] = way
+        distance = wp.max(distance, wp.length(way))
+        squares += wp.dot(way, way)
+        if oriented == 1:
+            rotation = chain.end_turn[end]
+            joint = chain.end_joint[end]
+            if joint >= 0:
+                rotation = search.joint[joint].rotation * rotation
+            turn = rotation_vector(rotation, search.end_target_rotation[end])
+            search.block_error[end * stride + 1] = turn
+            angle = wp.max(angle, wp.length(turn))
+            squares += wp.dot(turn, turn)
+    return Vector3(distance, angle, squares)
+
+
+@func
+def write_column(search: Search, entry: Int32, oriented: Int32, linear: Vector3, angular: Vector3):
+    """Set what a unit of one freedom does to an end."""
+    search.entry_jacobian[entry] = linear
+    if oriented == 1:
+        search.entry_jacobian[entry + 1] = angular
+
+
+@func
+def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, oriented: Int32):
+    """Find how the joints, in their present frames, move the ends."""
+    stride = 1 + oriented
+    blocks = stride * sizes.ends
+    zero = Vector3(0.0, 0.0, 0.0)
+    if sizes.ends > 1:
+        for entry in range(blocks * sizes.columns):
+            search.entry_jacobian[entry] = zero
+    for end in range(sizes.ends):
+        position = end_position(chain, search, end)
+        joint = chain.end_joint[end]
+        while joint >= 0:
+            kind = chain.joint[joint].kind
+            entry = chain.joint[joint].first_column * blocks + end * stride
+            rotation = search.joint[joint].rotation
+            axis = z_axis(rotation)
+            arm = position - search.joint[joint].position
+            if kind == REVOLUTE:
+                write_column(search, entry, oriented, wp.cross(axis, arm), axis)
+            elif kind == PRISMATIC:
+                write_column(search, entry, oriented, axis * chain.joint[joint].slide, zero)
+            elif kind == SPHERICAL:
+                for k in range(3):
+                    unit = Vector3(0.0, 0.0, 0.0)
+                    unit[k] = 1.0
+                    axis = wp.quat_rotate(rotation, unit)
+                    write_column(search, entry + k * blocks, oriented, wp.cross(axis, arm), axis)
+            elif kind == PLANAR:
+                axis = wp.quat_rotate(rotation, chain.joint[joint].axis)
+                write_column(search, entry, oriented, wp.cross(axis, arm), axis)
+                angle = coordinates[chain.joint[joint].first_coordinate]
+                unturned = rotation * axis_rotation(chain.joint[joint].axis, -angle)
+                first = wp.quat_rotate(unturned, chain.joint[joint].planar_axis1)
+                second = wp.quat_rotate(unturned, chain.joint[joint].planar_axis2)
+                write_column(search, entry + blocks, oriented, first, zero)
+                write_column(search, entry + 2 * blocks, oriented, second, zero)
+            joint = chain.joint[joint].parent
+
+
+@func
+def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Vector4:
+    """The quaternion at `q` after turning by the rotation vector `rate`, in its own axes."""
+    angle = wp.length(rate)
+    scale = real(0.5)
+    if angle > 1.0e-9:
+        scale = wp.sin(0.5 * angle) / angle
+    change = Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * angle))
+    now = Quaternion(coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3])
+    result = wp.normalize(now * change)
+    return Vector4(result[0], result[1], result[2], result[3])
+
+
+@func
+def advance(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, result: Reals):
+    """Move every joint by `dof_step`."""
+    for dof in range(sizes.dofs):
+        coordinate = chain.dof_coordinate[dof]
+        if coordinate >= 0:
+            result[coordinate] = start[coordinate] + search.dof[dof].step
+    for joint in range(sizes.joints):
+        if chain.joint[joint].kind == SPHERICAL:
+            dof = chain.joint[joint].first_dof
+            q = chain.joint[joint].first_coordinate
+            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
+            quaternion = turned(start, q, rate)
+            for k in range(4):
+                result[q + k] = quaternion[k]
+
+
+@func
+def copy(count: Int32, source: Reals, target: Reals):
+    """Copy `count` numbers."""
+    for index in range(count):
+        target[index] = source[index]

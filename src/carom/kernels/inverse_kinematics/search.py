@@ -1,0 +1,278 @@
+"""The search for joint positions that bring the ends of a chain to their targets.
+
+It follows PyBullet's iteration first, so that where that arrives the result is the same. Where it does
+not arrive, where the angles are still off or a limit is violated, it may go on from there by the method of
+Levenberg and Marquardt within the limits, which converges quadratically; stuck in a local minimum it
+starts again from poses around the present one, ever farther away.
+"""
+
+import warp as wp
+
+from carom.kernels.inverse_kinematics.kinematics import (
+    advance,
+    copy,
+    fill_jacobian,
+    measure_errors,
+    place,
+    turned,
+)
+from carom.kernels.inverse_kinematics.selective_step import selective_step
+from carom.kernels.inverse_kinematics.steps import bounded_step, damped_step, null_space_step
+from carom.kernels.structs import Chain, ChainSizes, Search
+from carom.kernels.types import Int32, Quaternion, Reals, Vector3, Vector4, func, kernel, real
+from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
+from carom.layouts.codes import SPHERICAL
+
+# A step of this size changes nothing any more.
+_NO_STEP = real(1e-14)
+_LEAST_THRESHOLD = real(1e-9)
+# Damping by the sum of squared errors, and what remains of it at the target.
+_DAMPING_BY_ERROR = real(0.5)
+_LEAST_DAMPING = real(1e-8)
+_TRIES = wp.constant(6)
+# So many steps of so little progress mean a local minimum.
+_LITTLE_PROGRESS = real(0.999)
+_SLOW_STEPS = wp.constant(3)
+# Distance [m] that the patient do without: who asks again in each step comes nearer each time.
+_NEAR = real(0.02)
+# Poses to try at least where limits are to be kept: often only another pose of the arm arrives within them.
+_WITHIN_LIMITS = wp.constant(300)
+# Share of the best squared errors that makes another pose, which does not arrive either, worth going there:
+# who asks in each step does not want the arm to jump for little.
+_WORTH_A_JUMP = real(0.8)
+# Share of the joints' ranges within which the first new start is drawn.
+_FIRST_SPREAD = real(0.05)
+
+
+@func
+def follow(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    step_kind: Int32,
+    iterations: Int32,
+    threshold: real,
+):
+    """PyBullet's iteration: the last step is that after the one that came close enough."""
+    blocks = (1 + oriented) * sizes.ends
+    iteration = Int32(0)
+    while iteration < iterations:
+        place(sizes, chain, search, search.coordinate_now)
+        error = measure_errors(sizes, chain, search, oriented)
+        fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
+        greatest = real(0.0)
+        if step_kind == NULL_SPACE:
+            greatest = null_space_step(sizes, chain, search, search.coordinate_now, blocks)
+        elif step_kind == SELECTIVE:
+            greatest = selective_step(sizes, chain, search, blocks)
+        else:
+            greatest = damped_step(sizes, chain, search, blocks)
+        advance(sizes, chain, search, search.coordinate_now, search.coordinate_now)
+        iteration += 1
+        if error[0] <= threshold or greatest < _NO_STEP:
+            iteration = iterations
+
+
+@func
+def keep_limits(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals) -> Int32:
+    """Move joints into their limits; tells whether any was outside."""
+    changed = Int32(0)
+    for dof in range(sizes.dofs):
+        coordinate = chain.dof_coordinate[dof]
+        if coordinate >= 0:
+            position = coordinates[coordinate]
+            within = wp.clamp(position, search.dof[dof].lower, search.dof[dof].upper)
+            if within != position:
+                coordinates[coordinate] = within
+                changed = Int32(1)
+    return changed
+
+
+@func
+def descend(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    budget: Int32,
+    threshold: real,
+    error: Vector3,
+) -> Vector4:
+    """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
+
+    Args:
+        sizes: How many of everything there are.
+        chain: The chain; its joints are placed.
+        search: The question; its errors are measured.
+        oriented: 1 if the ends are to be turned as well.
+        budget: How many poses may be tried.
+        threshold: Distance and angle that are close enough.
+        error: Distance, angle and sum of squares at `coordinate_now`.
+
+    Returns:
+        The same at the end, and how many poses were tried.
+    """
+    blocks = (1 + oriented) * sizes.ends
+    tried = Int32(0)
+    slow = Int32(0)
+    growth = real(1.0)
+    while tried < budget and slow < _SLOW_STEPS and (error[0] > threshold or error[1] > threshold):
+        fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
+        attempt = Int32(0)
+        better = Int32(0)
+        while better == 0 and attempt < _TRIES and tried < budget:
+            damping = growth * _DAMPING_BY_ERROR * error[2] + _LEAST_DAMPING
+            bounded_step(sizes, chain, search, search.coordinate_now, blocks, damping)
+            advance(sizes, chain, search, search.coordinate_now, search.coordinate_trial)
+            place(sizes, chain, search, search.coordinate_trial)
+            trial = measure_errors(sizes, chain, search, oriented)
+            tried += 1
+            attempt += 1
+            if trial[2] < error[2]:
+                better = Int32(1)
+                growth = wp.max(0.25 * growth, real(1.0e-3))
+                slow += 1
+                if trial[2] < _LITTLE_PROGRESS * error[2]:
+                    slow = Int32(0)
+                error = trial
+                copy(sizes.coordinates, search.coordinate_trial, search.coordinate_now)
+            else:
+                growth *= 8.0
+                # The errors of the next try are those of the pose it starts from.
+                place(sizes, chain, search, search.coordinate_now)
+                measure_errors(sizes, chain, search, oriented)
+        if better == 0:
+            slow = _SLOW_STEPS
+    return Vector4(error[0], error[1], error[2], real(tried))
+
+
+@func
+def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed: Int32):
+    """A new start in `coordinate_now`, within a share of the joints' ranges around the first one."""
+    copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
+    random = wp.rand_init(seed)
+    for column in range(sizes.columns):
+        dof = chain.column[column].dof
+        low = chain.column[column].low
+        high = chain.column[column].high
+        if search.dof[dof].lower > -1.0e6 and search.dof[dof].upper < 1.0e6:
+            low = search.dof[dof].lower
+            high = search.dof[dof].upper
+        offset = spread * (high - low) * (real(wp.randf(random)) - 0.5) * 2.0
+        coordinate = chain.dof_coordinate[dof]
+        search.dof[dof].step = offset
+        if coordinate >= 0:
+            search.coordinate_now[coordinate] = wp.clamp(
+                search.coordinate_start[coordinate] + offset, low, high
+            )
+    for joint in range(sizes.joints):
+        if chain.joint[joint].kind == SPHERICAL:
+            dof = chain.joint[joint].first_dof
+            q = chain.joint[joint].first_coordinate
+            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
+            quaternion = turned(search.coordinate_start, q, rate)
+            for k in range(4):
+                search.coordinate_now[q + k] = quaternion[k]
+
+
+@func
+def take_targets(sizes: ChainSizes, search: Search):
+    """See the given targets from the base."""
+    origin = Vector3(search.base_pose[0], search.base_pose[1], search.base_pose[2])
+    base = Quaternion(search.base_pose[3], search.base_pose[4], search.base_pose[5], search.base_pose[6])
+    for end in range(sizes.ends):
+        search.end_target_position[end] = wp.quat_rotate_inv(base, search.end_given_position[end] - origin)
+        search.end_target_rotation[end] = wp.quat_inverse(base) * wp.normalize(search.end_given_rotation[end])
+
+
+@kernel
+def inverse_kinematics_kernel(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    step_kind: Int32,
+    bounded: Int32,
+    iterations: Int32,
+    further: Int32,
+    threshold: real,
+    patience: real,
+):
+    """Leave in `coordinate_best` the joint positions found.
+
+    Args:
+        sizes: How many of everything there are.
+        chain: The chain.
+        search: The question.
+        oriented: 1 if the ends are to be turned as well.
+        step_kind: What follows PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
+        bounded: 1 if limits are to be kept.
+        iterations: Most steps of PyBullet's iteration.
+        further: How many poses may be tried after that; with limits `_WITHIN_LIMITS` at least.
+        threshold: Distance [m] and angle [rad] that are close enough.
+        patience: PyBullet's result is taken, arrived or not, if it leaves at most this share of the distance.
+    """
+    take_targets(sizes, search)
+    for column in range(sizes.columns):
+        search.column[column].held = 0
+        search.column[column].weight = real(1.0)
+        if step_kind == DAMPED:
+            search.column[column].weight = 1.0 / search.dof[chain.column[column].dof].damping
+    for dof in range(sizes.dofs):
+        search.dof[dof].step = real(0.0)
+    copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
+    bearable = real(0.0)
+    if patience > 0.0:
+        place(sizes, chain, search, search.coordinate_now)
+        first = measure_errors(sizes, chain, search, oriented)
+        bearable = wp.max(patience * first[0], _NEAR)
+    follow(sizes, chain, search, oriented, step_kind, iterations, threshold)
+    outside = Int32(0)
+    if bounded == 1:
+        outside = keep_limits(sizes, chain, search, search.coordinate_now)
+    place(sizes, chain, search, search.coordinate_now)
+    error = measure_errors(sizes, chain, search, oriented)
+    copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
+    goal = wp.max(threshold, _LEAST_THRESHOLD)
+    if error[0] <= goal and error[1] <= goal:
+        return
+    if error[0] <= bearable and outside == 0:
+        return
+
+    # PyBullet looks at distances only. Where it is content, nothing but better angles will do.
+    content = error[0] <= goal and outside == 0
+    best = error[2]
+    if step_kind == DAMPED:
+        mean = real(0.0)
+        for column in range(sizes.columns):
+            mean += search.column[column].weight / real(sizes.columns)
+        for column in range(sizes.columns):
+            search.column[column].weight = search.column[column].weight / mean
+    for dof in range(sizes.dofs):
+        search.dof[dof].step = real(0.0)
+    left = further
+    if bounded == 1 and not content:
+        left = wp.max(iterations, _WITHIN_LIMITS)
+    spread = _FIRST_SPREAD
+    worth = real(1.0)
+    seed = Int32(1)
+    while left > 0:
+        outcome = descend(sizes, chain, search, oriented, left, goal, error)
+        left -= Int32(outcome[3]) + 1
+        arrived = outcome[0] <= goal and outcome[1] <= goal
+        if arrived or (outcome[2] < worth * best and not content):
+            best = outcome[2]
+            copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
+        if arrived:
+            return
+        scatter(sizes, chain, search, spread, seed)
+        for dof in range(sizes.dofs):
+            search.dof[dof].step = real(0.0)
+        if bounded == 1:
+            keep_limits(sizes, chain, search, search.coordinate_now)
+        place(sizes, chain, search, search.coordinate_now)
+        error = measure_errors(sizes, chain, search, oriented)
+        spread = wp.min(1.6 * spread, real(1.0))
+        worth = _WORTH_A_JUMP
+        seed += 1

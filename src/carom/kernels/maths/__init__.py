@@ -1,0 +1,1 @@
+"""Rotations, blocks of numbers, least and greatest entries."""

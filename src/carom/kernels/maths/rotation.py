@@ -1,0 +1,66 @@
+"""Quaternions and rotation matrices, as kernels use them. Quaternions are (x, y, z, w)."""
+
+import math
+
+import warp as wp
+
+from carom.kernels.maths.extremes import greater
+from carom.kernels.types import Matrix3, Quaternion, Vector3, func, real
+
+# An orientation is not meant to turn by more than this in one step (as in Bullet).
+MAX_ANGLE_PER_STEP = real(0.25 * math.pi)
+_SMALL_RATE = real(0.001)
+
+
+@func
+def axis_rotation(axis: Vector3, angle: real) -> Quaternion:
+    """Rotation by `angle` about the unit vector `axis`."""
+    half = angle * 0.5
+    s = wp.sin(half)
+    return Quaternion(axis[0] * s, axis[1] * s, axis[2] * s, wp.cos(half))
+
+
+@func
+def rotation_matrix(q: Quaternion) -> Matrix3:
+    """The rotation matrix of the unit quaternion `q`."""
+    xs, ys, zs = q[0] + q[0], q[1] + q[1], q[2] + q[2]
+    wx, wy, wz = q[3] * xs, q[3] * ys, q[3] * zs
+    xx, xy, xz = q[0] * xs, q[0] * ys, q[0] * zs
+    yy, yz, zz = q[1] * ys, q[1] * zs, q[2] * zs
+    return Matrix3(
+        1.0 - (yy + zz), xy - wz, xz + wy,
+        xy + wz, 1.0 - (xx + zz), yz - wx,
+        xz - wy, yz + wx, 1.0 - (xx + yy),
+    )  # fmt: skip
+
+
+@func
+def canonical(q: Quaternion) -> Quaternion:
+    """Of `q` and `-q`, which are the same rotation, the one a rotation matrix converts back to."""
+    lead = q[3]
+    if q[3] * q[3] <= 0.25:
+        lead = q[0]
+        if wp.abs(q[1]) > wp.abs(lead):
+            lead = q[1]
+        if wp.abs(q[2]) > wp.abs(lead):
+            lead = q[2]
+    if lead < 0.0:
+        return Quaternion(-q[0], -q[1], -q[2], -q[3])
+    return q
+
+
+@func
+def rotation_step(rate: Vector3, dt: real) -> Quaternion:
+    """Rotation after turning for `dt` at the angular velocity `rate`, by the exponential map.
+
+    Beyond the bound per step, which is Bullet's, the rotation falls short of the angle; the result is
+    then not of unit length.
+    """
+    speed = wp.length(rate)
+    if speed * dt > MAX_ANGLE_PER_STEP:
+        speed = MAX_ANGLE_PER_STEP / dt
+    scale = wp.sin(0.5 * speed * dt) / greater(speed, _SMALL_RATE)
+    if speed < _SMALL_RATE:
+        # Taylor series of sin(speed dt / 2) / speed.
+        scale = 0.5 * dt - dt * dt * dt * 0.020833333333 * speed * speed
+    return Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * speed * dt))

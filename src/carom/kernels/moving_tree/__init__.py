@@ -1,0 +1,1 @@
+"""Inverse dynamics, mass matrices, Jacobians and stable PD control of one body."""

@@ -1,0 +1,147 @@
+"""Inverse dynamics of a tree in the coordinates that users have."""
+
+import math
+
+import warp as wp
+
+from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.moving_tree.dynamics import newton_euler, turned_back, vector_at
+from carom.kernels.structs import Tree, TreeSizes
+from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
+from carom.layouts.codes import BASE_POSITIONS, SPHERICAL
+from carom.layouts.moving_tree import BASE_MOTION, POSE
+
+NOT_FINITE = real(math.inf)
+# Sine of the pitch from which on Bullet takes the roll for 0.
+GIMBAL_LOCK = real(0.99999)
+
+
+@func
+def direction(x: real, y: real):
+    """Cosine and sine of `atan2(y, x)`."""
+    length = wp.sqrt(x * x + y * y)
+    cosine, sine = real(1.0), real(0.0)
+    if length > 0.0:
+        cosine, sine = x / length, y / length
+    return cosine, sine
+
+
+@func
+def turned_back_in_opposite_order(q: Quaternion, v: Vector3) -> Vector3:
+    """A vector seen from a frame that is turned by a quaternion's yaw, pitch and roll in the wrong order.
+
+    PyBullet takes the orientation of a floating base apart like this, and puts it together the other way
+    round. Only a base that is turned about more than one axis is wrong by it.
+    """
+    x, y, z, w = q[0], q[1], q[2], q[3]
+    sp = -2.0 * (x * z - w * y)
+    cp = real(0.0)
+    cr, sr = real(1.0), real(0.0)
+    if wp.abs(sp) >= GIMBAL_LOCK:
+        sp = wp.sign(sp)
+        c, s = direction(sp * y, -sp * x)
+        cy, sy = c * c - s * s, 2.0 * c * s
+    else:
+        cp = wp.sqrt((1.0 - sp) * (1.0 + sp))
+        cr, sr = direction(w * w - x * x - y * y + z * z, 2.0 * (y * z + w * x))
+        cy, sy = direction(w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z))
+    unrolled = Vector3(v[0], cr * v[1] + sr * v[2], cr * v[2] - sr * v[1])
+    level = Vector3(cp * unrolled[0] - sp * unrolled[2], unrolled[1], sp * unrolled[0] + cp * unrolled[2])
+    return Vector3(cy * level[0] + sy * level[1], cy * level[1] - sy * level[0], level[2])
+
+
+@func
+def rotation_by_angles(roll: real, pitch: real, yaw: real) -> Quaternion:
+    """The rotation by a roll about x, then a pitch about y, then a yaw about z, all fixed axes."""
+    sr, cr = wp.sin(0.5 * roll), wp.cos(0.5 * roll)
+    sp, cp = wp.sin(0.5 * pitch), wp.cos(0.5 * pitch)
+    sy, cy = wp.sin(0.5 * yaw), wp.cos(0.5 * yaw)
+    return Quaternion(
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+@func
+def take_positions(sizes: TreeSizes, tree: Tree, question: Reals, first: Int32, by_angles: Int32):
+    """Fill `input` with the positions of the joints that begin at `first` in the question.
+
+    Args:
+        sizes: Sizes of the tree.
+        tree: The tree.
+        question: The question.
+        first: Where they begin.
+        by_angles: 1: spherical joints have roll, pitch and yaw instead of a quaternion.
+    """
+    joint_dofs = sizes.dofs - sizes.base_dofs
+    if by_angles == 0 or sizes.coordinates == joint_dofs:
+        for i in range(sizes.coordinates):
+            tree.input[BASE_MOTION + i] = question[first + i]
+        return
+    for node in range(1, sizes.nodes):
+        given = first + tree.node[node].first_dof - sizes.base_dofs
+        q = BASE_MOTION + tree.node[node].first_position
+        if tree.node[node].joint_type == SPHERICAL:
+            turn = rotation_by_angles(question[given], question[given + 1], question[given + 2])
+            for i in range(4):
+                tree.input[q + i] = turn[i]
+        else:
+            for i in range(tree.node[node].dof_count):
+                tree.input[q + i] = question[given + i]
+
+
+@func
+def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
+    """Gravity along the axes of a free base; not finite if its quaternion is no rotation."""
+    gravity = vector_at(question, 0)
+    q = POSE + 3
+    turn = Quaternion(question[q], question[q + 1], question[q + 2], question[q + 3])
+    if not wp.length_sq(turn) > 0.0:
+        return Vector3(NOT_FINITE, NOT_FINITE, NOT_FINITE)
+    if opposite_order == 1:
+        return turned_back_in_opposite_order(turn, gravity)
+    return turned_back(rotation_matrix(wp.normalize(turn)), gravity)
+
+
+@kernel
+def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, as_pybullet: Int32):
+    """Leave in `output` the forces that cause a motion; of a free base force, then torque.
+
+    Args:
+        sizes: Sizes of the tree.
+        tree: The tree.
+        question: Gravity along the axes of the base; positions; rates; accelerations. With a free base
+            gravity is in world axes; position and quaternion of the base come before the other positions,
+            its angular velocity and its velocity along its own axes before the other rates, and their
+            derivatives likewise.
+        as_pybullet: 1: gravity at a free base has the direction PyBullet gives it, and spherical joints have
+            roll, pitch and yaw.
+    """
+    positions = POSE + 0
+    acceleration = -vector_at(question, 0)
+    omega = Vector3(0.0, 0.0, 0.0)
+    alpha = Vector3(0.0, 0.0, 0.0)
+    unused = real(0.0)
+    if sizes.base_dofs > 0:
+        positions += BASE_POSITIONS
+    rates = positions + sizes.coordinates
+    if as_pybullet == 1:
+        rates = positions + sizes.dofs - sizes.base_dofs
+    if sizes.base_dofs > 0:
+        omega = vector_at(question, rates)
+        alpha = vector_at(question, rates + sizes.dofs)
+        own = vector_at(question, rates + sizes.dofs + 3)
+        acceleration = own - gravity_in_base(question, as_pybullet)
+        # What has no influence has to be finite, too.
+        idle = vector_at(question, POSE) + vector_at(question, rates + 3)
+        unused = 0.0 * (idle[0] + idle[1] + idle[2])
+    take_positions(sizes, tree, question, positions, as_pybullet)
+    newton_euler(sizes, tree, omega, alpha, acceleration, question, rates, rates + sizes.dofs)
+    if sizes.base_dofs > 0:
+        unused += 0.0 * tree.output[0]
+        for axis in range(3):
+            torque = tree.output[axis]
+            tree.output[axis] = tree.output[3 + axis] + unused
+            tree.output[3 + axis] = torque

@@ -1,0 +1,134 @@
+"""Torques of a stable PD controller."""
+
+import math
+
+import warp as wp
+
+from carom.kernels.moving_tree.dynamics import (
+    composite_inertia,
+    first_rate,
+    newton_euler,
+    place_in_base,
+    vector_at,
+)
+from carom.kernels.structs import Control, Tree, TreeSizes
+from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
+from carom.layouts.codes import SPHERICAL
+from carom.layouts.moving_tree import BASE_MOTION
+
+_NO_ANGLE = real(1e-6)
+_HALF_TURN = real(math.pi)
+
+
+@func
+def quaternion_at(numbers: Reals, first: Int32) -> Quaternion:
+    """Four numbers as a quaternion."""
+    return Quaternion(numbers[first], numbers[first + 1], numbers[first + 2], numbers[first + 3])
+
+
+@func
+def turn_between(start: Quaternion, end: Quaternion) -> Vector3:
+    """Rotation vector from one rotation to another, in the axes of the first."""
+    turn = wp.quat_inverse(start) * end
+    cosine = wp.clamp(turn[3], -1.0, 1.0)
+    sine = wp.sqrt(1.0 - cosine * cosine)
+    if sine <= _NO_ANGLE:
+        return Vector3(0.0, 0.0, 0.0)
+    angle = 2.0 * wp.acos(cosine)
+    if angle > _HALF_TURN:
+        angle -= 2.0 * _HALF_TURN
+    return Vector3(turn[0], turn[1], turn[2]) * (angle / sine)
+
+
+@func
+def advanced(start: Quaternion, rate: Vector3, time_step: real) -> Quaternion:
+    """A rotation after one explicit step at an angular velocity in its own axes."""
+    half = 0.5 * time_step
+    return wp.normalize(start + start * Quaternion(rate[0] * half, rate[1] * half, rate[2] * half, 0.0))
+
+
+@func
+def wanted_torques(sizes: TreeSizes, tree: Tree, control: Control, time_step: real):
+    """Fill `dof_torque`: from where the joints will be after a step at their rates to their targets."""
+    rates = first_rate(sizes)
+    for node in range(sizes.nodes):
+        q = tree.node[node].first_position
+        first = tree.node[node].first_dof
+        turn = Vector3(0.0, 0.0, 0.0)
+        if tree.node[node].joint_type == SPHERICAL:
+            start = quaternion_at(tree.input, BASE_MOTION + q)
+            u = rates + first
+            rate = Vector3(tree.input[u], tree.input[u + 1], tree.input[u + 2])
+            turn = turn_between(advanced(start, rate, time_step), quaternion_at(control.coordinate_target, q))
+        for k in range(tree.node[node].dof_count):
+            dof = first + k
+            if dof < sizes.base_dofs:
+                control.dof_torque[dof] = 0.0
+            else:
+                rate_now = tree.input[rates + dof]
+                error = turn[k % 3]
+                if tree.node[node].joint_type != SPHERICAL:
+                    position = tree.input[BASE_MOTION + q + k]
+                    error = control.coordinate_target[q + k] - position - time_step * rate_now
+                control.dof_torque[dof] = control.dof_kp[dof] * error + control.dof_kd[dof] * (
+                    control.dof_target_rate[dof] - rate_now
+                )
+
+
+@func
+def solve(sizes: TreeSizes, tree: Tree, control: Control, first: Int32, time_step: real):
+    """Fill `dof_acceleration` with what the wanted torques would do, the controller's damping included.
+
+    By Cholesky's method; dofs before `first`, and those without inertia, stay at rest.
+    """
+    count = sizes.dofs
+    for row in range(first, count):
+        value = control.dof_torque[row] - tree.output[row]
+        for column in range(first, row + 1):
+            entry = tree.matrix[row * count + column]
+            if row == column:
+                entry += time_step * control.dof_kd[row]
+            for k in range(first, column):
+                entry -= control.entry_factor[row * count + k] * control.entry_factor[column * count + k]
+            pivot = control.entry_factor[column * count + column]
+            if row == column:
+                # The diagonal holds reciprocals, 0 for dofs that stay at rest.
+                pivot = 0.0
+                if tree.matrix[row * count + row] + time_step * control.dof_kd[row] > 0.0:
+                    pivot = 1.0 / wp.sqrt(entry)
+                control.entry_factor[row * count + row] = pivot
+                control.dof_acceleration[row] = value * pivot
+            else:
+                control.entry_factor[row * count + column] = entry * pivot
+                value -= entry * pivot * control.dof_acceleration[column]
+    for behind in range(count - first):
+        row = count - 1 - behind
+        value = control.dof_acceleration[row]
+        for k in range(row + 1, count):
+            value -= control.entry_factor[k * count + row] * control.dof_acceleration[k]
+        control.dof_acceleration[row] = value * control.entry_factor[row * count + row]
+
+
+@kernel
+def stable_pd_kernel(sizes: TreeSizes, tree: Tree, control: Control, base_is_held: Int32, time_step: real):
+    """Leave in `dof_torque` the torques for the next step."""
+    still = Int32(-1)
+    newton_euler(
+        sizes,
+        tree,
+        vector_at(tree.input, 0),
+        vector_at(tree.input, 3),
+        vector_at(tree.input, 6),
+        tree.input,
+        first_rate(sizes),
+        still,
+    )
+    for node in range(sizes.nodes):
+        place_in_base(tree, node)
+    composite_inertia(sizes, tree)
+    wanted_torques(sizes, tree, control, time_step)
+    solve(sizes, tree, control, base_is_held * sizes.base_dofs, time_step)
+    for dof in range(sizes.base_dofs, sizes.dofs):
+        torque = control.dof_torque[dof] - time_step * control.dof_kd[dof] * control.dof_acceleration[dof]
+        most = control.dof_most[dof]
+        control.dof_torque[dof] = wp.clamp(torque, -most, most)

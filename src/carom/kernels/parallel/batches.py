@@ -1,0 +1,56 @@
+"""A whole step of trees that nothing ties together, over batches of them and worlds."""
+
+import warp as wp
+
+from carom.kernels.dynamics.step import free_motion
+from carom.kernels.parallel.trees import begin_tree, move_or_stop
+from carom.kernels.parallel.workspace import state_of_tree
+from carom.kernels.solver.joint_solver import is_constrained, solve_joints
+from carom.kernels.structs import IslandWork, Model, Pairs, Scratch, Settings, State
+from carom.kernels.types import Int32, func, kernel
+from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT
+
+
+@func
+def scratch_of_batch(model: Model, scratch: Scratch, root: Int32) -> Scratch:
+    """The scratch arrays with the rows of a batch in place of all rows."""
+    first = MAX_ROWS_PER_CONSTRAINT * model.tree[root].first_constraint
+    own = Scratch()
+    own = scratch
+    if model.tree[root].batch_constraints > 0:
+        own.row = scratch.row[:, first : first + MAX_ROWS_PER_CONSTRAINT * model.tree[root].batch_constraints]
+    return own
+
+
+@kernel
+def batch_step_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    work: IslandWork,
+    substeps: Int32,
+):
+    """Begin a step of each batch of trees, and perform its substeps; see `step.step_kernel`."""
+    root, world = wp.tid()
+    work.tree_free_fault[world, root] = 0
+    work.tree_motion_fault[world, root] = 0
+    if model.tree[root].batch != root:
+        return
+    own_state = state_of_tree(state, work.tree_free_fault, root)
+    own_scratch = scratch_of_batch(model, scratch, root)
+    for tree in range(root, settings.tree_count):
+        if model.tree[tree].batch == root:
+            begin_tree(model, state, scratch, pairs, world, tree)
+    for _substep in range(substeps):
+        for tree in range(root, settings.tree_count):
+            if model.tree[tree].batch == root:
+                pushed = is_constrained(model, own_state, world, root)
+                free_motion(model, settings, own_state, scratch, world, tree, pushed)
+        for tree in range(root, settings.tree_count):
+            if model.tree[tree].batch == root:
+                solve_joints(model, settings, own_state, own_scratch, world, tree)
+        for tree in range(root, settings.tree_count):
+            if model.tree[tree].batch == root:
+                move_or_stop(settings, model, own_state, scratch, world, tree)

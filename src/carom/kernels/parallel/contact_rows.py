@@ -1,0 +1,46 @@
+"""The rows of contacts, over islands and worlds."""
+
+import warp as wp
+
+from carom.kernels.parallel.workspace import GIVEN_UP, UNWRITTEN, WRITTEN, couplings_of_island, is_called_off
+from carom.kernels.solver.units import write_units
+from carom.kernels.structs import Contacts, Couplings, IslandWork, Model, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, kernel, real
+from carom.layouts.status import OVERFLOW, STATUS
+
+
+@kernel
+def island_contacts_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    couplings: Couplings,
+    work: IslandWork,
+):
+    """Write the contacts of each island for which that has still to be done.
+
+    One whose rows do not fit is given up, as is the step of its world.
+    """
+    root, world = wp.tid()
+    if is_called_off(state, world):
+        return
+    if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != UNWRITTEN:
+        return
+    made = work.tree_progress[world, root].made
+    units = Index4(0, 0, 0, 0)
+    first_contact = couplings.tree_first_contact[world, root]
+    if first_contact >= 0:
+        units = write_units(
+            model, settings, state, scratch, shapes, contacts,
+            couplings_of_island(couplings, work, world, root), world, first_contact,
+            Index4(made[1], made[2], 0, 0),
+            settings.contact_warm_starting * real(work.tree_progress[world, root].calm),
+        )  # fmt: skip
+    work.tree_progress[world, root].units = units
+    work.tree_progress[world, root].stage = Int32(WRITTEN)
+    if made[3] < 0 or units[0] < 0:
+        state.status_entry[world, STATUS] = OVERFLOW
+        work.tree_progress[world, root].stage = Int32(GIVEN_UP)

@@ -1,0 +1,122 @@
+"""Collision detection in finer launches than `collide`, for devices with thousands of threads.
+
+Shapes are placed, and the candidates of pairs are found, side by side. Neighbouring threads have the same
+shape, or the pair of the same number, in neighbouring worlds.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import look_ahead, place_shape
+from carom.kernels.contact.broad_phase import find_pairs_of_placed
+from carom.kernels.contact.collide import (
+    accept_contacts,
+    add_manifold,
+    can_stay,
+    find_candidates,
+    report_overflow,
+)
+from carom.kernels.contact.manifold import comes_before, keep_previous
+from carom.kernels.parallel.pair_work import pairs_of_worker, pairs_with_candidates
+from carom.kernels.structs import Contacts, Model, Pairs, PairWork, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, func, kernel
+from carom.layouts.contacts import PAIRS, THERE
+from carom.layouts.parallel import MOST_CANDIDATES
+from carom.layouts.status import STATUS, WELL
+
+
+@kernel
+def shape_bounds_kernel(
+    settings: Settings, shapes: Shapes, model: Model, state: State, scratch: Scratch, pairs: Pairs
+):
+    """Poses and bounds of each shape, and how far ahead continuous detection looks for it."""
+    shape, world = wp.tid()
+    pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
+    place_shape(shapes, state, pairs, world, shape)
+
+
+@kernel
+def world_pairs_kernel(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    pair_work: PairWork,
+):
+    """Pairs of shapes whose bounds meet, in each world; the contacts there are, are put aside."""
+    world = wp.tid()
+    if state.status_entry[world, STATUS] != WELL:
+        return
+    find_pairs_of_placed(shapes, model, settings, pairs, world)
+    count = pairs.count_pairs[world, PAIRS]
+    if count > pairs.pair_shapes.shape[1]:
+        report_overflow(state, world, count, 0)
+    else:
+        pair_work.world_kept[world] = keep_previous(contacts, pairs, world)
+
+
+@func
+def first_after(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index4, equal: Int32) -> Int32:
+    """As `manifold.skip_contacts`, by halving what is left."""
+    low = first + 0
+    high = end + 0
+    while low < high:
+        middle = (low + high) // 2
+        if comes_before(pairs, world, middle, pair, equal):
+            low = middle + 1
+        else:
+            high = middle + 0
+    return low
+
+
+@kernel
+def pair_candidates_kernel(
+    shapes: Shapes, state: State, contacts: Contacts, pairs: Pairs, pair_work: PairWork
+):
+    """Candidates of each pair; a worker looks at one pair after the other."""
+    worker = wp.tid()
+    own = pairs_of_worker(pairs, pair_work, worker)
+    worlds = pair_work.pair_found.shape[0]
+    item = worker + 0
+    while item < worlds * pairs.pair_shapes.shape[1]:
+        world = item % worlds
+        i = item // worlds
+        item += pair_work.worker_candidates.shape[0]
+        if state.status_entry[world, STATUS] == WELL and i < pairs.count_pairs[world, PAIRS]:
+            pair = pairs.pair_shapes[world, i]
+            kept = pair_work.world_kept[world]
+            end = kept + contacts.count_contacts[world, THERE]
+            first = first_after(pairs, world, kept, end, pair, 0)
+            last = first_after(pairs, world, first, end, pair, 1)
+            found, count = find_candidates(shapes, own, world, pair, first, last)
+            pair_work.pair_found[world, i] = Index4(first, last, found, count)
+            for candidate in range(wp.max(found, count)):
+                pair_work.candidate_terms[world, MOST_CANDIDATES * i + candidate] = own.candidate_terms[
+                    world, candidate
+                ]
+
+
+@kernel
+def world_contacts_kernel(
+    shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, pair_work: PairWork
+):
+    """Contacts of the candidates of all pairs, in each world; see `collide.make_contacts`."""
+    world = wp.tid()
+    if state.status_entry[world, STATUS] != WELL:
+        return
+    kept = pair_work.world_kept[world]
+    wanted = Int32(0)
+    for i in range(pairs.count_pairs[world, PAIRS]):
+        pair = pairs.pair_shapes[world, i]
+        found = pair_work.pair_found[world, i]
+        first = found[0]
+        last = found[1]
+        if can_stay(shapes, model, state, contacts, world, pair, wanted, first - kept, last - kept):
+            wanted += last - first
+        else:
+            wanted = add_manifold(
+                shapes, state, contacts, pairs_with_candidates(pairs, pair_work, i), world, pair, found[2],
+                found[3], first, last, wanted,
+            )  # fmt: skip
+    accept_contacts(state, contacts, world, wanted)

@@ -1,0 +1,102 @@
+"""Laying out the workspace of a world's islands, one after the other."""
+
+import warp as wp
+
+from carom.kernels.parallel.workspace import COUPLING, JACOBIAN, PATCH, ROW, RUN, TERMS, UNIT, VISIT, Window
+from carom.kernels.solver.calm import is_rigid
+from carom.kernels.solver.couplings import tree_blocks
+from carom.kernels.solver.long_patches import RUN_PER_BLOCK
+from carom.kernels.solver.units import next_unit
+from carom.kernels.structs import (
+    Contacts,
+    Couplings,
+    IslandWork,
+    Model,
+    Settings,
+    Shapes,
+    State,
+    UserConstraints,
+)
+from carom.kernels.types import Int32, func
+from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT, USER
+from carom.layouts.contacts import ROWS_PER_PAIR
+
+
+@func
+def room_for_constraints(
+    model: Model, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
+) -> Window:
+    """What the motors, limits and user constraints of an island need at most."""
+    room = Window()
+    constraint = couplings.tree_first_constraint[world, root]
+    while constraint >= 0:
+        if model.constraint[constraint].kind != USER:
+            room[ROW] += MAX_ROWS_PER_CONSTRAINT
+            room[VISIT] += MAX_ROWS_PER_CONSTRAINT
+        else:
+            user = model.constraint[constraint].link
+            blocks = tree_blocks(model, users.user_tree_a[user]) + tree_blocks(model, users.user_tree_b[user])
+            room[VISIT] += ROWS_PER_PAIR
+            room[COUPLING] += ROWS_PER_PAIR
+            room[JACOBIAN] += ROWS_PER_PAIR * blocks
+        constraint = couplings.constraint_next[world, constraint]
+    return room
+
+
+@func
+def room_for_contacts(
+    model: Model, shapes: Shapes, contacts: Contacts, couplings: Couplings, world: Int32, root: Int32
+) -> Window:
+    """What the contacts of an island need at most.
+
+    The rows of long patches are written one after the other in the same place.
+    """
+    room = Window()
+    temporary = Int32(0)
+    contact = couplings.tree_first_contact[world, root]
+    while contact >= 0:
+        pair = contacts.contact_shapes[world, contact]
+        a = shapes.shape_tree[pair[0]]
+        b = shapes.shape_tree[pair[1]]
+        blocks = tree_blocks(model, a) + tree_blocks(model, b)
+        rigid = is_rigid(model, a) and is_rigid(model, b)
+        members, count = next_unit(shapes, contacts, couplings, world, contact, rigid)
+        room[UNIT] += 1
+        room[TERMS] = wp.max(room[TERMS], count)
+        if count == 1:
+            room[COUPLING] += ROWS_PER_PAIR
+            room[JACOBIAN] += ROWS_PER_PAIR * blocks
+        else:
+            room[PATCH] += 1
+            if not rigid:
+                room[RUN] += RUN_PER_BLOCK * blocks
+                temporary = wp.max(temporary, ROWS_PER_PAIR * blocks)
+        contact = couplings.contact_next[world, members[count - 1]]
+    if temporary > 0:
+        room[COUPLING] += ROWS_PER_PAIR
+        room[JACOBIAN] += temporary
+    return room
+
+
+@func
+def lay_out_islands(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    work: IslandWork,
+    world: Int32,
+):
+    """Give each island a window of its own, by the order of their roots."""
+    free = Window()
+    for tree in range(settings.tree_count):
+        if state.tree_island[world, tree] == tree:
+            room = room_for_constraints(model, users, couplings, world, tree) + room_for_contacts(
+                model, shapes, contacts, couplings, world, tree
+            )
+            work.tree_window[world, tree] = free
+            work.tree_room[world, tree] = room
+            free += room

@@ -1,0 +1,65 @@
+"""What pairs of shapes need to be looked at side by side."""
+
+import warp as wp
+
+from carom.kernels.structs import Pairs, PairWork
+from carom.kernels.types import Index4Rows, Int32, Vector3Rows, Vector4Rows, Vector8Rows, func
+from carom.layouts.parallel import MOST_CANDIDATES
+
+# One row in place of every world's.
+_ROW = """
+    auto own = pool;
+    own.data = &wp::index(pool, worker, 0);
+    own.strides[0] = 0;
+    return own;
+"""
+
+
+@wp.func_native(_ROW)
+def own_indices(pool: Index4Rows, worker: Int32) -> Index4Rows:
+    """The row of a worker, shown to every world."""
+    ...
+
+
+@wp.func_native(_ROW)
+def own_vectors3(pool: Vector3Rows, worker: Int32) -> Vector3Rows:
+    """The row of a worker, shown to every world."""
+    ...
+
+
+@wp.func_native(_ROW)
+def own_vectors4(pool: Vector4Rows, worker: Int32) -> Vector4Rows:
+    """The row of a worker, shown to every world."""
+    ...
+
+
+@wp.func_native(_ROW)
+def own_vectors8(pool: Vector8Rows, worker: Int32) -> Vector8Rows:
+    """The row of a worker, shown to every world."""
+    ...
+
+
+@func
+def pairs_of_worker(pairs: Pairs, work: PairWork, worker: Int32) -> Pairs:
+    """The arrays of collision detection with a worker's room for the search in a pair."""
+    own = Pairs()
+    own = pairs
+    own.candidate_terms = own_vectors8(work.worker_candidates, worker)
+    own.polygon_a = own_vectors3(work.worker_polygon_a, worker)
+    own.polygon_b = own_vectors3(work.worker_polygon_b, worker)
+    own.polygon_clipped = own_vectors3(work.worker_polygon_clipped, worker)
+    own.polytope_point = own_vectors3(work.worker_polytope_point, worker)
+    own.polytope_point_a = own_vectors3(work.worker_polytope_point_a, worker)
+    own.polytope_plane = own_vectors4(work.worker_polytope_plane, worker)
+    own.polytope_face = own_indices(work.worker_polytope_face, worker)
+    own.polytope_edge = own_indices(work.worker_polytope_edge, worker)
+    return own
+
+
+@func
+def pairs_with_candidates(pairs: Pairs, work: PairWork, i: Int32) -> Pairs:
+    """The arrays of collision detection with the candidates that have been found for a pair."""
+    own = Pairs()
+    own = pairs
+    own.candidate_terms = work.candidate_terms[:, MOST_CANDIDATES * i : MOST_CANDIDATES * (i + 1)]
+    return own

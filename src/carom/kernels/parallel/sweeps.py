@@ -1,0 +1,65 @@
+"""The sweeps over the rows of islands, over islands and worlds."""
+
+import warp as wp
+
+from carom.kernels.parallel.workspace import (
+    UNWRITTEN,
+    WRITTEN,
+    couplings_of_island,
+    is_called_off,
+    scratch_of_island,
+)
+from carom.kernels.solver.calm import SOLVED, UNSOLVED
+from carom.kernels.solver.solver import forget_changes, sweep_island
+from carom.kernels.structs import Couplings, IslandWork, Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Vector3, func, kernel
+
+
+@func
+def sweep(
+    settings: Settings,
+    scratch: Scratch,
+    couplings: Couplings,
+    work: IslandWork,
+    world: Int32,
+    root: Int32,
+    visits: Int32,
+    calm: Int32,
+) -> Vector3:
+    """Relax the rows of an island until they hardly change; see `solver.sweep_island`."""
+    found = sweep_island(
+        settings,
+        scratch_of_island(scratch, work, world, root),
+        couplings_of_island(couplings, work, world, root),
+        world,
+        visits,
+        work.tree_progress[world, root].units,
+        calm,
+    )
+    work.tree_progress[world, root].residual = found[0]
+    work.tree_progress[world, root].sweeps = Int32(found[1])
+    return found
+
+
+@kernel
+def calm_sweeps_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, couplings: Couplings, work: IslandWork
+):
+    """Solve each calm island; one that cannot be solved so has its contacts written again, from nothing."""
+    root, world = wp.tid()
+    if is_called_off(state, world):
+        return
+    if (
+        state.tree_island[world, root] != root
+        or work.tree_progress[world, root].stage != WRITTEN
+        or work.tree_progress[world, root].calm == 0
+    ):
+        return
+    # It has no motors, limits or user constraints to visit.
+    found = sweep(settings, scratch, couplings, work, world, root, 0, 1)
+    work.tree_progress[world, root].outcome = Int32(SOLVED)
+    if found[0] > settings.residual_threshold:
+        work.tree_progress[world, root].outcome = Int32(UNSOLVED)
+        work.tree_progress[world, root].calm = 0
+        work.tree_progress[world, root].stage = Int32(UNWRITTEN)
+        forget_changes(settings, model, state, scratch, world, root)

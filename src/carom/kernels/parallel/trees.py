@@ -1,0 +1,139 @@
+"""Stages of a step over trees and worlds, and those over worlds alone between them."""
+
+import warp as wp
+
+from carom.kernels.contact.manifold import restore_contacts
+from carom.kernels.dynamics.kinematics import update_link_poses
+from carom.kernels.dynamics.motors import joint_damping
+from carom.kernels.dynamics.quarantine import keep_start
+from carom.kernels.dynamics.step import free_motion, move_on
+from carom.kernels.dynamics.step_ends import abandon_tree, begin_world, clear_forces
+from carom.kernels.parallel.layout import lay_out_islands
+from carom.kernels.parallel.workspace import is_called_off, state_of_tree
+from carom.kernels.solver.activity import is_asleep, stop
+from carom.kernels.solver.islands import build_islands, may_be_pushed
+from carom.kernels.structs import (
+    Contacts,
+    Couplings,
+    IslandWork,
+    Model,
+    Pairs,
+    Scratch,
+    Settings,
+    Shapes,
+    State,
+    UserConstraints,
+)
+from carom.kernels.types import Int32, IntRows, func, kernel
+from carom.layouts.status import STATUS, WELL
+
+
+@func
+def begin_tree(model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, tree: Int32):
+    """Keep the start of the step; see `step_ends.begin_step_kernel`."""
+    if tree == 0:
+        begin_world(state, pairs, world)
+    keep_start(model, state, scratch, world, tree)
+    joint_damping(model, state, world, tree)
+
+
+@kernel
+def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs):
+    """Begin the step of each tree, and of each world with its first."""
+    tree, world = wp.tid()
+    begin_tree(model, state, scratch, pairs, world, tree)
+
+
+@kernel
+def tree_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch):
+    """Bring the link poses of each tree up to date with its coordinates."""
+    tree, world = wp.tid()
+    if not is_called_off(state, world):
+        update_link_poses(settings, model, state, scratch, world, tree)
+
+
+@kernel
+def world_islands_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    work: IslandWork,
+):
+    """Group the trees of each world into islands, and give each of these its part of the workspace."""
+    world = wp.tid()
+    if is_called_off(state, world):
+        return
+    build_islands(settings, model, state, shapes, contacts, users, couplings, world)
+    lay_out_islands(settings, model, state, shapes, contacts, users, couplings, work, world)
+
+
+@kernel
+def tree_free_motion_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, couplings: Couplings, work: IslandWork
+):
+    """Velocities of each tree after a substep if there were no constraints."""
+    tree, world = wp.tid()
+    if is_called_off(state, world):
+        return
+    work.tree_free_fault[world, tree] = 0
+    pushed = may_be_pushed(model, couplings, world, tree)
+    own_state = state_of_tree(state, work.tree_free_fault, tree)
+    free_motion(model, settings, own_state, scratch, world, tree, pushed)
+
+
+@func
+def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """New velocities and positions of a tree; see `step.constrained_motion`."""
+    if is_asleep(state, world, tree):
+        stop(model, state, world, tree)
+        return
+    move_on(settings, model, state, scratch, world, tree)
+
+
+@kernel
+def tree_motion_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, work: IslandWork):
+    """New velocities and positions of each tree."""
+    tree, world = wp.tid()
+    if is_called_off(state, world):
+        return
+    work.tree_motion_fault[world, tree] = 0
+    own_state = state_of_tree(state, work.tree_motion_fault, tree)
+    move_or_stop(settings, model, own_state, scratch, world, tree)
+
+
+@func
+def note_first_fault(settings: Settings, state: State, faults: IntRows, world: Int32):
+    """Let the world know of the first of its trees that has a fault, if it is well."""
+    for tree in range(settings.tree_count):
+        if state.status_entry[world, STATUS] == WELL:
+            state.status_entry[world, STATUS] = faults[world, tree]
+
+
+@kernel
+def faults_kernel(settings: Settings, state: State, work: IslandWork):
+    """After a substep: whether a world has to go back to where the step began, and because of which tree."""
+    world = wp.tid()
+    note_first_fault(settings, state, work.tree_free_fault, world)
+    note_first_fault(settings, state, work.tree_motion_fault, world)
+
+
+@kernel
+def end_kernel(model: Model, state: State, scratch: Scratch):
+    """End the step of each tree, or go back to where it began."""
+    tree, world = wp.tid()
+    if is_called_off(state, world):
+        abandon_tree(model, state, scratch, world, tree)
+    else:
+        clear_forces(model, state, world, tree)
+
+
+@kernel
+def restore_kernel(state: State, contacts: Contacts, pairs: Pairs):
+    """Put the contacts of each world that went back there as well."""
+    world = wp.tid()
+    if is_called_off(state, world):
+        restore_contacts(contacts, pairs, world)

@@ -1,0 +1,94 @@
+"""What the islands of a world need to be solved side by side: each has its own part of the workspace.
+
+Where islands are solved one after the other, each writes its rows from the first on. Side by side they get
+windows: the arrays of `Scratch` and `Couplings` that begin where those of the island before end.
+"""
+
+import warp as wp
+
+from carom.kernels.structs import Couplings, IslandWork, Scratch, State
+from carom.kernels.types import Int32, IntRows, func
+from carom.kernels.warp_types import warp_type
+from carom.layouts import parallel
+from carom.layouts.status import STATUS, WELL
+
+# What a window has parts of: rows over one tree, rows to visit, units, patches, rows over two trees, their
+# blocks, the blocks of long patches, and contact terms.
+ROW, VISIT, UNIT, PATCH, COUPLING, JACOBIAN, RUN, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
+
+# How far an island is: its contacts have still to be written; all its rows are; they did not fit.
+UNWRITTEN, WRITTEN, GIVEN_UP = 0, 1, 2
+
+Window = warp_type(parallel.Window)
+
+
+@func
+def is_called_off(state: State, world: Int32) -> bool:
+    """Whether a world is only waiting for the end of the step, to go back to where that began."""
+    return state.status_entry[world, STATUS] != WELL
+
+
+@func
+def window_end(work: IslandWork, world: Int32, root: Int32, part: Int32, capacity: Int32) -> Int32:
+    """End of a part of an island's window, at most the length of the array it is in."""
+    return wp.min(work.tree_window[world, root][part] + work.tree_room[world, root][part], capacity)
+
+
+@func
+def scratch_of_island(scratch: Scratch, work: IslandWork, world: Int32, root: Int32) -> Scratch:
+    """The scratch arrays with the rows of an island in place of all rows."""
+    first = work.tree_window[world, root][ROW]
+    own = Scratch()
+    own = scratch
+    own.row = scratch.row[:, first : window_end(work, world, root, ROW, scratch.row.shape[1])]
+    return own
+
+
+@func
+def couplings_of_island(couplings: Couplings, work: IslandWork, world: Int32, root: Int32) -> Couplings:
+    """The solver's arrays over two trees with an island's window in place of the whole."""
+    first = work.tree_window[world, root]
+    own = Couplings()
+    own = couplings
+
+    row = wp.min(first[COUPLING], couplings.coupling_start.shape[1])
+    last_row = window_end(work, world, root, COUPLING, couplings.coupling_start.shape[1])
+    own.coupling_place = couplings.coupling_place[:, row:last_row]
+    own.coupling_start = couplings.coupling_start[:, row:last_row]
+    own.coupling_terms = couplings.coupling_terms[:, row:last_row]
+    own.coupling_bound = couplings.coupling_bound[:, row:last_row]
+
+    block = wp.min(first[JACOBIAN], couplings.jacobian_row.shape[1])
+    last_block = window_end(work, world, root, JACOBIAN, couplings.jacobian_row.shape[1])
+    own.jacobian_row = couplings.jacobian_row[:, block:last_block]
+    own.jacobian_response = couplings.jacobian_response[:, block:last_block]
+    own.entry_row = couplings.entry_row[:, 4 * block : 4 * last_block]
+    own.entry_response = couplings.entry_response[:, 4 * block : 4 * last_block]
+
+    run = wp.min(first[RUN], couplings.run_block.shape[1])
+    last_run = window_end(work, world, root, RUN, couplings.run_block.shape[1])
+    own.run_block = couplings.run_block[:, run:last_run]
+    own.entry_run = couplings.entry_run[:, 4 * run : 4 * last_run]
+
+    visit = first[VISIT]
+    unit = first[UNIT]
+    patch = first[PATCH]
+    terms = first[TERMS]
+    own.visit_row = couplings.visit_row[
+        :, visit : window_end(work, world, root, VISIT, couplings.visit_row.shape[1])
+    ]
+    own.unit_code = couplings.unit_code[
+        :, unit : window_end(work, world, root, UNIT, couplings.unit_code.shape[1])
+    ]
+    own.patch = couplings.patch[:, patch : window_end(work, world, root, PATCH, couplings.patch.shape[1])]
+    own.terms = work.terms[:, terms : window_end(work, world, root, TERMS, work.terms.shape[1])]
+    return own
+
+
+@func
+def state_of_tree(state: State, faults: IntRows, tree: Int32) -> State:
+    """The state with a place of the tree's own for faults; later the first tree that has one can be told."""
+    own = State()
+    own = state
+    own.status_entry = faults[:, tree : tree + 1]
+    return own

@@ -1,0 +1,1 @@
+"""Rays, nearest points, lists of contacts."""

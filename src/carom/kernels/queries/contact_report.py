@@ -1,0 +1,75 @@
+"""Contacts as users read them: those of chosen bodies, with forces instead of impulses."""
+
+from carom.kernels.structs import ContactReport, Contacts, Places
+from carom.kernels.types import Int32, func, kernel, real
+from carom.layouts.queries import ANY_LINK
+
+
+@func
+def fits(places: Places, row: Int32, body: Int32, link: Int32) -> bool:
+    """Whether a row is that of a link of a body; negative bodies and links from `ANY_LINK` down are any."""
+    return (body < 0 or places.place_body[row] == body) and (
+        link <= ANY_LINK or places.place_link[row] == link
+    )
+
+
+@kernel
+def report_contacts_kernel(
+    contacts: Contacts,
+    places: Places,
+    report: ContactReport,
+    world: Int32,
+    count: Int32,
+    body_a: Int32,
+    link_a: Int32,
+    body_b: Int32,
+    link_b: Int32,
+    time_step: real,
+):
+    """List the contacts of two links, bodies or any bodies.
+
+    Args:
+        contacts: All contacts.
+        places: What their links are.
+        report: Room for as many as there are.
+        world: The world.
+        count: How many there are.
+        body_a: One body, which comes first in the report; negative for any, which then changes no places.
+        link_a: Its link; see `fits`.
+        body_b: The other body.
+        link_b: Its link.
+        time_step: Of a step [s].
+    """
+    listed = Int32(0)
+    for row in range(count):
+        shapes = contacts.contact_shapes[world, row]
+        first = shapes[2]
+        second = shapes[3]
+        as_is = fits(places, first, body_a, link_a) and fits(places, second, body_b, link_b)
+        swapped = body_a >= 0 and fits(places, second, body_a, link_a) and fits(places, first, body_b, link_b)
+        if as_is or swapped:
+            point_a = contacts.contact_point_a[world, row]
+            point_b = contacts.contact_point_b[world, row]
+            normal = contacts.contact_normal[world, row]
+            if not as_is:
+                first = shapes[3]
+                second = shapes[2]
+                point_a = contacts.contact_point_b[world, row]
+                point_b = contacts.contact_point_a[world, row]
+                normal = -normal
+            impulse = contacts.contact_impulse[world, row]
+            report.report_body_a[listed] = places.place_body[first]
+            report.report_body_b[listed] = places.place_body[second]
+            report.report_link_a[listed] = places.place_link[first]
+            report.report_link_b[listed] = places.place_link[second]
+            report.report_point_a[listed] = point_a
+            report.report_point_b[listed] = point_b
+            report.report_normal[listed] = normal
+            report.report_distance[listed] = contacts.contact_distance[world, row]
+            report.report_force[listed] = impulse[0] / time_step
+            report.report_force1[listed] = impulse[1] / time_step
+            report.report_force2[listed] = impulse[2] / time_step
+            report.report_direction1[listed] = contacts.contact_direction1[world, row]
+            report.report_direction2[listed] = contacts.contact_direction2[world, row]
+            listed += 1
+    report.report_count[0] = listed

@@ -1,0 +1,137 @@
+"""Four neighbouring rays against boxes at once.
+
+What is done to four numbers alike takes one instruction, and rays that are cast together mostly meet the
+same boxes.
+"""
+
+import warp as wp
+
+from carom.kernels.queries.ray_surfaces import inverse_way
+from carom.kernels.structs import Rays
+from carom.kernels.types import Int32, Vector3, Vector4, func, real
+
+LANES = 4
+# Limit of a ray that is no ray.
+NOWHERE = real(-1.0)
+
+
+@wp.struct
+class Packet:
+    """Four rays, which are lanes here."""
+
+    first: Int32  # ray in the first lane
+    end: Int32  # after that in the last one
+    start_x: Vector4
+    start_y: Vector4
+    start_z: Vector4
+    inverse_x: Vector4  # one over how far it goes along the axis
+    inverse_y: Vector4
+    inverse_z: Vector4
+
+
+@func
+def way_of(rays: Rays, ray: Int32) -> Vector3:
+    """From the start of a ray to its end."""
+    return rays.ray_end[ray] - rays.ray_start[ray]
+
+
+@func
+def packet_of(rays: Rays, first: Int32, count: Int32):
+    """The rays from `first` on, and their limits: fractions after which nothing matters to them.
+
+    Nothing at all matters to those that are missing or not finite.
+    """
+    packet = Packet()
+    limit = Vector4(NOWHERE, NOWHERE, NOWHERE, NOWHERE)
+    packet.first = first
+    packet.end = wp.min(first + LANES, count)
+    for lane in range(LANES):
+        ray = wp.min(first + lane, count - 1)
+        start = rays.ray_start[ray]
+        way = way_of(rays, ray)
+        total = start[0] + start[1] + start[2] + way[0] + way[1] + way[2]
+        if first + lane == ray and wp.isfinite(total):
+            inverse = inverse_way(way)
+            packet.start_x[lane] = start[0]
+            packet.start_y[lane] = start[1]
+            packet.start_z[lane] = start[2]
+            packet.inverse_x[lane] = inverse[0]
+            packet.inverse_y[lane] = inverse[1]
+            packet.inverse_z[lane] = inverse[2]
+            limit[lane] = 1.0
+    return packet, limit
+
+
+@func
+def splat(number: real) -> Vector4:
+    """A number for each lane."""
+    return Vector4(number, number, number, number)
+
+
+@func
+def lesser(a: Vector4, b: Vector4) -> Vector4:
+    """The lesser number of each lane."""
+    return Vector4(
+        wp.where(a[0] < b[0], a[0], b[0]),
+        wp.where(a[1] < b[1], a[1], b[1]),
+        wp.where(a[2] < b[2], a[2], b[2]),
+        wp.where(a[3] < b[3], a[3], b[3]),
+    )
+
+
+@func
+def greater(a: Vector4, b: Vector4) -> Vector4:
+    """The greater number of each lane."""
+    return Vector4(
+        wp.where(a[0] > b[0], a[0], b[0]),
+        wp.where(a[1] > b[1], a[1], b[1]),
+        wp.where(a[2] > b[2], a[2], b[2]),
+        wp.where(a[3] > b[3], a[3], b[3]),
+    )
+
+
+@func
+def length_within(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> Vector4:
+    """Fraction of each ray, as far as it matters, that is in a box; negative if it does not meet it."""
+    one_x = wp.cw_mul(splat(lower[0]) - packet.start_x, packet.inverse_x)
+    one_y = wp.cw_mul(splat(lower[1]) - packet.start_y, packet.inverse_y)
+    one_z = wp.cw_mul(splat(lower[2]) - packet.start_z, packet.inverse_z)
+    other_x = wp.cw_mul(splat(upper[0]) - packet.start_x, packet.inverse_x)
+    other_y = wp.cw_mul(splat(upper[1]) - packet.start_y, packet.inverse_y)
+    other_z = wp.cw_mul(splat(upper[2]) - packet.start_z, packet.inverse_z)
+    enter_xy = greater(lesser(one_x, other_x), lesser(one_y, other_y))
+    enter = greater(enter_xy, greater(lesser(one_z, other_z), splat(0.0)))
+    leave_xy = lesser(greater(one_x, other_x), greater(one_y, other_y))
+    leave = lesser(leave_xy, lesser(greater(one_z, other_z), limit))
+    return leave - enter
+
+
+@func
+def any_within(lengths: Vector4) -> bool:
+    """Whether any of the lengths of `length_within` is that of a ray that meets the box."""
+    return lengths[0] >= 0.0 or lengths[1] >= 0.0 or lengths[2] >= 0.0 or lengths[3] >= 0.0
+
+
+@func
+def meets(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> bool:
+    """Whether any of the rays meets a box; empty boxes have their lower corner above their upper one."""
+    return lower[0] <= upper[0] and any_within(length_within(packet, limit, lower, upper))
+
+
+@func
+def lane_of(numbers: Vector4, lane: Int32) -> real:
+    """The number of a lane; unlike an index it leaves them all where vector instructions want them."""
+    return wp.where(
+        lane < 2, wp.where(lane == 0, numbers[0], numbers[1]), wp.where(lane == 2, numbers[2], numbers[3])
+    )
+
+
+@func
+def with_lane(numbers: Vector4, lane: Int32, number: real) -> Vector4:
+    """The numbers with another one in a lane."""
+    return Vector4(
+        wp.where(lane == 0, number, numbers[0]),
+        wp.where(lane == 1, number, numbers[1]),
+        wp.where(lane == 2, number, numbers[2]),
+        wp.where(lane == 3, number, numbers[3]),
+    )

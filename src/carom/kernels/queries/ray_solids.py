@@ -1,0 +1,206 @@
+"""Where a ray enters a convex shape, in the frame of the shape.
+
+Rays go from `start` to `start + way`; places on them are fractions of `way`. A ray that starts inside
+does not enter, unless it starts in the margin around the core of a shape, towards the core: then it hits at
+once, as in PyBullet. The core of a ball is its middle, that of a capsule its axis; boxes, cylinders and
+hulls have thin margins. A ray without length hits nothing. Each function returns the fraction, which is
+`MISS` where there is no hit, and the outward normal.
+"""
+
+import warp as wp
+
+from carom.kernels.types import Int32, Vector3, Vectors4, func, real, shared_func
+from carom.layouts.contacts import MARGIN
+
+MISS = real(2.0)
+TINY = real(1.0e-30)
+THICKNESS = real(MARGIN)
+"""Of what surrounds the core of boxes and cylinders [m]."""
+
+
+@func
+def ray_from_margin(from_core: Vector3, way: Vector3):
+    """From a place in the margin, given relative to the nearest place of the core."""
+    fraction = real(MISS)
+    normal = Vector3(0.0, 0.0, 0.0)
+    if wp.dot(from_core, way) < 0.0:
+        fraction = real(0.0)
+        normal = wp.normalize(from_core)
+    return fraction, normal
+
+
+@func
+def beyond(x: real, core: real) -> real:
+    """How far a coordinate is beyond a core that reaches as far on both sides, if it reaches anywhere."""
+    reach = wp.max(core, real(0.0))
+    return x - wp.clamp(x, -reach, reach)
+
+
+@func
+def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
+    """A ball."""
+    offset = start - center
+    a = wp.length_sq(way)
+    b = wp.dot(offset, way)
+    c = wp.length_sq(offset) - radius * radius
+    root = b * b - a * c
+    fraction = real(MISS)
+    normal = Vector3(0.0, 0.0, 0.0)
+    if a > TINY and c > 0.0 and b < 0.0 and root >= 0.0:
+        at = c / (-b + wp.sqrt(root))
+        if at <= 1.0:
+            fraction = at
+            normal = wp.normalize(offset + way * at)
+    elif c <= 0.0:
+        fraction, normal = ray_from_margin(offset, way)
+    return fraction, normal
+
+
+@func
+def ray_box(start: Vector3, way: Vector3, size: Vector3):
+    """A box around the origin with half extents `size`."""
+    enter = real(-1.0)
+    leave = real(1.0)
+    normal = Vector3(0.0, 0.0, 0.0)
+    fraction = real(MISS)
+    if wp.abs(start[0]) <= size[0] and wp.abs(start[1]) <= size[1] and wp.abs(start[2]) <= size[2]:
+        from_core = Vector3(
+            beyond(start[0], size[0] - THICKNESS),
+            beyond(start[1], size[1] - THICKNESS),
+            beyond(start[2], size[2] - THICKNESS),
+        )
+        fraction, normal = ray_from_margin(from_core, way)
+        return fraction, normal
+    for axis in range(3):
+        if way[axis] == 0.0:
+            if wp.abs(start[axis]) > size[axis]:
+                leave = real(-2.0)
+        else:
+            near = (-size[axis] - start[axis]) / way[axis]
+            far = (size[axis] - start[axis]) / way[axis]
+            if near > far:
+                swapped = near
+                near = far
+                far = swapped
+            if near > enter:
+                enter = near
+                normal = Vector3(0.0, 0.0, 0.0)
+                normal[axis] = -wp.sign(way[axis])
+            leave = wp.min(leave, far)
+    if enter >= 0.0 and enter <= leave:
+        fraction = enter
+    return fraction, normal
+
+
+@func
+def ray_tube(start: Vector3, way: Vector3, radius: real, half_length: real):
+    """The side of a cylinder along z, from outside."""
+    fraction = real(MISS)
+    normal = Vector3(0.0, 0.0, 0.0)
+    a = way[0] * way[0] + way[1] * way[1]
+    b = start[0] * way[0] + start[1] * way[1]
+    c = start[0] * start[0] + start[1] * start[1] - radius * radius
+    root = b * b - a * c
+    if a > TINY and c > 0.0 and b < 0.0 and root >= 0.0:
+        at = c / (-b + wp.sqrt(root))
+        point = start + way * at
+        if at <= 1.0 and wp.abs(point[2]) <= half_length:
+            fraction = at
+            normal = Vector3(point[0] / radius, point[1] / radius, 0.0)
+    return fraction, normal
+
+
+@func
+def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
+    """A cylinder along z; the side first, then the caps."""
+    fraction, normal = ray_tube(start, way, radius, half_length)
+    aside = wp.sqrt(start[0] * start[0] + start[1] * start[1])
+    if aside <= radius and wp.abs(start[2]) <= half_length:
+        outside = beyond(aside, radius - THICKNESS) / wp.max(aside, TINY)
+        above = beyond(start[2], half_length - THICKNESS)
+        fraction, normal = ray_from_margin(Vector3(start[0] * outside, start[1] * outside, above), way)
+    elif wp.abs(start[2]) > half_length and start[2] * way[2] < 0.0:
+        at = (half_length - wp.abs(start[2])) / (wp.sign(start[2]) * way[2])
+        point = start + way * at
+        if at <= 1.0 and point[0] * point[0] + point[1] * point[1] <= radius * radius:
+            fraction = at
+            normal = Vector3(0.0, 0.0, wp.sign(start[2]))
+    return fraction, normal
+
+
+@func
+def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
+    """A capsule along z: the first of its side and its two balls."""
+    nearest = start - Vector3(0.0, 0.0, wp.clamp(start[2], -half_length, half_length))
+    fraction = real(MISS)
+    normal = Vector3(0.0, 0.0, 0.0)
+    if wp.length(nearest) > radius:
+        fraction, normal = ray_tube(start, way, radius, half_length)
+        for end in range(2):
+            z = half_length * (2.0 * real(end) - 1.0)
+            at, outward = ray_ball(start, way, Vector3(0.0, 0.0, z), radius)
+            if at < fraction:
+                fraction = at
+                normal = outward
+    else:
+        fraction, normal = ray_from_margin(nearest, way)
+    return fraction, normal
+
+
+@func
+def nearest_face(face_plane: Vectors4, first_face: Int32, face_count: Int32, place: Vector3) -> Vector3:
+    """The outward normal of the face of a hull that a place within is nearest to."""
+    highest = real(-1.0e30)
+    nearest = Vector3(0.0, 0.0, 0.0)
+    for face in range(first_face, first_face + face_count):
+        plane = face_plane[face]
+        outward = Vector3(plane[0], plane[1], plane[2])
+        height = wp.dot(outward, place) - plane[3]
+        if height > highest:
+            highest = height
+            nearest = outward
+    return nearest
+
+
+@shared_func
+def ray_hull(
+    start: Vector3, way: Vector3, face_plane: Vectors4, first_face: Int32, face_count: Int32, margin: real
+):
+    """A convex polyhedron whose faces are moved out by `margin`."""
+    enter = real(-1.0)
+    leave = real(1.0)
+    normal = Vector3(0.0, 0.0, 0.0)
+    highest = real(-1.0e30)
+    for face in range(first_face, first_face + face_count):
+        plane = face_plane[face]
+        outward = Vector3(plane[0], plane[1], plane[2])
+        height = wp.dot(outward, start) - plane[3] - margin
+        slope = wp.dot(outward, way)
+        highest = wp.max(highest, height)
+        if slope < 0.0:
+            at = -height / slope
+            if at > enter:
+                enter = at
+                normal = outward
+        elif slope > 0.0:
+            leave = wp.min(leave, -height / slope)
+        elif height > 0.0:
+            leave = real(-2.0)
+    fraction = real(MISS)
+    if highest <= 0.0:
+        if highest >= -margin:
+            fraction, normal = ray_from_margin(nearest_face(face_plane, first_face, face_count, start), way)
+    elif enter >= 0.0 and enter <= leave:
+        fraction = enter
+    return fraction, normal
+
+
+@func
+def ray_plane(start: Vector3, way: Vector3, normal: Vector3):
+    """A plane through the origin, from either side; the normal is that of the side hit."""
+    height = wp.dot(start, normal)
+    slope = wp.dot(way, normal)
+    fraction = real(MISS)
+    if height * slope < 0.0 and wp.abs(height) <= wp.abs(slope):
+        fraction = -height / slope
+    return fraction, normal * wp.sign(height)

@@ -1,0 +1,167 @@
+"""Where a ray meets a triangle mesh or a height field; see `ray_solids` for the conventions.
+
+Triangles have two sides: the normal is that of the side hit.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.hierarchy import next_node
+from carom.kernels.queries.ray_solids import MISS
+from carom.kernels.shapes.triangles import Region, cell_at, triangle_corners
+from carom.kernels.structs import Shapes
+from carom.kernels.types import Int32, Matrix3, Vector3, func, real
+
+# Stands for one over zero.
+HUGE = real(1.0e30)
+# Rays hit this share of a triangle's size beside it, lest they slip between two.
+EDGE_TOLERANCE = real(1.0e-9)
+
+
+@func
+def inverse_way(way: Vector3) -> Vector3:
+    """One over each component of a ray's way; a huge number for zero."""
+    result = Vector3(HUGE, HUGE, HUGE)
+    for axis in range(3):
+        if wp.abs(way[axis]) * HUGE > 1.0:
+            result[axis] = 1.0 / way[axis]
+    return result
+
+
+@func
+def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, last: real) -> real:
+    """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if not until `last`."""
+    one = wp.cw_mul(lower - start, inverse)
+    other = wp.cw_mul(upper - start, inverse)
+    enter = wp.max(wp.max(wp.min(one, other)), 0.0)
+    leave = wp.min(wp.min(wp.max(one, other)), last)
+    # Empty boxes have their lower corner above their upper one.
+    if enter <= leave and lower[0] <= upper[0]:
+        return enter
+    return MISS
+
+
+@func
+def comes_after(fraction: real, after: real, inclusive: bool) -> bool:
+    """Whether a hit comes after a fraction, or is at it if that counts."""
+    return fraction > after or (inclusive and fraction == after)
+
+
+@func
+def ray_triangle(start: Vector3, way: Vector3, corners: Matrix3):
+    """A triangle, its corners in columns."""
+    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
+    b = Vector3(corners[0, 1], corners[1, 1], corners[2, 1])
+    c = Vector3(corners[0, 2], corners[1, 2], corners[2, 2])
+    across = wp.cross(b - a, c - a)
+    slope = wp.dot(across, way)
+    height = wp.dot(across, start - a)
+    fraction = real(MISS)
+    if height * slope < 0.0 and wp.abs(height) <= wp.abs(slope):
+        at = -height / slope
+        p = start + way * at
+        area = wp.length_sq(across)
+        least = wp.min(
+            wp.dot(wp.cross(b - a, p - a), across),
+            wp.min(wp.dot(wp.cross(c - b, p - b), across), wp.dot(wp.cross(a - c, p - c), across)),
+        )
+        if least >= -EDGE_TOLERANCE * area:
+            fraction = at
+    return fraction, wp.normalize(across) * wp.sign(height)
+
+
+@func
+def ray_mesh(
+    shapes: Shapes,
+    surface: Int32,
+    start: Vector3,
+    way: Vector3,
+    after: real,
+    inclusive: bool,
+    last: real,
+):
+    """The first triangle of a mesh that is hit after one fraction and not after another."""
+    region = Region()
+    leaf_count = shapes.shape_leaf_count[surface]
+    best = real(MISS)
+    best_normal = Vector3(0.0, 0.0, 0.0)
+    limit = last
+    inverse = inverse_way(way)
+    node = Int32(1)
+    while node > 0:
+        row = shapes.shape_first_node[surface] + node
+        if box_entry(start, inverse, shapes.node_lower[row], shapes.node_upper[row], limit) < MISS:
+            if node < leaf_count:
+                node = 2 * node
+                continue
+            fraction, normal = ray_triangle(start, way, triangle_corners(shapes, region, surface, node))
+            if comes_after(fraction, after, inclusive) and fraction <= limit and fraction < best:
+                best = fraction
+                best_normal = normal
+                limit = fraction
+        node = next_node(node)
+    return best, best_normal
+
+
+@func
+def time_to_leave(place: real, speed: real, cell: Int32) -> real:
+    """When a point that moves along an axis leaves a unit cell."""
+    if speed > 0.0:
+        return (real(cell) + 1.0 - place) / speed
+    if speed < 0.0:
+        return (real(cell) - place) / speed
+    return 1.0e30
+
+
+@func
+def ray_field(
+    shapes: Shapes,
+    surface: Int32,
+    start: Vector3,
+    way: Vector3,
+    after: real,
+    inclusive: bool,
+    last: real,
+):
+    """As `ray_mesh` for a height field: walks from cell to cell under the ray."""
+    center = shapes.shape_center[surface]
+    size = shapes.shape_size[surface]
+    best = real(MISS)
+    best_normal = Vector3(0.0, 0.0, 0.0)
+    now = box_entry(start, inverse_way(way), center - size, center + size, last)
+    columns = shapes.shape_columns[surface] - 1
+    rows = shapes.shape_vertex_count[surface] // shapes.shape_columns[surface] - 1
+    # Places and speeds in cells.
+    x = (start[0] - center[0] + size[0]) * 0.5 * real(columns) / size[0]
+    y = (start[1] - center[1] + size[1]) * 0.5 * real(rows) / size[1]
+    vx = way[0] * 0.5 * real(columns) / size[0]
+    vy = way[1] * 0.5 * real(rows) / size[1]
+    region = Region()
+    region.columns = Int32(1)
+    region.rows = Int32(1)
+    region.first_column = cell_at(x + vx * now, columns + 1)
+    region.first_row = cell_at(y + vy * now, rows + 1)
+    walking = now <= last
+    while walking:
+        for half in range(2):
+            fraction, normal = ray_triangle(
+                start, way, triangle_corners(shapes, region, surface, Int32(half))
+            )
+            if comes_after(fraction, after, inclusive) and fraction <= last and fraction < best:
+                best = fraction
+                best_normal = normal
+        leave_column = time_to_leave(x, vx, region.first_column)
+        leave_row = time_to_leave(y, vy, region.first_row)
+        now = wp.min(leave_column, leave_row)
+        if leave_column < leave_row:
+            region.first_column += Int32(wp.sign(vx))
+        else:
+            region.first_row += Int32(wp.sign(vy))
+        walking = (
+            best == MISS
+            and now <= last
+            and region.first_column >= 0
+            and region.first_column < columns
+            and region.first_row >= 0
+            and region.first_row < rows
+        )
+    return best, best_normal

@@ -1,0 +1,1 @@
+"""Narrow phase: contacts of two shapes, by their kinds."""

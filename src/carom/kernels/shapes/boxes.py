@@ -1,0 +1,145 @@
+"""Two boxes with sharp edges: the axis along which they overlap least."""
+
+import warp as wp
+
+from carom.kernels.maths.extremes import greatest_entry, least_entry, lower_corner
+from carom.kernels.shapes.cores import toward
+from carom.kernels.shapes.segments import nearest_places
+from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
+
+# What `box_axis` found: a face of a, a face of b, no axis within reach, or 3 + 3 i + j for the edges
+# along axis i of a and axis j of b.
+FACE_A, FACE_B, APART, EDGES = 0, 1, 2, 3
+# Edges, and faces of b, must be this share better than faces of a, lest contacts alternate; ...
+EDGE_SHARE = real(0.05)
+# ... edges also by this share of the thinnest box, as all are alike where boxes just touch.
+EDGE_SIZE_SHARE = real(1.0e-4)
+FACE_SHARE = real(1.0e-6)
+# Faces this share of the boxes apart touch: where they just do, rounding must not decide.
+TOUCHING_SHARE = real(1.0e-12)
+# Squared sine of the angle below which edges are parallel: faces tell all.
+PARALLEL = real(1.0e-8)
+
+
+@func
+def column(matrix: Matrix3, axis: Int32) -> Vector3:
+    """A column of a matrix."""
+    return Vector3(matrix[0, axis], matrix[1, axis], matrix[2, axis])
+
+
+@func
+def main_axis(direction: Vector3) -> Int32:
+    """The axis along which a vector is longest."""
+    size = wp.abs(direction)
+    axis = Int32(0)
+    if size[1] > size[axis]:
+        axis = Int32(1)
+    if size[2] > size[axis]:
+        axis = Int32(2)
+    return axis
+
+
+@shared_func
+def box_axis(
+    frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, reach: real
+):
+    """Separating axis test of two boxes.
+
+    Args:
+        frame_a: Rotation matrix of a.
+        half_a: Half extents of a.
+        frame_b: Rotation matrix of b.
+        half_b: Half extents of b.
+        offset: From the centre of a to that of b, in world axes.
+        reach: The test ends at an axis along which they are further apart than this.
+
+    Returns:
+        What it is (see `FACE_A`), the unit axis from b towards a in world axes, and the distance
+        along it, negative where they overlap. Where the centres coincide along the axis, it is the
+        negative one.
+    """
+    turn = wp.transpose(frame_a) * frame_b
+    t = wp.transpose(frame_a) * offset
+    size = Matrix3(
+        wp.abs(turn[0, 0]), wp.abs(turn[0, 1]), wp.abs(turn[0, 2]),
+        wp.abs(turn[1, 0]), wp.abs(turn[1, 1]), wp.abs(turn[1, 2]),
+        wp.abs(turn[2, 0]), wp.abs(turn[2, 1]), wp.abs(turn[2, 2]),
+    )  # fmt: skip
+    gaps_a = wp.abs(t) - half_a - size * half_b
+    t_in_b = wp.transpose(turn) * t
+    gaps_b = wp.abs(t_in_b) - half_b - wp.transpose(size) * half_a
+
+    code = Int32(FACE_A)
+    axis = Int32(0)
+    best = gaps_a[0]
+    if gaps_a[1] > best:
+        best = gaps_a[1]
+        axis = Int32(1)
+    if gaps_a[2] > best:
+        best = gaps_a[2]
+        axis = Int32(2)
+    normal = column(frame_a, axis) * -toward(t[axis], 1.0)
+    for i in range(3):
+        if gaps_b[i] > best + FACE_SHARE * wp.abs(best):
+            best = gaps_b[i]
+            code = Int32(FACE_B)
+            normal = column(frame_b, i) * -toward(t_in_b[i], 1.0)
+    if best > reach + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
+        return Int32(APART), normal, best
+
+    thinnest = least_entry(lower_corner(half_a, half_b))
+    needed = best + EDGE_SHARE * wp.abs(best) + EDGE_SIZE_SHARE * thinnest
+    pair = Int32(0)
+    while pair < 9:
+        i = pair // 3
+        j = pair % 3
+        j1 = (j + 1) % 3
+        j2 = (j + 2) % 3
+        i1 = (i + 1) % 3
+        i2 = (i + 2) % 3
+        length_sq = 1.0 - turn[i, j] * turn[i, j]
+        if length_sq > PARALLEL:
+            # The cross product of unit vector i with column j, and what both boxes reach along it.
+            along = t[i2] * turn[i1, j] - t[i1] * turn[i2, j]
+            reach_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
+            reach_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
+            gap = (wp.abs(along) - reach_a - reach_b) / wp.sqrt(length_sq)
+            if gap > needed:
+                needed = gap
+                best = gap
+                code = EDGES + pair
+                cross = wp.cross(column(frame_a, i), column(frame_b, j))
+                normal = cross * (-toward(along, 1.0) / wp.sqrt(length_sq))
+        pair += 1
+    if code >= EDGES and best > reach:
+        return Int32(APART), normal, best
+    return code, normal, best
+
+
+@shared_func
+def box_edge_points(
+    frame_a: Matrix3,
+    half_a: Vector3,
+    frame_b: Matrix3,
+    half_b: Vector3,
+    center_a: Vector3,
+    center_b: Vector3,
+    code: Int32,
+    normal: Vector3,
+):
+    """Nearest points of the edges that `box_axis` found: on a, on b."""
+    i = (code - EDGES) // 3
+    j = (code - EDGES) % 3
+    middle_a = center_a
+    middle_b = center_b
+    for k in range(3):
+        side_a = column(frame_a, k)
+        side_b = column(frame_b, k)
+        if k != i:
+            middle_a += side_a * toward(-wp.dot(side_a, normal), half_a[k])
+        if k != j:
+            middle_b += side_b * toward(wp.dot(side_b, normal), half_b[k])
+    edge_a = column(frame_a, i) * half_a[i]
+    edge_b = column(frame_b, j) * half_b[j]
+    place_a, place_b = nearest_places(middle_a - middle_b, edge_a, edge_b)
+    return middle_a + edge_a * place_a, middle_b + edge_b * place_b

@@ -1,0 +1,131 @@
+"""Contact points of two touching faces: one is clipped by the sides of the other."""
+
+import warp as wp
+
+from carom.kernels.contact.candidates import add_candidate
+from carom.kernels.shapes.boxes import column, main_axis
+from carom.kernels.shapes.cores import Core
+from carom.kernels.types import Int32, Vector3, Vector3Rows, Vector8Rows, func, real, shared_func
+from carom.layouts.codes import BOX
+
+
+@func
+def clip_by_side(
+    polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32, point: Vector3, outward: Vector3
+) -> Int32:
+    """Cut off what is outside a plane from a polygon, or a line of two corners; returns the corners left."""
+    kept = Int32(0)
+    edges = count
+    if count == 2:
+        edges = Int32(1)
+    room = clipped.shape[1]
+    here = polygon[world, 0]
+    height = wp.dot(here - point, outward)
+    for i in range(edges):
+        following = i + 1
+        if following == count:
+            following = Int32(0)
+        there = polygon[world, following]
+        height_there = wp.dot(there - point, outward)
+        if height <= 0.0 and kept < room:
+            clipped[world, kept] = here
+            kept += 1
+        if (height < 0.0 and height_there > 0.0) or (height > 0.0 and height_there < 0.0):
+            if kept < room:
+                clipped[world, kept] = here + (there - here) * (height / (height - height_there))
+                kept += 1
+        here = there
+        height = height_there
+    if count == 2 and height <= 0.0 and kept < room:
+        clipped[world, kept] = here
+        kept += 1
+    for i in range(kept):
+        polygon[world, i] = clipped[world, i]
+    return kept
+
+
+@func
+def clip_by_box(
+    core: Core, axis: Int32, polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32
+) -> Int32:
+    """Cut off what is not over a face of a box, across one of its axes; returns the corners left.
+
+    The sides come in Bullet's order, which decides with which corner the polygon begins.
+    """
+    left = count
+    for side in range(3):
+        if side != axis:
+            across = column(core.frame, side)
+            for way in range(2):
+                outward = across * (2.0 * real(way) - 1.0)
+                if left > 0:
+                    left = clip_by_side(
+                        polygon, clipped, world, left, core.position + outward * core.size[side], outward
+                    )
+    return left
+
+
+@shared_func
+def clip_faces(
+    core: Core,
+    reference: Vector3Rows,
+    reference_count: Int32,
+    outward: Vector3,
+    incident: Vector3Rows,
+    incident_count: Int32,
+    clipped: Vector3Rows,
+    normal: Vector3,
+    reference_is_a: Int32,
+    radius_a: real,
+    radius_b: real,
+    reach: real,
+    candidates: Vector8Rows,
+    world: Int32,
+    found: Int32,
+) -> Int32:
+    """Candidates where the incident face lies over the reference face and near it.
+
+    Args:
+        core: Whose face the reference face is.
+        reference: Corners of the reference face, counter-clockwise as seen from outside.
+        reference_count: Their number, at least three.
+        outward: Outward normal of the reference face.
+        incident: Corners of the other face; they are clipped.
+        incident_count: Their number, at least one.
+        clipped: Room for corners.
+        normal: Contact normal on b towards a.
+        reference_is_a: 1 if the reference face is that of a.
+        radius_a: Rounding of a.
+        radius_b: Rounding of b.
+        reach: Largest distance of a contact.
+        candidates: Where candidates go.
+        world: The world.
+        found: Number of candidates already there.
+
+    Returns:
+        Number of candidates.
+    """
+    count = incident_count
+    p = reference[world, reference_count - 1]
+    if core.kind == BOX:
+        axis = main_axis(wp.transpose(core.frame) * outward)
+        count = clip_by_box(core, axis, incident, clipped, world, count)
+    else:
+        for i in range(reference_count):
+            q = reference[world, i]
+            if count > 0:
+                count = clip_by_side(incident, clipped, world, count, p, wp.cross(q - p, outward))
+            p = q
+    slope = wp.abs(wp.dot(outward, normal))
+    total = found
+    for i in range(count):
+        v = incident[world, i]
+        core_distance = wp.dot(v - p, outward) / slope
+        distance = core_distance - radius_a - radius_b
+        if distance <= reach:
+            # The corner is on the core of the incident shape.
+            point = v + normal * radius_b
+            if reference_is_a == 0:
+                point = v - normal * (core_distance - radius_b)
+            total = add_candidate(candidates, world, total, point, normal, distance)
+    return total

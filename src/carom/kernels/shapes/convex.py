@@ -1,0 +1,176 @@
+"""Any two convex shapes: the normal from their nearest or deepest points, then all of the contact."""
+
+import warp as wp
+
+from carom.kernels.contact.candidates import add_candidate, candidate_distance
+from carom.kernels.maths.extremes import lesser
+from carom.kernels.shapes.clip import clip_faces
+from carom.kernels.shapes.cores import Core, support, toward
+from carom.kernels.shapes.faces import arrange_box_corners, supporting_face
+from carom.kernels.shapes.gjk import TOUCHING, nearest_points
+from carom.kernels.shapes.polytope import overlap
+from carom.kernels.structs import Pairs, Shapes
+from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, real
+from carom.layouts.codes import BOX
+
+# Cosine of the angle between a face and the contact beyond which the face does not lie on the other.
+FLAT_ON = real(0.999)
+# A nearest point this much deeper than all others belongs to the contact [m].
+DEEPER = real(1.0e-6)
+
+
+@func
+def over_face(box: Core, other: Core, vertex_position: Vectors3):
+    """Height of a core over the face of a box that looks at it, the face's normal, and the lowest point.
+
+    The point where the core is lowest and its foot on the face are the nearest points of the two if the
+    foot lies on the face: no search is needed for what rests on a table. Otherwise the height is 0.
+    """
+    offset = wp.transpose(box.frame) * (other.position - box.position)
+    axis = Int32(0)
+    most = wp.abs(offset[0]) - box.size[0]
+    for candidate in range(1, 3):
+        excess = wp.abs(offset[candidate]) - box.size[candidate]
+        if excess > most:
+            most = excess
+            axis = Int32(candidate)
+    normal = Vector3(0.0, 0.0, 0.0)
+    normal[axis] = toward(offset[axis], 1.0)
+    outward = box.frame * normal
+    lowest = support(other, vertex_position, -outward)
+    local = wp.transpose(box.frame) * (lowest - box.position)
+    height = wp.dot(normal, local) - box.size[axis]
+    beside = wp.abs(local) - box.size
+    beside[axis] = real(-1.0)
+    if beside[0] > 0.0 or beside[1] > 0.0 or beside[2] > 0.0:
+        height = real(0.0)
+    return height, outward, lowest
+
+
+@func
+def nearest_or_deepest(shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core, core_b: Core, reach: real):
+    """Distance of two cores (negative: overlap), normal on b towards a, nearest points on a and on b.
+
+    If the distance is more than `reach` it is a lower bound, and the rest means nothing.
+    """
+    if core_a.kind == BOX:
+        height, outward, lowest = over_face(core_a, core_b, shapes.vertex_position)
+        if height > TOUCHING:
+            return height, -outward, lowest - outward * height, lowest
+    elif core_b.kind == BOX:
+        height, outward, lowest = over_face(core_b, core_a, shapes.vertex_position)
+        if height > TOUCHING:
+            return height, outward, lowest, lowest - outward * height
+    start = core_a.position - core_b.position
+    distance, point_a, point_b = nearest_points(core_a, core_b, shapes.vertex_position, start, reach)
+    normal = start
+    if distance > TOUCHING:
+        normal = (point_a - point_b) / wp.length(point_a - point_b)
+    else:
+        depth, normal, point_a, point_b = overlap(
+            core_a,
+            core_b,
+            shapes.vertex_position,
+            pairs.polytope_point,
+            pairs.polytope_point_a,
+            pairs.polytope_plane,
+            pairs.polytope_face,
+            pairs.polytope_edge,
+            world,
+            start,
+            point_a,
+        )
+        distance = -depth
+    return distance, normal, point_a, point_b
+
+
+@func
+def face_towards(
+    shapes: Shapes, core: Core, shape: Int32, direction: Vector3, polygon: Vector3Rows, world: Int32
+):
+    """The face of a shape's core that looks most along `direction`: normal and number of corners."""
+    normal, count = supporting_face(
+        core,
+        shapes.shape_first_face[shape],
+        shapes.shape_face_count[shape],
+        shapes.vertex_position,
+        shapes.face_plane,
+        shapes.face_first_corner,
+        shapes.face_corner_count,
+        shapes.corner_vertex,
+        direction,
+        polygon,
+        world,
+    )
+    return normal, count
+
+
+@func
+def touch_faces(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    core_a: Core,
+    core_b: Core,
+    normal: Vector3,
+    reach: real,
+    found: Int32,
+) -> Int32:
+    """Add the candidates of two faces that lie on each other; none if neither face is flat on the normal."""
+    normal_a, count_a = face_towards(shapes, core_a, a, -normal, pairs.polygon_a, world)
+    normal_b, count_b = face_towards(shapes, core_b, b, normal, pairs.polygon_b, world)
+    flat_a = -wp.dot(normal_a, normal)
+    flat_b = wp.dot(normal_b, normal)
+    if count_a < 3:
+        flat_a = real(0.0)
+    if count_b < 3:
+        flat_b = real(0.0)
+    count = found
+    if flat_a >= flat_b and flat_a > FLAT_ON:
+        if core_b.kind == BOX:
+            arrange_box_corners(core_b, normal_b, pairs.polygon_b, world)
+        count = clip_faces(
+            core_a, pairs.polygon_a, count_a, normal_a, pairs.polygon_b, count_b, pairs.polygon_clipped,
+            normal, 1, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
+        )  # fmt: skip
+    elif flat_b > FLAT_ON:
+        if core_a.kind == BOX:
+            arrange_box_corners(core_a, normal_a, pairs.polygon_a, world)
+        count = clip_faces(
+            core_b, pairs.polygon_b, count_b, normal_b, pairs.polygon_a, count_a, pairs.polygon_clipped,
+            normal, 0, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
+        )  # fmt: skip
+    return count
+
+
+@func
+def touch_convex(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    core_a: Core,
+    core_b: Core,
+    reach: real,
+    found: Int32,
+) -> Int32:
+    """Add the candidates of two cores at most `reach` apart to those found; returns their number."""
+    rounding = core_a.radius + core_b.radius
+    core_distance, normal, _point_a, point_b = nearest_or_deepest(
+        shapes, pairs, world, core_a, core_b, reach + rounding
+    )
+    distance = core_distance - rounding
+    if distance > reach:
+        return found
+    count = touch_faces(shapes, pairs, world, a, b, core_a, core_b, normal, reach, found)
+    deepest = distance + 2.0 * DEEPER
+    for row in range(found, count):
+        deepest = lesser(deepest, candidate_distance(pairs.candidate_terms, world, row))
+    if count == found or distance < deepest - DEEPER:
+        count = add_candidate(
+            pairs.candidate_terms, world, count, point_b + normal * core_b.radius, normal, distance
+        )
+    return count

@@ -1,0 +1,112 @@
+"""What the narrow phase sees of a convex shape: a core, and a radius by which it is rounded.
+
+Bullet's margins decide the core. A ball is a point and a capsule a segment. The margin of a box or a
+cylinder lies inside: the core is that much smaller, and edges are round. That of a hull or a triangle
+lies outside. Only between boxes, and against planes, boxes have sharp edges.
+"""
+
+import warp as wp
+
+from carom.kernels.maths.extremes import least_entry, lesser
+from carom.kernels.structs import Pairs, Shapes
+from carom.kernels.types import Int32, Matrix3, Vector3, Vectors3, func, real
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
+
+
+@wp.struct
+class Core:
+    """A convex set without its rounding.
+
+    Its kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER` and `HULL`, and
+    `TRIANGLES` for one triangle, whose corners are the columns of `frame`, counted from `position`.
+    """
+
+    kind: Int32
+    size: Vector3  # as `Shapes.shape_size`, less what is rounded off
+    radius: real
+    position: Vector3
+    frame: Matrix3
+    first_vertex: Int32
+    vertex_count: Int32
+
+
+@func
+def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
+    """The core of a convex shape."""
+    core = Core()
+    core.kind = shapes.shape_kind[shape]
+    core.size = shapes.shape_size[shape]
+    core.position = pairs.shape_position[world, shape]
+    core.frame = pairs.shape_frame[world, shape]
+    margin = shapes.shape_margin[shape]
+    if core.kind == SPHERE or core.kind == CAPSULE:
+        core.radius = core.size[0]
+    elif core.kind == BOX:
+        core.radius = lesser(margin, least_entry(core.size))
+        core.size = core.size - Vector3(core.radius, core.radius, core.radius)
+    elif core.kind == CYLINDER:
+        core.radius = lesser(margin, lesser(core.size[0], core.size[1]))
+        core.size = core.size - Vector3(core.radius, core.radius, 0.0)
+    else:
+        core.radius = margin
+        core.first_vertex = shapes.shape_first_vertex[shape]
+        core.vertex_count = shapes.shape_vertex_count[shape]
+    return core
+
+
+@func
+def segment_half(core: Core) -> Vector3:
+    """From the middle of a capsule's segment to one end; zero for a ball."""
+    if core.kind == CAPSULE:
+        return core.frame * Vector3(0.0, 0.0, core.size[1])
+    return Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def toward(value: real, size: real) -> real:
+    """`size` with the sign of `value`."""
+    if value < 0.0:
+        return -size
+    return size
+
+
+@func
+def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> Vector3:
+    """Farthest point of a core along a direction, both in the frame of the shape."""
+    size = core.size
+    if core.kind == BOX:
+        return Vector3(
+            toward(direction[0], size[0]), toward(direction[1], size[1]), toward(direction[2], size[2])
+        )
+    if core.kind == HULL:
+        best = core.first_vertex
+        most = wp.dot(vertex_position[best], direction)
+        for vertex in range(core.first_vertex + 1, core.first_vertex + core.vertex_count):
+            along = wp.dot(vertex_position[vertex], direction)
+            if along > most:
+                most = along
+                best = vertex
+        return vertex_position[best]
+    if core.kind == CYLINDER:
+        radial = wp.sqrt(direction[0] * direction[0] + direction[1] * direction[1])
+        scale = real(0.0)
+        if radial > 0.0:
+            scale = size[0] / radial
+        return Vector3(direction[0] * scale, direction[1] * scale, toward(direction[2], size[1]))
+    if core.kind == CAPSULE:
+        return Vector3(0.0, 0.0, toward(direction[2], size[1]))
+    if core.kind == TRIANGLES:
+        # The direction came as the three corners' heights along it.
+        if direction[0] >= direction[1] and direction[0] >= direction[2]:
+            return Vector3(1.0, 0.0, 0.0)
+        if direction[1] >= direction[2]:
+            return Vector3(0.0, 1.0, 0.0)
+        return Vector3(0.0, 0.0, 1.0)
+    return Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def support(core: Core, vertex_position: Vectors3, direction: Vector3) -> Vector3:
+    """Farthest point of a core along a direction, in world axes."""
+    local = wp.transpose(core.frame) * direction
+    return core.position + core.frame * local_support(core, vertex_position, local)

@@ -1,0 +1,181 @@
+"""The face, edge or vertex that a core turns to its opponent."""
+
+import warp as wp
+
+from carom.kernels.shapes.boxes import column, main_axis
+from carom.kernels.shapes.cores import Core, toward
+from carom.kernels.types import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, TRIANGLES
+
+# Corners that stand for the rim of a cylinder.
+RIM = 8
+COS_45 = real(0.7071067811865476)
+
+
+@func
+def box_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32) -> Vector3:
+    """Corners of the face of a box that looks most along `direction`; returns its outward normal."""
+    local = wp.transpose(core.frame) * direction
+    axis = main_axis(local)
+    u = (axis + 1) % 3
+    v = (axis + 2) % 3
+    sign = toward(local[axis], 1.0)
+    normal = column(core.frame, axis) * sign
+    # Turning the second edge with the sign keeps the corners counter-clockwise from outside.
+    edge_u = column(core.frame, u) * core.size[u]
+    edge_v = column(core.frame, v) * (core.size[v] * sign)
+    center = core.position + normal * core.size[axis]
+    polygon[world, 0] = center + edge_u + edge_v
+    polygon[world, 1] = center - edge_u + edge_v
+    polygon[world, 2] = center - edge_u - edge_v
+    polygon[world, 3] = center + edge_u - edge_v
+    return normal
+
+
+@func
+def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, world: Int32):
+    """Corners of the face of a box with a normal, in Bullet's order, which may be clockwise.
+
+    Where the forces of several points are not determined, those that come first bear more.
+    """
+    axis = main_axis(wp.transpose(core.frame) * outward)
+    u = Int32(0)
+    v = Int32(2)
+    if axis == 0:
+        u = Int32(1)
+    if axis == 2:
+        v = Int32(1)
+    edge_u = column(core.frame, u) * core.size[u]
+    edge_v = column(core.frame, v) * core.size[v]
+    center = core.position + outward * core.size[axis]
+    polygon[world, 0] = center - edge_u - edge_v
+    polygon[world, 1] = center - edge_u + edge_v
+    polygon[world, 2] = center + edge_u + edge_v
+    polygon[world, 3] = center + edge_u - edge_v
+
+
+@func
+def cylinder_feature(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32):
+    """A cylinder's cap, its rim as a polygon with a corner at its farthest point, or a line of its side."""
+    axis = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
+    along = wp.dot(axis, direction)
+    radial = direction - axis * along
+    length = wp.length(radial)
+    if length > 1.0e-9:
+        radial = radial / length
+    else:
+        radial = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
+    sign = toward(along, 1.0)
+    if wp.abs(along) < wp.abs(length):
+        rim = core.position + radial * core.size[0]
+        polygon[world, 0] = rim + axis * (core.size[1] * sign)
+        polygon[world, 1] = rim - axis * (core.size[1] * sign)
+        return radial, Int32(2)
+    normal = axis * sign
+    center = core.position + normal * core.size[1]
+    x = radial * core.size[0]
+    y = wp.cross(normal, x)
+    for corner in range(RIM):
+        polygon[world, corner] = center + x
+        turned = (x + y) * COS_45
+        y = (y - x) * COS_45
+        x = turned
+    return normal, Int32(RIM)
+
+
+@func
+def hull_face(
+    core: Core,
+    first_face: Int32,
+    face_count: Int32,
+    vertex_position: Vectors3,
+    face_plane: Vectors4,
+    face_first_corner: Ints,
+    face_corner_count: Ints,
+    corner_vertex: Ints,
+    direction: Vector3,
+    polygon: Vector3Rows,
+    world: Int32,
+):
+    """Corners of the face of a hull that looks most along `direction`, its normal and their number.
+
+    Of faces with more corners than fit, corners are left out evenly.
+    """
+    local = wp.transpose(core.frame) * direction
+    best = first_face
+    most = real(-2.0)
+    for face in range(first_face, first_face + face_count):
+        plane = face_plane[face]
+        along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
+        if along > most:
+            most = along
+            best = face
+    plane = face_plane[best]
+    corners = face_corner_count[best]
+    kept = wp.min(corners, polygon.shape[1] // 2)
+    first = face_first_corner[best]
+    for i in range(kept):
+        vertex = corner_vertex[first + (i * corners) // kept]
+        polygon[world, i] = core.position + core.frame * vertex_position[vertex]
+    return core.frame * Vector3(plane[0], plane[1], plane[2]), kept
+
+
+@func
+def triangle_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32) -> Vector3:
+    """Corners of a triangle, counter-clockwise from where `direction` points; returns its normal."""
+    a = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
+    b = Vector3(core.frame[0, 1], core.frame[1, 1], core.frame[2, 1])
+    c = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
+    normal = wp.normalize(wp.cross(b - a, c - a))
+    polygon[world, 0] = core.position + a
+    if wp.dot(normal, direction) >= 0.0:
+        polygon[world, 1] = core.position + b
+        polygon[world, 2] = core.position + c
+        return normal
+    polygon[world, 1] = core.position + c
+    polygon[world, 2] = core.position + b
+    return -normal
+
+
+@shared_func
+def supporting_face(
+    core: Core,
+    first_face: Int32,
+    face_count: Int32,
+    vertex_position: Vectors3,
+    face_plane: Vectors4,
+    face_first_corner: Ints,
+    face_corner_count: Ints,
+    corner_vertex: Ints,
+    direction: Vector3,
+    polygon: Vector3Rows,
+    world: Int32,
+):
+    """Write the corners of the face (two for a line, one for a point) that looks most along `direction`.
+
+    Returns:
+        Its outward normal, and the number of corners.
+    """
+    if core.kind == BOX:
+        normal = box_face(core, direction, polygon, world)
+        return normal, Int32(4)
+    if core.kind == CYLINDER:
+        normal, count = cylinder_feature(core, direction, polygon, world)
+        return normal, count
+    if core.kind == HULL:
+        normal, count = hull_face(
+            core, first_face, face_count, vertex_position, face_plane, face_first_corner,
+            face_corner_count, corner_vertex, direction, polygon, world,
+        )  # fmt: skip
+        return normal, count
+    if core.kind == TRIANGLES:
+        normal = triangle_face(core, direction, polygon, world)
+        return normal, Int32(3)
+    if core.kind == CAPSULE:
+        axis = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
+        radial = direction - axis * wp.dot(axis, direction)
+        polygon[world, 0] = core.position + axis * core.size[1]
+        polygon[world, 1] = core.position - axis * core.size[1]
+        return wp.normalize(radial), Int32(2)
+    polygon[world, 0] = core.position
+    return direction, Int32(1)

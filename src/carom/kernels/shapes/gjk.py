@@ -1,0 +1,194 @@
+"""Nearest points of two cores (Gilbert, Johnson and Keerthi's algorithm).
+
+It looks for the point nearest to the origin in the set of all differences a - b of points of the two
+cores, by a simplex of at most four differences that moves towards it.
+"""
+
+import warp as wp
+
+from carom.kernels.maths.extremes import greater, within_bounds
+from carom.kernels.shapes.cores import Core, support
+from carom.kernels.types import Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
+
+MOST_STEPS = 64
+# Cores nearer than this overlap [m].
+TOUCHING = real(1.0e-10)
+# The distance is known to this [m], ...
+PRECISION = real(1.0e-13)
+# ... or to this share of it, whichever is more.
+RELATIVE_PRECISION = real(1.0e-14)
+# Volume of a simplex over the cube of its size below which it is flat.
+FLAT = real(1.0e-14)
+
+
+@func
+def corner(simplex: Matrix43, i: Int32) -> Vector3:
+    """Corner of a simplex."""
+    return Vector3(simplex[i, 0], simplex[i, 1], simplex[i, 2])
+
+
+@func
+def weighted(simplex: Matrix43, weights: Vector4) -> Vector3:
+    """Weighted sum of corners."""
+    return (
+        corner(simplex, 0) * weights[0]
+        + corner(simplex, 1) * weights[1]
+        + corner(simplex, 2) * weights[2]
+        + corner(simplex, 3) * weights[3]
+    )
+
+
+@func
+def segment_weights(a: Vector3, b: Vector3):
+    """Weights of a and b in the point of their segment nearest to the origin."""
+    edge = b - a
+    length_sq = wp.length_sq(edge)
+    share = real(0.0)
+    if length_sq > 0.0:
+        share = within_bounds(-wp.dot(a, edge) / length_sq, 0.0, 1.0)
+    return 1.0 - share, share
+
+
+@shared_func
+def triangle_weights(a: Vector3, b: Vector3, c: Vector3) -> Vector3:
+    """Weights of the corners in the point of a triangle nearest to the origin."""
+    normal = wp.cross(b - a, c - a)
+    area = wp.length_sq(normal)
+    # Areas of the triangles that the foot of the origin makes with each side.
+    of_a = wp.dot(normal, wp.cross(b, c))
+    of_b = wp.dot(normal, wp.cross(c, a))
+    of_c = wp.dot(normal, wp.cross(a, b))
+    if area > 0.0 and of_a >= 0.0 and of_b >= 0.0 and of_c >= 0.0:
+        total = of_a + of_b + of_c
+        return Vector3(of_a / total, of_b / total, of_c / total)
+    a1, b1 = segment_weights(a, b)
+    b2, c2 = segment_weights(b, c)
+    c3, a3 = segment_weights(c, a)
+    on_ab = wp.length_sq(a * a1 + b * b1)
+    on_bc = wp.length_sq(b * b2 + c * c2)
+    on_ca = wp.length_sq(c * c3 + a * a3)
+    if on_ab <= on_bc and on_ab <= on_ca:
+        return Vector3(a1, b1, 0.0)
+    if on_bc <= on_ca:
+        return Vector3(0.0, b2, c2)
+    return Vector3(a3, 0.0, c3)
+
+
+@func
+def face_hides_origin(a: Vector3, b: Vector3, c: Vector3, opposite: Vector3) -> bool:
+    """Whether the origin and the fourth corner are on different sides of a face of a tetrahedron."""
+    normal = wp.cross(b - a, c - a)
+    inside = wp.dot(normal, opposite - a)
+    size = wp.length(normal) * wp.length(opposite - a)
+    # A flat tetrahedron contains nothing.
+    return wp.abs(inside) <= FLAT * size or wp.dot(normal, -a) * inside < 0.0
+
+
+@func
+def tetrahedron_weights(simplex: Matrix43) -> Vector4:
+    """Weights of the corners in the nearest point of a tetrahedron; all above zero if it holds the origin."""
+    result = Vector4(0.25, 0.25, 0.25, 0.25)
+    least = real(-1.0)
+    face = Int32(0)
+    while face < 4:
+        i = (face + 1) % 4
+        j = (face + 2) % 4
+        k = (face + 3) % 4
+        a = corner(simplex, i)
+        b = corner(simplex, j)
+        c = corner(simplex, k)
+        if face_hides_origin(a, b, c, corner(simplex, face)):
+            weights = triangle_weights(a, b, c)
+            distance = wp.length_sq(a * weights[0] + b * weights[1] + c * weights[2])
+            if least < 0.0 or distance < least:
+                least = distance
+                result = Vector4(0.0, 0.0, 0.0, 0.0)
+                result[i] = weights[0]
+                result[j] = weights[1]
+                result[k] = weights[2]
+        face += 1
+    return result
+
+
+@func
+def nearest_weights(simplex: Matrix43, count: Int32) -> Vector4:
+    """Weights of the first `count` corners in the point of their hull nearest to the origin."""
+    if count == 4:
+        return tetrahedron_weights(simplex)
+    if count == 3:
+        weights = triangle_weights(corner(simplex, 0), corner(simplex, 1), corner(simplex, 2))
+        return Vector4(weights[0], weights[1], weights[2], 0.0)
+    if count == 2:
+        a, b = segment_weights(corner(simplex, 0), corner(simplex, 1))
+        return Vector4(a, b, 0.0, 0.0)
+    return Vector4(1.0, 0.0, 0.0, 0.0)
+
+
+@shared_func
+def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start: Vector3, reach: real):
+    """Nearest points of two cores.
+
+    Args:
+        core_a: One core.
+        core_b: The other.
+        vertex_position: Vertices of hulls.
+        start: About the direction from b to a.
+        reach: The search ends where the distance is found to be more than this.
+
+    Returns:
+        The distance, and the point on each. Where they overlap the distance is 0 and the points are one
+        of a's. If the distance is more than `reach` it
+        is a lower bound and the points mean nothing.
+    """
+    differences = Matrix43()
+    points = Matrix43()
+    direction = start
+    if wp.length_sq(start) == 0.0:
+        direction = Vector3(1.0, 0.0, 0.0)
+    count = Int32(0)
+    weights = Vector4(1.0, 0.0, 0.0, 0.0)
+    v = direction
+    least = real(-1.0)
+    point_a = core_a.position
+    steps = Int32(0)
+    searching = Int32(1)
+    while searching == 1 and steps < MOST_STEPS:
+        steps += 1
+        on_a = support(core_a, vertex_position, -v)
+        on_b = support(core_b, vertex_position, v)
+        w = on_a - on_b
+        length = wp.length(v)
+        if count > 0:
+            bound = wp.dot(v, w) / length
+            if bound > reach:
+                return bound, core_a.position, core_b.position
+            if length - bound <= greater(PRECISION, RELATIVE_PRECISION * (length + wp.length(w))):
+                searching = Int32(0)
+        if searching == 1:
+            for axis in range(3):
+                differences[count, axis] = w[axis]
+                points[count, axis] = on_a[axis]
+            count += 1
+            weights = nearest_weights(differences, count)
+            if count == 4 and wp.min(weights) > 0.0:
+                return real(0.0), on_a, on_a
+            nearest = weighted(differences, weights)
+            distance = wp.length(nearest)
+            if least >= 0.0 and distance >= least:
+                # Rounding has the last word: what was found before stands.
+                searching = Int32(0)
+            else:
+                least = distance
+                v = nearest
+                point_a = weighted(points, weights)
+                kept = Int32(0)
+                for i in range(4):
+                    if i < count and weights[i] > 0.0:
+                        for axis in range(3):
+                            differences[kept, axis] = differences[i, axis]
+                            points[kept, axis] = points[i, axis]
+                        kept += 1
+                if distance <= TOUCHING:
+                    return real(0.0), point_a, point_a
+                count = kept
+    return least, point_a, point_a - v

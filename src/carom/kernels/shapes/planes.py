@@ -1,0 +1,81 @@
+"""Convex shapes on infinite planes."""
+
+import warp as wp
+
+from carom.kernels.contact.candidates import add_candidate
+from carom.kernels.shapes.cores import Core, support
+from carom.kernels.types import Int32, Vector3, Vector3Rows, Vector8Rows, Vectors3, func, real, shared_func
+from carom.layouts.codes import BOX, HULL
+
+
+@func
+def with_sharp_edges(core: Core) -> Core:
+    """A box without its rounding; other cores as they are."""
+    sharp = core
+    if core.kind == BOX:
+        sharp.size = core.size + Vector3(core.radius, core.radius, core.radius)
+        sharp.radius = real(0.0)
+    return sharp
+
+
+@func
+def add_on_plane(
+    candidates: Vector8Rows,
+    world: Int32,
+    count: Int32,
+    point: Vector3,
+    radius: real,
+    origin: Vector3,
+    normal: Vector3,
+    reach: real,
+) -> Int32:
+    """Candidate of a point with a radius near a plane."""
+    height = wp.dot(point - origin, normal)
+    if height - radius > reach:
+        return count
+    return add_candidate(candidates, world, count, point - normal * height, normal, height - radius)
+
+
+@shared_func
+def touch_plane(
+    core: Core,
+    polygon: Vector3Rows,
+    corners: Int32,
+    vertex_position: Vectors3,
+    origin: Vector3,
+    normal: Vector3,
+    reach: real,
+    candidates: Vector8Rows,
+    world: Int32,
+) -> Int32:
+    """Candidates of shape a, a core, on shape b, a plane.
+
+    Args:
+        core: The core; boxes with sharp edges.
+        polygon: Corners of its face towards the plane; not used for hulls, where all vertices count.
+        corners: Their number.
+        vertex_position: Vertices of hulls.
+        origin: A point of the plane.
+        normal: Its unit normal.
+        reach: Largest distance of a contact.
+        candidates: Where candidates go.
+        world: The world.
+
+    Returns:
+        Number of candidates.
+    """
+    count = Int32(0)
+    if core.kind != HULL:
+        for i in range(corners):
+            count = add_on_plane(
+                candidates, world, count, polygon[world, i], core.radius, origin, normal, reach
+            )
+        return count
+    # The deepest point first: it must be there even if there are more points than fit.
+    deepest = support(core, vertex_position, -normal)
+    count = add_on_plane(candidates, world, count, deepest, core.radius, origin, normal, reach)
+    if count > 0:
+        for vertex in range(core.first_vertex, core.first_vertex + core.vertex_count):
+            point = core.position + core.frame * vertex_position[vertex]
+            count = add_on_plane(candidates, world, count, point, core.radius, origin, normal, reach)
+    return count

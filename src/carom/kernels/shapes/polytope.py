@@ -1,0 +1,331 @@
+"""How deep two overlapping cores are in each other (the expanding polytope algorithm).
+
+The set of all differences a - b of points of two overlapping cores contains the origin. A polytope
+inside that set grows, always at the face nearest to the origin, until that face is on the boundary:
+its distance is the least translation that parts the cores, and its normal the direction.
+"""
+
+import warp as wp
+
+from carom.kernels.shapes.cores import Core, support
+from carom.kernels.shapes.gjk import triangle_weights
+from carom.kernels.shapes.segments import any_perpendicular
+from carom.kernels.types import (
+    Index4,
+    Index4Rows,
+    Int32,
+    Vector3,
+    Vector3Rows,
+    Vector4,
+    Vector4Rows,
+    Vectors3,
+    func,
+    real,
+    shared_func,
+)
+from carom.layouts.contacts import MOST_CORNERS
+
+# A face this near to the boundary is on it [m].
+PRECISION = real(1.0e-7)
+# A face whose plane a new corner is this much above cannot stay [m]; less than the above.
+VISIBLE = real(1.0e-8)
+# A point as near as this to a face is in it [m].
+ON_FACE = real(1.0e-9)
+# A set of differences thinner than this has no inside [m].
+THIN = real(1.0e-10)
+# Distance of faces without area, which are never the nearest.
+NEVER = real(1.0e30)
+
+
+@func
+def add_corner(
+    core_a: Core,
+    core_b: Core,
+    vertex_position: Vectors3,
+    points: Vector3Rows,
+    points_a: Vector3Rows,
+    world: Int32,
+    row: Int32,
+    direction: Vector3,
+) -> Vector3:
+    """Make the farthest difference along `direction` a corner."""
+    on_a = support(core_a, vertex_position, direction)
+    w = on_a - support(core_b, vertex_position, -direction)
+    points[world, row] = w
+    points_a[world, row] = on_a
+    return w
+
+
+@func
+def axis_direction(side: Int32, x: Vector3, y: Vector3, z: Vector3) -> Vector3:
+    """The directions x, -x, y, -y, z, -z by their number."""
+    direction = x
+    if side // 2 == 1:
+        direction = y
+    elif side // 2 == 2:
+        direction = z
+    if side % 2 == 1:
+        return -direction
+    return direction
+
+
+@func
+def add_face(
+    points: Vector3Rows,
+    planes: Vector4Rows,
+    faces: Index4Rows,
+    world: Int32,
+    row: Int32,
+    i: Int32,
+    j: Int32,
+    k: Int32,
+):
+    """Write a face with its plane; the corners are counter-clockwise from outside."""
+    a = points[world, i]
+    normal = wp.cross(points[world, j] - a, points[world, k] - a)
+    length = wp.length(normal)
+    plane = Vector4(0.0, 0.0, 0.0, NEVER)
+    if length > 0.0:
+        normal = normal / length
+        plane = Vector4(normal[0], normal[1], normal[2], wp.dot(normal, a))
+    planes[world, row] = plane
+    faces[world, row] = Index4(i, j, k, 0)
+
+
+@func
+def plane_height(plane: Vector4, point: Vector3) -> real:
+    """Height of a point above a plane."""
+    return plane[0] * point[0] + plane[1] * point[1] + plane[2] * point[2] - plane[3]
+
+
+@func
+def add_hole_edge(edges: Index4Rows, world: Int32, count: Int32, i: Int32, j: Int32) -> Int32:
+    """Note an edge of a face that was taken away, or forget it if both its faces were; returns how many."""
+    for row in range(count):
+        edge = edges[world, row]
+        if edge[0] == j and edge[1] == i:
+            edges[world, row] = edges[world, count - 1]
+            return count - 1
+    if count < edges.shape[1]:
+        edges[world, count] = Index4(i, j, 0, 0)
+        return count + 1
+    return count
+
+
+@shared_func
+def first_tetrahedron(
+    core_a: Core,
+    core_b: Core,
+    vertex_position: Vectors3,
+    points: Vector3Rows,
+    points_a: Vector3Rows,
+    world: Int32,
+    start: Vector3,
+):
+    """Find four corners that span a volume.
+
+    Returns:
+        Their number, less than four if the set of differences is flat, and then a direction in which it
+        has no extent.
+    """
+    x = Vector3(1.0, 0.0, 0.0)
+    y = Vector3(0.0, 1.0, 0.0)
+    z = Vector3(0.0, 0.0, 1.0)
+    first = add_corner(core_a, core_b, vertex_position, points, points_a, world, 0, start)
+    most = THIN
+    best = Int32(-1)
+    for side in range(6):
+        w = add_corner(
+            core_a, core_b, vertex_position, points, points_a, world, 1, axis_direction(Int32(side), x, y, z)
+        )
+        if wp.length(w - first) > most:
+            most = wp.length(w - first)
+            best = Int32(side)
+    if best < 0:
+        return Int32(1), start
+    second = add_corner(
+        core_a, core_b, vertex_position, points, points_a, world, 1, axis_direction(best, x, y, z)
+    )
+
+    line = wp.normalize(second - first)
+    x = any_perpendicular(line)
+    y = wp.cross(line, x)
+    most = THIN
+    best = Int32(-1)
+    for side in range(4):
+        w = add_corner(
+            core_a, core_b, vertex_position, points, points_a, world, 2, axis_direction(Int32(side), x, y, z)
+        )
+        away = wp.length(wp.cross(w - first, line))
+        if away > most:
+            most = away
+            best = Int32(side)
+    if best < 0:
+        return Int32(2), x
+    third = add_corner(
+        core_a, core_b, vertex_position, points, points_a, world, 2, axis_direction(best, x, y, z)
+    )
+
+    x = wp.normalize(wp.cross(line, third - first))
+    most = THIN
+    best = Int32(-1)
+    for side in range(2):
+        w = add_corner(
+            core_a, core_b, vertex_position, points, points_a, world, 3, axis_direction(Int32(side), x, y, z)
+        )
+        if wp.abs(wp.dot(w - first, x)) > most:
+            most = wp.abs(wp.dot(w - first, x))
+            best = Int32(side)
+    if best < 0:
+        return Int32(3), x
+    add_corner(core_a, core_b, vertex_position, points, points_a, world, 3, axis_direction(best, x, y, z))
+    return Int32(4), x
+
+
+@func
+def nearest_face(planes: Vector4Rows, world: Int32, face_count: Int32) -> Int32:
+    """The face whose plane is nearest to the origin."""
+    nearest = Int32(0)
+    least = planes[world, 0][3]
+    for face in range(1, face_count):
+        distance = planes[world, face][3]
+        if distance < least:
+            least = distance
+            nearest = face
+    return nearest
+
+
+@func
+def point_in_face(points: Vector3Rows, points_a: Vector3Rows, world: Int32, corners: Index4, foot: Vector3):
+    """The point of a that belongs to the difference in a face nearest to `foot`; its squared distance."""
+    p = points[world, corners[0]] - foot
+    q = points[world, corners[1]] - foot
+    r = points[world, corners[2]] - foot
+    weights = triangle_weights(p, q, r)
+    on_a = (
+        points_a[world, corners[0]] * weights[0]
+        + points_a[world, corners[1]] * weights[1]
+        + points_a[world, corners[2]] * weights[2]
+    )
+    return on_a, wp.length_sq(p * weights[0] + q * weights[1] + r * weights[2])
+
+
+@func
+def deepest_point(
+    points: Vector3Rows,
+    points_a: Vector3Rows,
+    faces: Index4Rows,
+    world: Int32,
+    corners: Index4,
+    face_count: Int32,
+    foot: Vector3,
+) -> Vector3:
+    """The point of a that belongs to `foot`, the difference on the boundary nearest to the origin.
+
+    It is in the face of these corners, or in one that lies in the same plane.
+    """
+    on_a, miss = point_in_face(points, points_a, world, corners, foot)
+    if miss > ON_FACE * ON_FACE:
+        for face in range(face_count):
+            other, distance_sq = point_in_face(points, points_a, world, faces[world, face], foot)
+            if distance_sq < miss:
+                miss = distance_sq
+                on_a = other
+    return on_a
+
+
+@shared_func
+def overlap(
+    core_a: Core,
+    core_b: Core,
+    vertex_position: Vectors3,
+    points: Vector3Rows,
+    points_a: Vector3Rows,
+    planes: Vector4Rows,
+    faces: Index4Rows,
+    edges: Index4Rows,
+    world: Int32,
+    start: Vector3,
+    common: Vector3,
+):
+    """Least translation that parts two overlapping cores.
+
+    Args:
+        core_a: One core.
+        core_b: The other.
+        vertex_position: Vertices of hulls.
+        points: Room for the polytope: see `Pairs`.
+        points_a: Likewise.
+        planes: Likewise.
+        faces: Likewise.
+        edges: Likewise.
+        world: The world.
+        start: About the direction from b to a.
+        common: A point that both have in common.
+
+    Returns:
+        The depth, the unit normal from b towards a, and the deepest points of a and of b.
+    """
+    direction = start
+    if wp.length_sq(start) == 0.0:
+        direction = Vector3(0.0, 0.0, 1.0)
+    count, flat = first_tetrahedron(core_a, core_b, vertex_position, points, points_a, world, direction)
+    if count < 4:
+        normal = wp.normalize(flat)
+        if wp.dot(normal, start) < 0.0:
+            normal = -normal
+        return real(0.0), normal, common, common
+    w0 = points[world, 0]
+    if wp.dot(wp.cross(points[world, 1] - w0, points[world, 2] - w0), points[world, 3] - w0) > 0.0:
+        # The corners 0 1 2 must be counter-clockwise from outside, where corner 3 is not.
+        w = points[world, 1]
+        points[world, 1] = points[world, 2]
+        points[world, 2] = w
+        on_a = points_a[world, 1]
+        points_a[world, 1] = points_a[world, 2]
+        points_a[world, 2] = on_a
+    add_face(points, planes, faces, world, 0, 0, 1, 2)
+    add_face(points, planes, faces, world, 1, 0, 3, 1)
+    add_face(points, planes, faces, world, 2, 1, 3, 2)
+    add_face(points, planes, faces, world, 3, 2, 3, 0)
+    face_count = Int32(4)
+    nearest = nearest_face(planes, world, face_count)
+    # Any direction parts the cores if they move far enough; the one with the shortest way counts, so that
+    # the result is right even where rounding or a lack of room spoils the polytope.
+    depth = real(NEVER)
+    outward = Vector3(0.0, 0.0, 1.0)
+    corners = faces[world, nearest]
+    growing = Int32(1)
+    while growing == 1 and count < MOST_CORNERS:
+        plane = planes[world, nearest]
+        normal = Vector3(plane[0], plane[1], plane[2])
+        w = add_corner(core_a, core_b, vertex_position, points, points_a, world, count, normal)
+        if wp.dot(w, normal) < depth:
+            depth = wp.dot(w, normal)
+            outward = normal
+            corners = faces[world, nearest]
+        if plane_height(plane, w) <= PRECISION:
+            growing = Int32(0)
+        else:
+            edge_count = Int32(0)
+            kept = Int32(0)
+            for face in range(face_count):
+                seen = faces[world, face]
+                if plane_height(planes[world, face], w) > VISIBLE:
+                    edge_count = add_hole_edge(edges, world, edge_count, seen[0], seen[1])
+                    edge_count = add_hole_edge(edges, world, edge_count, seen[1], seen[2])
+                    edge_count = add_hole_edge(edges, world, edge_count, seen[2], seen[0])
+                else:
+                    planes[world, kept] = planes[world, face]
+                    faces[world, kept] = seen
+                    kept += 1
+            if kept + edge_count > faces.shape[1]:
+                growing = Int32(0)
+            for row in range(wp.min(edge_count, faces.shape[1] - kept)):
+                edge = edges[world, row]
+                add_face(points, planes, faces, world, kept + row, edge[0], edge[1], count)
+            face_count = wp.min(kept + edge_count, faces.shape[1])
+            count += 1
+            nearest = nearest_face(planes, world, face_count)
+    on_a = deepest_point(points, points_a, faces, world, corners, face_count, outward * depth)
+    return depth, -outward, on_a, on_a - outward * depth

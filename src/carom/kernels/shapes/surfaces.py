@@ -1,0 +1,177 @@
+"""Convex shapes on triangle meshes and height fields."""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
+from carom.kernels.contact.candidates import (
+    candidate_distance,
+    candidate_normal,
+    candidate_point,
+    exchange,
+    keep_four,
+)
+from carom.kernels.shapes.convex import nearest_or_deepest, touch_convex
+from carom.kernels.shapes.cores import Core
+from carom.kernels.shapes.triangles import (
+    Region,
+    first_cursor,
+    following_cursor,
+    region_of,
+    triangle_core,
+    triangle_corners,
+    triangle_from,
+)
+from carom.kernels.structs import Pairs, Shapes
+from carom.kernels.types import Int32, Vector3, Vector8Rows, func, real, shared_func
+from carom.layouts.codes import SPHERE, TRIANGLES
+
+# Column of a candidate's row that tells whether it is on the face of its triangle.
+FLAT = 7
+# Cosine of the angle between a contact and a face beyond which it is at an edge.
+ON_FACE = real(0.999999)
+# Height above a face up to which an edge belongs to it, beside the margin [m].
+SAME_PLANE = real(1.0e-4)
+# Room that one triangle may need among the candidates.
+ROOM = 16
+
+
+@func
+def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
+    """Rounding of a surface's triangles: its margin, but as in Bullet none against balls."""
+    if core.kind == SPHERE:
+        return 0.0
+    return shapes.shape_margin[surface]
+
+
+@func
+def region_around(
+    shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, surface: Int32, reach: real
+) -> Region:
+    """The region of a surface that is within reach of the bounds of a shape."""
+    to_surface = wp.transpose(pairs.shape_frame[world, surface])
+    turn = to_surface * pairs.shape_frame[world, shape]
+    center = turn * local_center(shapes, shape) + to_surface * (
+        pairs.shape_position[world, shape] - pairs.shape_position[world, surface]
+    )
+    more = reach + shapes.shape_margin[surface]
+    extents = local_extents(shapes, shape)
+    if shapes.shape_kind[shape] != SPHERE:
+        extents = magnitudes(turn) * extents
+    extents += Vector3(more, more, more)
+    return region_of(shapes, surface, center - extents, center + extents)
+
+
+@func
+def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vector3) -> Int32:
+    """Mark which candidates of a triangle are on its face, and drop those at its edges that do not touch yet.
+
+    They would stop what slides from one triangle of a flat surface to the next. Returns the number of
+    all candidates that are left.
+    """
+    count = first
+    for row in range(first, last):
+        along = wp.dot(candidate_normal(pairs.candidate_terms, world, row), normal)
+        flat = wp.abs(along) >= ON_FACE
+        if flat or candidate_distance(pairs.candidate_terms, world, row) <= 0.0:
+            pairs.candidate_terms[world, count] = pairs.candidate_terms[world, row]
+            pairs.candidate_terms[world, count][FLAT] = wp.where(flat, real(1.0), real(0.0))
+            count += 1
+    return count
+
+
+@shared_func
+def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickness: real) -> Int32:
+    """Drop candidates at edges that lie in a face that is touched as well; returns how many are left.
+
+    The face bears the contact; the edge, seen from a neighbour in the same plane or beyond the end of
+    the face, would only push sideways.
+    """
+    kept = Int32(0)
+    for row in range(count):
+        needed = Int32(1)
+        if candidates[world, row][FLAT] == 0.0:
+            point = candidate_point(candidates, world, row)
+            for other in range(count):
+                if candidates[world, other][FLAT] == 1.0:
+                    offset = point - candidate_point(candidates, world, other)
+                    height = wp.dot(offset, candidate_normal(candidates, world, other))
+                    if wp.abs(height) <= thickness:
+                        needed = Int32(0)
+        if needed == 1:
+            # Exchanged, not copied: the faces after this row must see all others.
+            exchange(candidates, world, kept, row)
+            kept += 1
+    return kept
+
+
+@func
+def triangle_normal(core: Core) -> Vector3:
+    """Unit normal of a triangle."""
+    a = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
+    b = Vector3(core.frame[0, 1], core.frame[1, 1], core.frame[2, 1])
+    c = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
+    return wp.normalize(wp.cross(b - a, c - a))
+
+
+@func
+def touch_surface(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real, around: real
+) -> Int32:
+    """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
+
+    Args:
+        shapes: All shapes.
+        pairs: Room for candidates, and the poses of the shapes.
+        world: The world.
+        a: Row of the convex shape.
+        b: Row of the surface.
+        core: Core of a.
+        reach: Largest distance of a contact [m].
+        around: Triangles within this distance of the bounds of a are looked at [m].
+    """
+    region = region_around(shapes, pairs, world, a, b, around)
+    radius = surface_radius(shapes, core, b)
+    thickness = 2.0 * radius + SAME_PLANE
+    count = Int32(0)
+    cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
+    while cursor >= 0:
+        triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
+        found = touch_convex(shapes, pairs, world, a, b, core, triangle, reach, count)
+        count = mark_flat(pairs, world, count, found, triangle_normal(triangle))
+        if count + ROOM > pairs.candidate_terms.shape[1]:
+            count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
+            count = keep_four(pairs.candidate_terms, world, count)
+        cursor = triangle_from(shapes, region, b, following_cursor(shapes, b, cursor))
+    count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
+    return keep_four(pairs.candidate_terms, world, count)
+
+
+@func
+def nearest_on_surface(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real
+):
+    """Distance of shape a, convex, from shape b, a mesh or height field; normal on b and point on b.
+
+    If the distance is more than `reach` the rest means nothing.
+    """
+    region = region_around(shapes, pairs, world, a, b, reach)
+    radius = surface_radius(shapes, core, b)
+    rounding = core.radius + radius
+    least = reach + 1.0
+    best_normal = Vector3(0.0, 0.0, 1.0)
+    best_point = core.position
+    cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
+    while cursor >= 0:
+        triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
+        distance, normal, _on_a, on_b = nearest_or_deepest(
+            shapes, pairs, world, core, triangle, wp.min(least, reach) + rounding
+        )
+        if distance - rounding <= wp.min(least, reach):
+            least = distance - rounding
+            best_normal = normal
+            best_point = on_b + normal * radius
+            if least > 0.0 and shapes.shape_kind[b] == TRIANGLES:
+                # Cursors of a mesh do not depend on the region, which may shrink.
+                region = region_around(shapes, pairs, world, a, b, least)
+        cursor = triangle_from(shapes, region, b, following_cursor(shapes, b, cursor))
+    return least, best_normal, best_point

@@ -1,0 +1,160 @@
+"""Which triangles of a mesh or a height field are in a region.
+
+A *cursor* goes from one triangle of the region to the next: for a mesh it is a leaf of the mesh's
+hierarchy, for a height field it counts the triangles of the cells under the region.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import boxes_meet
+from carom.kernels.contact.hierarchy import next_node
+from carom.kernels.maths.extremes import greater, lesser
+from carom.kernels.shapes.cores import Core
+from carom.kernels.structs import Pairs, Shapes
+from carom.kernels.types import Int32, Matrix3, Vector3, func, real
+from carom.layouts.codes import TRIANGLES
+
+
+@wp.struct
+class Region:
+    """A box in the frame of a surface; for height fields the columns and rows of cells under it as well."""
+
+    lower: Vector3
+    upper: Vector3
+    first_column: Int32
+    first_row: Int32
+    columns: Int32
+    rows: Int32
+
+
+@func
+def region_of(shapes: Shapes, surface: Int32, lower: Vector3, upper: Vector3) -> Region:
+    """The region of a surface inside a box in the frame of the surface."""
+    region = Region()
+    region.lower = lower
+    region.upper = upper
+    if shapes.shape_kind[surface] != TRIANGLES:
+        columns = shapes.shape_columns[surface]
+        rows = shapes.shape_vertex_count[surface] // columns
+        corner = shapes.shape_center[surface] - shapes.shape_size[surface]
+        width = 2.0 * shapes.shape_size[surface][0] / real(columns - 1)
+        height = 2.0 * shapes.shape_size[surface][1] / real(rows - 1)
+        region.first_column = cell_at((lower[0] - corner[0]) / width, columns)
+        region.first_row = cell_at((lower[1] - corner[1]) / height, rows)
+        region.columns = cell_at((upper[0] - corner[0]) / width, columns) - region.first_column + 1
+        region.rows = cell_at((upper[1] - corner[1]) / height, rows) - region.first_row + 1
+        top = shapes.shape_center[surface][2] + shapes.shape_size[surface][2]
+        bottom = shapes.shape_center[surface][2] - shapes.shape_size[surface][2]
+        if lower[2] > top or upper[2] < bottom:
+            region.rows = Int32(0)
+    return region
+
+
+@func
+def cell_at(place: real, points: Int32) -> Int32:
+    """The cell between grid points that holds a place, or the nearest cell."""
+    return Int32(wp.clamp(wp.floor(place), 0.0, real(points - 2)))
+
+
+@func
+def region_box(shapes: Shapes, region: Region, surface: Int32, node: Int32) -> bool:
+    """Whether the bounds of a node of a mesh's hierarchy meet a region."""
+    row = shapes.shape_first_node[surface] + node
+    return boxes_meet(region.lower, region.upper, shapes.node_lower[row], shapes.node_upper[row], 0.0)
+
+
+@func
+def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int32) -> Matrix3:
+    """The corners of a triangle as columns, in the frame of the surface, counter-clockwise from outside."""
+    a = Int32(0)
+    b = Int32(0)
+    c = Int32(0)
+    if shapes.shape_kind[surface] == TRIANGLES:
+        face = shapes.shape_first_face[surface] + cursor - shapes.shape_leaf_count[surface]
+        first = shapes.face_first_corner[face]
+        a = shapes.corner_vertex[first]
+        b = shapes.corner_vertex[first + 1]
+        c = shapes.corner_vertex[first + 2]
+    else:
+        cell = cursor // 2
+        columns = shapes.shape_columns[surface]
+        a = (
+            shapes.shape_first_vertex[surface]
+            + (region.first_row + cell // region.columns) * columns
+            + region.first_column
+            + cell % region.columns
+        )
+        # The diagonal of a cell goes from its corner with the larger x to that with the larger y.
+        b = a + 1
+        c = a + columns
+        if cursor % 2 == 1:
+            a = b
+            b = c + 1
+    p = shapes.vertex_position[a]
+    q = shapes.vertex_position[b]
+    r = shapes.vertex_position[c]
+    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+
+
+@func
+def corners_meet(region: Region, corners: Matrix3) -> bool:
+    """Whether the bounds of a triangle, its corners as columns, meet a region."""
+    meet = True
+    for axis in range(3):
+        low = lesser(lesser(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
+        high = greater(greater(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
+        if low > region.upper[axis] or high < region.lower[axis]:
+            meet = False
+    return meet
+
+
+@func
+def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) -> Int32:
+    """The first cursor at or after `start` whose triangle's bounds meet the region; -1 after the last.
+
+    The first of all starts is what `first_cursor` says.
+    """
+    if shapes.shape_kind[surface] != TRIANGLES:
+        cursor = start + 0
+        while cursor < 2 * region.columns * region.rows:
+            if corners_meet(region, triangle_corners(shapes, region, surface, cursor)):
+                return cursor
+            cursor += 1
+        return -1
+    leaf_count = shapes.shape_leaf_count[surface]
+    node = start
+    while node > 0:
+        if region_box(shapes, region, surface, node):
+            if node >= leaf_count:
+                return node
+            node = 2 * node
+        else:
+            node = next_node(node)
+    return -1
+
+
+@func
+def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
+    """Where a walk over the triangles of a surface starts."""
+    if shapes.shape_kind[surface] == TRIANGLES:
+        return 1
+    return 0
+
+
+@func
+def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
+    """Where a walk goes on after a triangle."""
+    if shapes.shape_kind[surface] == TRIANGLES:
+        return next_node(cursor)
+    return cursor + 1
+
+
+@func
+def triangle_core(pairs: Pairs, world: Int32, surface: Int32, corners: Matrix3, radius: real) -> Core:
+    """A triangle of a surface as a core."""
+    core = Core()
+    core.kind = TRIANGLES
+    core.radius = radius
+    core.position = pairs.shape_position[world, surface]
+    core.frame = pairs.shape_frame[world, surface] * corners
+    return core

@@ -1,0 +1,1 @@
+"""Islands, sleep, constraint rows and their relaxation."""

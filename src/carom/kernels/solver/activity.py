@@ -1,0 +1,64 @@
+"""Which trees take part in a substep: those that can move and are not asleep; `slumber` says who is."""
+
+from carom.kernels.structs import Model, Shapes, State
+from carom.kernels.types import Index4, Int32, func, real
+from carom.layouts.codes import ASLEEP, STIRRED
+
+
+@func
+def can_move(model: Model, tree: Int32) -> bool:
+    """Whether a tree has dofs; the world, -1, has none."""
+    if tree < 0:
+        return False
+    return model.tree[tree].dof_count > 0
+
+
+@func
+def link_moves(model: Model, link: Int32) -> bool:
+    """Whether some dof moves a link."""
+    return model.link[link].nearest_dof >= 0
+
+
+@func
+def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
+    """The tree of the first of two links in contact that moves; -1 if neither does.
+
+    `pair` has both shapes, then both links.
+    """
+    if link_moves(model, pair[2]):
+        return shapes.shape_tree[pair[0]]
+    if link_moves(model, pair[3]):
+        return shapes.shape_tree[pair[1]]
+    return -1
+
+
+@func
+def is_asleep(state: State, world: Int32, tree: Int32) -> bool:
+    """Whether a tree takes no part in this substep."""
+    return state.tree_activity[world, tree] == ASLEEP
+
+
+@func
+def has_stirred(state: State, world: Int32, tree: Int32) -> bool:
+    """Whether this is the first substep of a tree that was asleep."""
+    return state.tree_activity[world, tree] == STIRRED
+
+
+@func
+def squared_motion(model: Model, state: State, world: Int32, tree: Int32) -> real:
+    """Sum of the squared velocities of a tree."""
+    motion = real(0.0)
+    dof = model.tree[tree].first_dof
+    end = dof + model.tree[tree].dof_count
+    while dof < end:
+        motion += state.dof_velocity[world, dof] * state.dof_velocity[world, dof]
+        dof += 1
+    return motion
+
+
+@func
+def stop(model: Model, state: State, world: Int32, tree: Int32):
+    """Take the velocity of a tree."""
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
+        state.dof_velocity[world, dof] = 0.0

@@ -1,0 +1,101 @@
+"""Rows of contacts: normal, friction, rolling and spinning friction, one by one."""
+
+import warp as wp
+
+from carom.kernels.solver.calm import NOT_CALM
+from carom.kernels.solver.contact_terms import friction_change, keep_contact_impulse, normal_change
+from carom.kernels.solver.couplings import write_pair_jacobian, write_row
+from carom.kernels.structs import Contacts, ContactTerms, Couplings, Model, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, ROW_FRICTION, ROW_IMPULSE, SPINNING_ROW
+
+_UNBOUNDED = real(1e10)
+
+
+@func
+def add_contact_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    couplings: Couplings,
+    terms: ContactTerms,
+    world: Int32,
+    contact: Int32,
+    row: Int32,
+    block: Int32,
+) -> Index4:
+    """Write all rows of one contact: normal, two lateral, two rolling, spinning, as far as there are.
+
+    Returns:
+        Next free row and block.
+    """
+    rows = Index4(row, row + 1, -1, -1)
+    end = row + 3
+    if terms.friction[1] > 0.0:
+        rows[ROLLING_ROW] = end
+        end += 2
+    if terms.friction[2] > 0.0:
+        rows[SPINNING_ROW] = end
+        end += 1
+    couplings.contact_rows[world, contact] = rows
+
+    zero = Vector3(0.0, 0.0, 0.0)
+    for place in range(row, end):
+        linear = zero
+        angular = zero
+        coefficient = terms.friction[0]
+        if place == row:
+            linear = terms.normal
+        elif place == rows[LATERAL_ROW]:
+            linear = terms.lateral1
+        elif place == rows[LATERAL_ROW] + 1:
+            linear = terms.lateral2
+        elif place == rows[SPINNING_ROW]:
+            angular = terms.normal
+            coefficient = terms.friction[2]
+        else:
+            angular = terms.rolling1
+            coefficient = terms.friction[1]
+            if place > rows[ROLLING_ROW]:
+                angular = terms.rolling2
+
+        found = write_pair_jacobian(
+            model, state, scratch, couplings, world, place, block, terms.ends, terms.point_a, terms.point_b,
+            linear, angular,
+        )  # fmt: skip
+        block = Int32(found[2])
+        inverse_mass = found[0]
+        if terms.ignored != 0:
+            inverse_mass = real(0.0)
+        velocity = found[1] + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
+        change = friction_change(settings, velocity, terms.drift, linear)
+        lower = -coefficient
+        upper = coefficient
+        softness = real(0.0)
+        if place == row:
+            change = normal_change(settings, shapes, terms, world, velocity)
+            lower = real(0.0)
+            upper = real(0.0) + _UNBOUNDED
+            softness = terms.softness
+        write_row(couplings, world, place, inverse_mass, change, softness, lower, upper, coefficient)
+        couplings.coupling_bound[world, place] = row
+    return Index4(end, block, 0, 0)
+
+
+@func
+def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32, contact: Int32):
+    """Report the impulses of a contact's rows."""
+    rows = couplings.contact_rows[world, contact]
+    keep_contact_impulse(
+        contacts,
+        world,
+        contact,
+        couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
+        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
+        Int32(NOT_CALM),
+    )

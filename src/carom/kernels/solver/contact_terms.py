@@ -1,0 +1,266 @@
+"""What one contact asks of the velocities of its links, whichever way it is then solved."""
+
+import warp as wp
+
+from carom.kernels.dynamics.kinematics import base_omega, base_velocity
+from carom.kernels.maths.extremes import greater, lesser, within_bounds
+from carom.kernels.solver.calm import next_trust, slides
+from carom.kernels.structs import Contacts, ContactTerms, Model, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
+
+_GREATEST_FRICTION = real(10.0)
+_LEAST_DENOMINATOR = real(2.220446049250313e-16)
+# Damping of links for which none is set, in contact with soft ones [N s/m].
+_DEFAULT_DAMPING = 0.1
+
+
+@func
+def contact_damping(shapes: Shapes, world: Int32, link: Int32) -> real:
+    """Damping of a link's contacts [N s/m]."""
+    damping = shapes.link_contact_damping[world, link]
+    stiffness = shapes.link_stiffness[world, link]
+    return wp.where(stiffness > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
+
+
+@func
+def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
+    """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
+    stiffness_a = shapes.link_stiffness[world, a]
+    stiffness_b = shapes.link_stiffness[world, b]
+    if stiffness_a < 0.0 and stiffness_b < 0.0:
+        return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
+    # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
+    compliance = real(0.0)
+    if stiffness_a > 0.0:
+        compliance += 1.0 / stiffness_a
+    if stiffness_b > 0.0:
+        compliance += 1.0 / stiffness_b
+    damping = contact_damping(shapes, world, a) + contact_damping(shapes, world, b)
+    stiffness = 1.0 / greater(compliance, _LEAST_DENOMINATOR)
+    denominator = greater(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
+    return Vector3(
+        1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
+    )
+
+
+@func
+def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
+    """Share of the speed with which two links part after they collide."""
+    return shapes.link_restitution[world, a] * shapes.link_restitution[world, b]
+
+
+@func
+def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
+    """Combined coefficients of two links: lateral, rolling, spinning."""
+    lateral_a = shapes.link_lateral_friction[world, a]
+    lateral_b = shapes.link_lateral_friction[world, b]
+    lateral = lateral_a * lateral_b
+    rolling_a = shapes.link_rolling_friction[world, a]
+    rolling_b = shapes.link_rolling_friction[world, b]
+    rolling = rolling_a * lateral_b + rolling_b * lateral_a
+    spinning_a = shapes.link_spinning_friction[world, a]
+    spinning_b = shapes.link_spinning_friction[world, b]
+    spinning = spinning_a * lateral_b + spinning_b * lateral_a
+    return Vector3(
+        within_bounds(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        within_bounds(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        within_bounds(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+    )
+
+
+@func
+def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
+    """A friction direction, its components along a link's axes times the factors of that link."""
+    factors = shapes.link_anisotropy[world, link]
+    if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
+        return direction
+    turn = wp.transform_get_rotation(state.link_pose[world, link])
+    return wp.quat_rotate(turn, wp.cw_mul(wp.quat_rotate_inv(turn, direction), factors))
+
+
+@func
+def scaled_direction(
+    state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, direction: Vector3
+) -> Vector3:
+    """A friction direction with the factors of both links."""
+    return scaled_by_link(state, shapes, world, b, scaled_by_link(state, shapes, world, a, direction))
+
+
+@func
+def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
+    """From where a contact with a friction anchor began to stick on b to where it did on a; else 0."""
+    pair = contacts.contact_shapes[world, contact]
+    if shapes.link_friction_anchor[world, pair[2]] == 0 and shapes.link_friction_anchor[world, pair[3]] == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    on_a = wp.transform_point(state.link_pose[world, pair[2]], contacts.contact_anchor_a[world, contact])
+    on_b = wp.transform_point(state.link_pose[world, pair[3]], contacts.contact_anchor_b[world, contact])
+    return on_a - on_b
+
+
+@func
+def starting_impulse(share: real, last: Vector4) -> Vector3:
+    """A share of the last impulses along the normal and both friction directions."""
+    return Vector3(share * last[0], share * last[1], share * last[2])
+
+
+@func
+def gained(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    direction: Vector3,
+) -> real:
+    """Velocity along a direction that forces gave a point of a link in this substep [m/s]."""
+    reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+    moment = wp.cross(point - reference, direction)
+    acceleration = real(0.0)
+    dof = model.link[link].nearest_dof
+    while dof >= 0:
+        along = wp.dot(scratch.dof[world, dof].linear, direction)
+        along += wp.dot(scratch.dof[world, dof].angular, moment)
+        acceleration += along * scratch.dof[world, dof].force
+        dof = model.dof[dof].parent
+    return settings.time_step * acceleration
+
+
+@func
+def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, point: Vector3) -> Vector3:
+    """Velocity of a point that goes along with a fixed base: no impulse changes it."""
+    if model.tree[tree].fixed == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+    turning = wp.cross(base_omega(model, state, world, tree), point - reference)
+    return base_velocity(model, state, world, tree) + turning
+
+
+@func
+def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
+    """Angular velocity of a fixed base."""
+    if model.tree[tree].fixed == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    return base_omega(model, state, world, tree)
+
+
+@func
+def contact_terms(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    world: Int32,
+    contact: Int32,
+    share: real,
+) -> ContactTerms:
+    """Everything about a contact that its rows depend on; its friction directions become scaled ones.
+
+    It starts from a `share` of its last impulses.
+    """
+    pair = contacts.contact_shapes[world, contact]
+    a = pair[2]
+    b = pair[3]
+    direction1 = contacts.contact_direction1[world, contact]
+    direction2 = contacts.contact_direction2[world, contact]
+    lateral1 = scaled_direction(state, shapes, world, a, b, direction1)
+    lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
+    contacts.contact_direction1[world, contact] = lateral1
+    contacts.contact_direction2[world, contact] = lateral2
+    soft = contact_stiffness(settings, shapes, world, a, b)
+    terms = ContactTerms()
+    terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
+    terms.point_a = contacts.contact_point_a[world, contact]
+    terms.point_b = contacts.contact_point_b[world, contact]
+    terms.normal = contacts.contact_normal[world, contact]
+    terms.lateral1 = lateral1
+    terms.lateral2 = lateral2
+    terms.rolling1 = direction1
+    terms.rolling2 = direction2
+    terms.drift = anchor_drift(state, shapes, contacts, world, contact)
+    terms.distance = contacts.contact_distance[world, contact]
+    terms.friction = contact_friction(shapes, world, a, b)
+    terms.softness = soft[0]
+    terms.erp = soft[1]
+    terms.start = starting_impulse(share, contacts.contact_impulse[world, contact])
+    terms.ignored = Int32(0)
+    solved_up_to = lesser(
+        shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
+    )
+    if terms.distance > solved_up_to:
+        terms.ignored = Int32(1)
+    terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
+        model, state, world, terms.ends[2], terms.point_b
+    )
+    terms.carried_spin = carried_spin(model, state, world, terms.ends[0]) - carried_spin(
+        model, state, world, terms.ends[2]
+    )
+    terms.gain = real(0.0)
+    if combined_restitution(shapes, world, a, b) > 0.0:
+        terms.gain = gained(
+            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
+        ) - gained(settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal)
+    return terms
+
+
+@func
+def normal_change(
+    settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, velocity: real
+) -> real:
+    """Change of the velocity along the normal that keeps a contact from closing.
+
+    A gap may close within the step but not more. Penetration is taken back at the rate `terms.erp`, on top
+    of what restitution asks for. But neither that nor what forces did in this step makes anything rebound
+    faster than it came: at a restitution of 1 bodies would gain energy with every bounce.
+    """
+    gap = terms.distance + settings.contact_slop
+    parting = -gap / settings.time_step
+    if gap <= 0.0:
+        parting *= terms.erp
+    if wp.abs(velocity) < settings.restitution_threshold or velocity >= 0.0:
+        return parting - velocity
+    restitution = combined_restitution(shapes, world, terms.ends[1], terms.ends[3])
+    if restitution <= 0.0:
+        return parting - velocity
+    rebound = greater(restitution, 1.0) * (terms.gain - velocity)
+    return lesser(parting - restitution * velocity, greater(rebound, parting)) - velocity
+
+
+@func
+def friction_change(settings: Settings, velocity: real, drift: Vector3, direction: Vector3) -> real:
+    """Change of velocity along a friction direction that stops sliding and takes back a drift."""
+    return -velocity - wp.dot(drift, direction) * settings.friction_erp / settings.time_step
+
+
+@func
+def keep_contact_impulse(
+    contacts: Contacts,
+    world: Int32,
+    contact: Int32,
+    normal: real,
+    first: real,
+    second: real,
+    friction: real,
+    outcome: Int32,
+):
+    """Report the impulses of a contact; one that slides begins to stick where it is now.
+
+    Args:
+        contacts: The contacts.
+        world: The world.
+        contact: The contact.
+        normal: Impulse along the normal.
+        first: That along the first friction direction.
+        second: That along the second.
+        friction: Coefficient of lateral friction.
+        outcome: How the search for it went, see `calm.next_trust`.
+    """
+    trust = next_trust(contacts.contact_impulse[world, contact][3], outcome)
+    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, trust)
+    if slides(normal, first, second, friction):
+        contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
+        contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]

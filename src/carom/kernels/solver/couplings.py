@@ -1,0 +1,295 @@
+"""Constraint rows over up to two trees: their Jacobians, and relaxing them."""
+
+import warp as wp
+
+from carom.kernels.dynamics.rows import inverse_or_off
+from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
+from carom.kernels.structs import Couplings, Model, Scratch, State
+from carom.kernels.types import Index4, Int32, Vector3, Vector4, Vector8, func, real
+from carom.layouts.codes import (
+    ROW_EFFECTIVE_MASS,
+    ROW_IMPULSE,
+    ROW_INVERSE_MASS,
+    ROW_LOWER,
+    ROW_SHARE,
+    ROW_SOFTNESS,
+    ROW_UPPER,
+)
+from carom.layouts.contacts import ROWS_PER_PAIR
+
+
+@func
+def tree_blocks(model: Model, tree: Int32) -> Int32:
+    """Number of four-wide blocks of a vector over a tree's active dofs; 0 for the world, -1."""
+    if tree < 0:
+        return Int32(0)
+    return (model.tree[tree].dof_count + 3) // 4
+
+
+@func
+def has_room(model: Model, couplings: Couplings, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
+    """Whether all rows there may be between two trees still fit."""
+    blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
+    if place[0] + ROWS_PER_PAIR > couplings.coupling_start.shape[1]:
+        return False
+    return place[1] + ROWS_PER_PAIR * blocks <= couplings.jacobian_row.shape[1]
+
+
+@func
+def write_jacobian(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    linear: Vector3,
+    angular: Vector3,
+    start: Int32,
+) -> Vector3:
+    """Write how dofs move a point of a link along `linear` and turn it about `angular`.
+
+    The point is in world axes. The row goes to block `start`, and the response of the tree to it beside.
+
+    Returns:
+        Inverse mass of the row on this tree, its present velocity, 0.
+    """
+    inverse_mass = real(0.0)
+    velocity = real(0.0)
+    blocks = tree_blocks(model, tree)
+    if blocks > 0:
+        fill_zero(couplings.jacobian_row, start, world, blocks)
+        fill_zero(couplings.jacobian_response, start, world, blocks)
+        reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+        moment = wp.cross(point - reference, linear) + angular
+        first = model.tree[tree].first_dof
+        matrix = model.tree[tree].first_block
+        dof = model.link[link].nearest_dof
+        while dof >= 0:
+            share = wp.dot(scratch.dof[world, dof].linear, linear) + wp.dot(
+                scratch.dof[world, dof].angular, moment
+            )
+            velocity += share * state.dof_velocity[world, dof]
+            couplings.entry_row[world, 4 * start + dof - first] = share
+            add_multiple(
+                couplings.jacobian_response, start, share, scratch.block_inverse_mass,
+                matrix + (dof - first) * blocks, world, blocks,
+            )  # fmt: skip
+            dof = model.dof[dof].parent
+        inverse_mass = dot_product(
+            couplings.jacobian_row, start, couplings.jacobian_response, start, world, blocks
+        )
+    return Vector3(inverse_mass, velocity, 0.0)
+
+
+@func
+def place_row(
+    model: Model, couplings: Couplings, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
+) -> Int32:
+    """Note which trees a row acts on and where its Jacobian is; returns the next free block."""
+    blocks_a = tree_blocks(model, tree_a)
+    blocks_b = tree_blocks(model, tree_b)
+    delta_a = Int32(0)
+    delta_b = Int32(0)
+    if tree_a >= 0:
+        delta_a = model.tree[tree_a].first_delta
+    if tree_b >= 0:
+        delta_b = model.tree[tree_b].first_delta
+    couplings.coupling_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
+    couplings.coupling_start[world, row] = start
+    couplings.coupling_bound[world, row] = Int32(-1)
+    return start + blocks_a + blocks_b
+
+
+@func
+def write_row(
+    couplings: Couplings,
+    world: Int32,
+    row: Int32,
+    inverse_mass: real,
+    change: real,
+    softness: real,
+    lower: real,
+    upper: real,
+    friction: real,
+):
+    """Write the numbers of a row that wants its velocity to change by `change`.
+
+    `softness` (constraint force mixing) is the velocity the row gives way by per unit of impulse.
+    """
+    effective_mass = inverse_or_off(inverse_mass + softness)
+    diagonal = real(0.0)
+    if effective_mass > 0.0:
+        diagonal = 1.0 / effective_mass
+    couplings.coupling_terms[world, row] = Vector8(
+        change * effective_mass,
+        effective_mass,
+        diagonal,
+        lower,
+        upper,
+        0.0,
+        softness * effective_mass,
+        friction,
+    )
+
+
+@func
+def row_velocity_change(
+    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32
+) -> real:
+    """What the solver has changed so far about the velocity of a row, by its place and start."""
+    total = real(0.0)
+    if place[1] > 0:
+        total = dot_product(couplings.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
+    if place[3] > 0:
+        total += dot_product(
+            couplings.jacobian_row, start + place[1], scratch.delta_velocity, place[2], world, place[3]
+        )
+    return total
+
+
+@func
+def push_row(
+    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32, impulse: real
+):
+    """Apply an impulse along a row to the changes of velocity of its trees."""
+    if place[1] > 0:
+        add_multiple(
+            scratch.delta_velocity, place[0], impulse, couplings.jacobian_response, start, world, place[1]
+        )
+    if place[3] > 0:
+        add_multiple(
+            scratch.delta_velocity, place[2], impulse, couplings.jacobian_response, start + place[1], world,
+            place[3],
+        )  # fmt: skip
+
+
+@func
+def wanted_impulse(
+    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32, terms: Vector8
+) -> real:
+    """Impulse that would bring a row to its target if it had no bounds."""
+    return (
+        terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
+        + terms[ROW_SHARE]
+        - row_velocity_change(scratch, couplings, world, place, start) * terms[ROW_EFFECTIVE_MASS]
+    )
+
+
+@func
+def relax_within(
+    scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, lower: real, upper: real
+) -> real:
+    """Bring one row to its target as far as bounds allow; returns the change of its velocity."""
+    terms = couplings.coupling_terms[world, row]
+    place = couplings.coupling_place[world, row]
+    start = couplings.coupling_start[world, row]
+    impulse = wanted_impulse(scratch, couplings, world, place, start, terms)
+    if impulse < lower:
+        impulse = lower
+    if impulse > upper:
+        impulse = upper
+    change = impulse - terms[ROW_IMPULSE]
+    couplings.coupling_terms[world, row][ROW_IMPULSE] = impulse
+    push_row(scratch, couplings, world, place, start, change)
+    return change * terms[ROW_INVERSE_MASS]
+
+
+@func
+def relax_coupling(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+    """As `relax_within`, with the row's own bounds."""
+    terms = couplings.coupling_terms[world, row]
+    return relax_within(scratch, couplings, world, row, terms[ROW_LOWER], terms[ROW_UPPER])
+
+
+@func
+def relax_in_circle(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, bound: real) -> real:
+    """Relax two perpendicular rows, this and the next, their impulses together within `bound`."""
+    place = couplings.coupling_place[world, row]
+    start1 = couplings.coupling_start[world, row]
+    start2 = start1 + place[1] + place[3]
+    terms1 = couplings.coupling_terms[world, row]
+    terms2 = couplings.coupling_terms[world, row + 1]
+    first = wanted_impulse(scratch, couplings, world, place, start1, terms1)
+    second = wanted_impulse(scratch, couplings, world, place, start2, terms2)
+    square = first * first + second * second
+    if square >= bound * bound:
+        scale = real(0.0)
+        if square > 0.0:
+            scale = bound / wp.sqrt(square)
+        first = first * scale
+        second = second * scale
+    change1 = first - terms1[ROW_IMPULSE]
+    change2 = second - terms2[ROW_IMPULSE]
+    couplings.coupling_terms[world, row][ROW_IMPULSE] = first
+    couplings.coupling_terms[world, row + 1][ROW_IMPULSE] = second
+    push_row(scratch, couplings, world, place, start1, change1)
+    push_row(scratch, couplings, world, place, start2, change2)
+    return change1 * terms1[ROW_INVERSE_MASS] + change2 * terms2[ROW_INVERSE_MASS]
+
+
+@func
+def write_jacobians(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    ends: Index4,
+    point_a: Vector3,
+    point_b: Vector3,
+    linear: Vector3,
+    angular: Vector3,
+    start: Int32,
+) -> Vector3:
+    """Write the velocity of a point of a against one of b, along or about an axis, as a row.
+
+    `ends` are tree and link of a, then of b; tree -1 is the world. The row goes to block `start`.
+
+    Returns:
+        Inverse mass, relative velocity, 0.
+    """
+    result = Vector3(0.0, 0.0, 0.0)
+    side = Int32(0)
+    while side < 2:
+        point = point_a
+        sign = real(1.0)
+        if side == 1:
+            point = point_b
+            sign = real(-1.0)
+            start += tree_blocks(model, ends[0])
+        result += write_jacobian(
+            model, state, scratch, couplings, world, ends[2 * side], ends[2 * side + 1], point,
+            sign * linear, sign * angular, start,
+        )  # fmt: skip
+        side += 1
+    return result
+
+
+@func
+def write_pair_jacobian(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    row: Int32,
+    block: Int32,
+    ends: Index4,
+    point_a: Vector3,
+    point_b: Vector3,
+    linear: Vector3,
+    angular: Vector3,
+) -> Vector4:
+    """As `write_jacobians`, at the first free block, and note where the row is.
+
+    Returns:
+        Inverse mass, relative velocity, next free block, 0.
+    """
+    after = place_row(model, couplings, world, row, ends[0], ends[2], block)
+    found = write_jacobians(
+        model, state, scratch, couplings, world, ends, point_a, point_b, linear, angular, block
+    )
+    return Vector4(found[0], found[1], real(after), 0.0)

@@ -1,0 +1,193 @@
+"""Projected Gauss-Seidel on the rows of motors and limits, where nothing ties bodies together.
+
+The rows are visited last to first in even sweeps and first to last in odd ones; the sweeps end when
+no row changed its velocity by more than the residual threshold, or after the given number.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.feedback import gather_constraint_forces
+from carom.kernels.dynamics.limits import limit_rows, spherical_limit_rows
+from carom.kernels.dynamics.motors import motor_row, spherical_motor_rows
+from carom.kernels.dynamics.quarantine import report_fault
+from carom.kernels.dynamics.rows import row_dof
+from carom.kernels.maths.blocks import add_multiple
+from carom.kernels.maths.extremes import greater, within_bounds
+from carom.kernels.structs import Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Vector4, func, real, shared_func
+from carom.layouts.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
+
+
+@func
+def is_constrained(model: Model, state: State, world: Int32, root: Int32) -> bool:
+    """Whether a motor or a limit of a batch of trees may push in this substep."""
+    constraint = model.tree[root].first_constraint
+    end = constraint + model.tree[root].batch_constraints
+    while constraint < end:
+        link = model.constraint[constraint].link
+        kind = model.constraint[constraint].kind
+        if kind == MOTOR:
+            if state.dof_motor[world, model.link[link].first_dof][MOTOR_MAX_IMPULSE] != 0.0:
+                return True
+        elif kind == LIMIT:
+            position = state.position[world, model.link[link].first_position]
+            if (
+                position <= model.constraint_lower[world, constraint]
+                or position >= model.constraint_upper[world, constraint]
+            ):
+                return True
+        else:
+            return True
+        constraint += 1
+    return False
+
+
+@func
+def joint_constraint_rows(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Write the rows of a motor or a limit, if it is active; returns the next free row."""
+    kind = model.constraint[constraint].kind
+    if kind == MOTOR:
+        row = motor_row(model, settings, state, scratch, world, constraint, row)
+    elif kind == LIMIT:
+        row = limit_rows(model, settings, state, scratch, world, constraint, row)
+    elif kind == SPHERICAL_MOTOR:
+        row = spherical_motor_rows(model, settings, state, scratch, world, constraint, row)
+    elif kind == SPHERICAL_LIMIT:
+        row = spherical_limit_rows(model, settings, state, scratch, world, constraint, row)
+    return row
+
+
+@shared_func
+def bounded_change(before: real, after: real, lower: real, upper: real, effective_mass: real) -> real:
+    """Change of rate that is left of a row's when its impulse stops at a bound."""
+    return (within_bounds(after, lower, upper) - before) / effective_mass
+
+
+@func
+def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
+    """Bring one row to its target as far as its bounds allow; returns the change of its velocity.
+
+    From one row to the next only the change of velocity has to be waited for: the impulse is found
+    beside it, and a bound is a branch that is seldom taken.
+    """
+    entry = scratch.row[world, row].entry
+    before = scratch.row[world, row].impulse
+    effective_mass = scratch.row[world, row].effective_mass
+    change = scratch.row[world, row].change - scratch.entry_delta_velocity[world, entry]
+    after = before + change * effective_mass
+    lower = scratch.row[world, row].lower
+    upper = scratch.row[world, row].upper
+    if after < lower or after > upper:
+        change = bounded_change(before, after, lower, upper, effective_mass)
+        after = before + change * effective_mass
+    scratch.row[world, row].impulse = after
+
+    add_multiple(
+        scratch.delta_velocity, scratch.row[world, row].delta, change, scratch.block_response,
+        scratch.row[world, row].response, world, scratch.row[world, row].blocks,
+    )  # fmt: skip
+    return change
+
+
+@func
+def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> real:
+    """Relax `count` rows once; returns the greatest change squared."""
+    residual = real(0.0)
+    row = Int32(0)
+    stride = Int32(1)
+    if sweep % 2 == 0:
+        row = count - 1
+        stride = Int32(-1)
+    while row >= 0 and row < count:
+        change = relax_row(scratch, world, row)
+        residual = greater(residual, change * change)
+        row += stride
+    return residual
+
+
+@func
+def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, root: Int32):
+    """Solve the rows of one batch of trees; leaves the change of velocity in `delta_velocity`."""
+    state.tree_island[world, root] = model.tree[root].batch
+    count = Int32(0)
+    constraint = model.tree[root].first_constraint
+    end = constraint + model.tree[root].batch_constraints
+    while constraint < end:
+        count = joint_constraint_rows(model, settings, state, scratch, world, constraint, count)
+        constraint += 1
+
+    residual = real(0.0)
+    sweep = Int32(0)
+    searching = count > 0 and settings.iterations > 0
+    while searching:
+        inner = Int32(0)
+        while inner < settings.inner_iterations:
+            residual = row_sweep(scratch, world, count, sweep)
+            inner += 1
+            if residual == 0.0:
+                # Nothing has changed, so nothing ever will.
+                inner = settings.inner_iterations
+        sweep += 1
+        searching = residual > settings.residual_threshold and sweep < settings.iterations
+    keep_row_results(model, settings, state, scratch, world, root, count, sweep, residual)
+
+
+@func
+def keep_row_results(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    root: Int32,
+    count: Int32,
+    sweeps: Int32,
+    residual: real,
+):
+    """Report how the search went, and the impulses of the first `count` rows, to user and sensors."""
+    state.tree_iterations[world, root] = sweeps
+    state.tree_residual[world, root] = residual
+    for row in range(count):
+        keep_motor_impulse(model, state, scratch, world, row)
+    gather_constraint_forces(model, settings, scratch, world, 0, count)
+
+
+@func
+def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int32, row: Int32):
+    """Report the impulse of a motor's row to the user."""
+    kind = model.constraint[scratch.row[world, row].constraint].kind
+    if kind == MOTOR or kind == SPHERICAL_MOTOR:
+        state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row[world, row].impulse
+
+
+@func
+def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Start the solver from no change of velocity.
+
+    Every tree has room for a free base, two blocks, which patches read whether there is one or not.
+    """
+    first = model.tree[tree].first_delta
+    for block in range(first, first + wp.max((model.tree[tree].dof_count + 3) // 4, 2)):
+        scratch.delta_velocity[world, block] = Vector4(0.0, 0.0, 0.0, 0.0)
+
+
+@func
+def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Add what the solver found to the velocities of a tree."""
+    bound = model.tree_max_velocity[world, tree]
+    first = model.tree[tree].first_dof
+    delta = model.tree[tree].first_delta
+    total = real(0.0)
+    for i in range(model.tree[tree].dof_count):
+        velocity = state.dof_velocity[world, first + i] + scratch.entry_delta_velocity[world, 4 * delta + i]
+        state.dof_velocity[world, first + i] = within_bounds(velocity, -bound, bound)
+        total += velocity
+    report_fault(state, world, tree, total)

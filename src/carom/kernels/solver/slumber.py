@@ -1,0 +1,176 @@
+"""Which trees are asleep: those at rest do not take part until something in motion comes near.
+
+A tree that hardly moves for `TIRED_AFTER` seconds is *tired*. Trees that are near each other, touch or are
+tied together fall asleep together, when none of them is awake, and stir together when one is. As in
+Bullet neither forces nor motors wake anyone up.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import boxes_meet
+from carom.kernels.contact.filters import may_touch
+from carom.kernels.contact.hierarchy import leaf_start, next_node
+from carom.kernels.solver.activity import link_moves, squared_motion
+from carom.kernels.solver.islands import unite, unite_tied
+from carom.kernels.structs import Contacts, Couplings, Model, Pairs, Settings, Shapes, State, UserConstraints
+from carom.kernels.types import Int32, func, kernel, real
+from carom.layouts.codes import ACTIVE, ASLEEP, DROWSY, STIRRED
+from carom.layouts.contacts import LEAVES, THERE
+
+# Time without motion after which a tree may fall asleep [s].
+TIRED_AFTER = real(2.0)
+# Gap between the bounds of two trees up to which they fall asleep and stir together [m].
+NEAR = real(0.04)
+
+
+@func
+def are_near(
+    settings: Settings, model: Model, shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
+) -> bool:
+    """Whether two shapes are near each other, that of b being on a link that moves, and may touch."""
+    if not link_moves(model, shapes.shape_link[b]):
+        return False
+    return boxes_meet(
+        pairs.shape_lower[world, a],
+        pairs.shape_upper[world, a],
+        pairs.shape_lower[world, b],
+        pairs.shape_upper[world, b],
+        NEAR,
+    ) and may_touch(shapes, model, settings, a, b)
+
+
+@func
+def unite_near(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    place: Int32,
+    own_leaf: Int32,
+):
+    """Unite the tree of the shape at a place in the hierarchy with those near it at later places."""
+    a = pairs.shape_order[world, place]
+    if not link_moves(model, shapes.shape_link[a]):
+        return
+    lower = pairs.shape_lower[world, a]
+    upper = pairs.shape_upper[world, a]
+    leaf_count = pairs.count_pairs[world, LEAVES]
+    node = leaf_count + own_leaf
+    while node > 0:
+        if boxes_meet(lower, upper, pairs.node_lower[world, node], pairs.node_upper[world, node], NEAR):
+            if node < leaf_count:
+                node = 2 * node
+                continue
+            leaf = node - leaf_count
+            for other in range(
+                wp.max(place + 1, leaf_start(pairs, world, leaf)),
+                leaf_start(pairs, world, leaf + 1),
+            ):
+                b = pairs.shape_order[world, other]
+                if are_near(settings, model, shapes, pairs, world, a, b):
+                    unite(model, state, world, shapes.shape_tree[a], shapes.shape_tree[b])
+        node = next_node(node)
+
+
+@func
+def unite_neighbours(
+    settings: Settings, model: Model, state: State, shapes: Shapes, pairs: Pairs, world: Int32
+):
+    """Unite all trees that are near each other."""
+    leaf_count = pairs.count_pairs[world, LEAVES]
+    for leaf in range(leaf_count):
+        for place in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
+            unite_near(settings, model, state, shapes, pairs, world, place, leaf)
+
+
+@func
+def has_moving_shapes(model: Model, shapes: Shapes, tree: Int32) -> bool:
+    """Whether a link that moves has shapes; else a tree never sleeps, as in Bullet."""
+    first = model.tree[tree].first_link
+    for link in range(first, first + model.tree[tree].link_count):
+        if shapes.link_shape_count[link] > 0 and link_moves(model, link):
+            return True
+    return False
+
+
+@func
+def island_of(state: State, world: Int32, tree: Int32) -> Int32:
+    """Root of the island of a tree."""
+    root = tree + 0
+    while state.tree_island[world, root] != root:
+        root = state.tree_island[world, root]
+    return root
+
+
+@kernel
+def settle_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    pairs: Pairs,
+    contacts: Contacts,
+    users: UserConstraints,
+    couplings: Couplings,
+    touching: Int32,
+    first_world: Int32,
+):
+    """Before a substep: islands without anyone active fall asleep, others stir.
+
+    `touching` is 0 where there is no collision detection, so that nobody has neighbours.
+    """
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        state.tree_island[world, tree] = tree
+        couplings.tree_touches[world, tree] = 0
+    if touching != 0:
+        unite_neighbours(settings, model, state, shapes, pairs, world)
+        for contact in range(contacts.count_contacts[world, THERE]):
+            pair = contacts.contact_shapes[world, contact]
+            if link_moves(model, pair[2]) and link_moves(model, pair[3]):
+                unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
+    unite_tied(settings, model, state, users, world)
+    # From here on `tree_touches` of a root says that someone of its island is active.
+    for tree in range(settings.tree_count):
+        if state.tree_activity[world, tree] == ACTIVE and has_moving_shapes(model, shapes, tree):
+            couplings.tree_touches[world, island_of(state, world, tree)] = 1
+    for tree in range(settings.tree_count):
+        activity = state.tree_activity[world, tree]
+        if activity != ACTIVE and has_moving_shapes(model, shapes, tree):
+            if couplings.tree_touches[world, island_of(state, world, tree)] == 0:
+                state.tree_activity[world, tree] = ASLEEP
+            elif activity == ASLEEP:
+                state.tree_activity[world, tree] = STIRRED
+            else:
+                state.tree_activity[world, tree] = DROWSY
+
+
+@func
+def watch(model: Model, settings: Settings, state: State, world: Int32, tree: Int32):
+    """Whether a tree moves enough to stay awake, or to wake up."""
+    if model.tree[tree].can_sleep == 0:
+        state.tree_tired[world, tree] = 0
+        state.tree_idle_time[world, tree] = 0.0
+        return
+    if squared_motion(model, state, world, tree) < model.tree[tree].sleep_threshold:
+        state.tree_idle_time[world, tree] += settings.time_step
+        if state.tree_idle_time[world, tree] > TIRED_AFTER:
+            state.tree_tired[world, tree] = 1
+    else:
+        state.tree_idle_time[world, tree] = 0.0
+        if model.tree[tree].can_wake != 0:
+            state.tree_tired[world, tree] = 0
+
+
+@kernel
+def watch_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
+    """After a substep: see who moves, who has grown tired and who is awake again."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        watch(model, settings, state, world, tree)
+        if state.tree_tired[world, tree] == 0:
+            state.tree_activity[world, tree] = ACTIVE
+        elif state.tree_activity[world, tree] == ACTIVE:
+            state.tree_activity[world, tree] = DROWSY

@@ -1,0 +1,139 @@
+"""What the sweeps of an island relax, in order: patches, and contacts by themselves."""
+
+from carom.kernels.solver.calm import is_rigid
+from carom.kernels.solver.contact_order import same_shapes
+from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_impulses
+from carom.kernels.solver.contact_terms import contact_friction, contact_terms
+from carom.kernels.solver.couplings import has_room, tree_blocks
+from carom.kernels.solver.long_patches import RUN_PER_BLOCK
+from carom.kernels.solver.patch_writing import keep_patch_impulses, write_patch
+from carom.kernels.structs import Contacts, Couplings, Model, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, func, real
+
+
+@func
+def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
+    """Whether a contact has rolling or spinning friction."""
+    pair = contacts.contact_shapes[world, contact]
+    friction = contact_friction(shapes, world, pair[2], pair[3])
+    return friction[1] > 0.0 or friction[2] > 0.0
+
+
+@func
+def may_join(
+    shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32, first: Int32, rigid: bool
+) -> bool:
+    """Whether a contact may be in a patch with another one that comes before it.
+
+    Patches of rigid bodies are those of two shapes, as calm islands want them; those of articulated ones
+    may have contacts of several links, so that a robot on four feet has one.
+    """
+    if contact < 0:
+        return False
+    pair = contacts.contact_shapes[world, first]
+    if rigid:
+        return same_shapes(contacts, world, contact, pair)
+    other = contacts.contact_shapes[world, contact]
+    return (
+        shapes.shape_tree[other[0]] == shapes.shape_tree[pair[0]]
+        and shapes.shape_tree[other[1]] == shapes.shape_tree[pair[1]]
+        and not twists(shapes, contacts, world, contact)
+    )
+
+
+@func
+def next_unit(
+    shapes: Shapes, contacts: Contacts, couplings: Couplings, world: Int32, first: Int32, rigid: bool
+):
+    """The contacts, -1 for none, of the unit that begins with `first`, and their number."""
+    members = Index4(first, -1, -1, -1)
+    count = Int32(1)
+    if not twists(shapes, contacts, world, first):
+        following = couplings.contact_next[world, first]
+        while count < 4 and may_join(shapes, contacts, world, following, first, rigid):
+            members[count] = following
+            following = couplings.contact_next[world, following]
+            count += 1
+    return members, count
+
+
+@func
+def write_units(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    couplings: Couplings,
+    world: Int32,
+    first_contact: Int32,
+    place: Index4,
+    share: real,
+) -> Index4:
+    """Write the rows of an island's contacts, from the free place on.
+
+    Those of rigid bodies start from a `share` of their last impulses. Several contacts in a row that may
+    be solved together make a patch.
+
+    Returns:
+        Number of units, negative if some did not fit; number of patches; 1 if there is rolling or
+        spinning friction; 0.
+    """
+    units = Int32(0)
+    patches = Int32(0)
+    torsion = Int32(0)
+    next_run = Int32(0)
+    contact = first_contact + 0
+    while contact >= 0:
+        pair = contacts.contact_shapes[world, contact]
+        a = shapes.shape_tree[pair[0]]
+        b = shapes.shape_tree[pair[1]]
+        rigid = is_rigid(model, a) and is_rigid(model, b)
+        members, count = next_unit(shapes, contacts, couplings, world, contact, rigid)
+        i = Int32(0)
+        while i < count:
+            couplings.terms[world, i] = contact_terms(
+                settings, model, state, scratch, shapes, contacts, world, members[i], share
+            )
+            i += 1
+        room = has_room(model, couplings, place, a, b)
+        if count > 1:
+            run = Int32(-1)
+            if not rigid:
+                run = next_run + 0
+                next_run += RUN_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
+                if next_run > couplings.run_block.shape[1] or not room:
+                    return Index4(-1, patches, torsion, 0)
+            write_patch(
+                settings, model, state, scratch, shapes, couplings, world, patches, members, count, a, b, run,
+                place[1],
+            )  # fmt: skip
+            couplings.unit_code[world, units] = -1 - patches
+            patches += 1
+        else:
+            if not room:
+                return Index4(-1, patches, torsion, 0)
+            if couplings.terms[world, 0].friction[1] > 0.0 or couplings.terms[world, 0].friction[2] > 0.0:
+                torsion = Int32(1)
+            place = add_contact_rows(
+                settings, model, state, scratch, shapes, contacts, couplings, couplings.terms[world, 0],
+                world, contact, place[0], place[1],
+            )  # fmt: skip
+            couplings.unit_code[world, units] = contact
+        units += 1
+        contact = couplings.contact_next[world, members[count - 1]]
+    return Index4(units, patches, torsion, 0)
+
+
+@func
+def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32, outcome: Int32):
+    """Report the impulses of an island's contacts, and the `outcome` of the search for them."""
+    unit = Int32(0)
+    while unit < units:
+        code = couplings.unit_code[world, unit]
+        if code < 0:
+            keep_patch_impulses(contacts, couplings, world, -1 - code, outcome)
+        else:
+            keep_contact_impulses(contacts, couplings, world, code)
+        unit += 1

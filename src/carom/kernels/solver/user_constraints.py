@@ -1,0 +1,231 @@
+"""Rows of the constraints users create: point to point, fixed, prismatic, gear."""
+
+import warp as wp
+
+from carom.kernels.dynamics.motors import euler_xyz
+from carom.kernels.maths.blocks import fill_zero, write_multiple
+from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.solver.couplings import place_row, write_pair_jacobian, write_row
+from carom.kernels.structs import Couplings, Model, Scratch, Settings, State, UserConstraints
+from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
+from carom.layouts.codes import ROW_IMPULSE, USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
+
+_PARALLEL = real(1e-6)
+
+
+@func
+def world_point(state: State, world: Int32, tree: Int32, link: Int32, local: Vector3) -> Vector3:
+    """World position of a point of a link; of the world (tree -1) the point itself."""
+    if tree < 0:
+        return local
+    return wp.transform_point(state.link_pose[world, link], local)
+
+
+@func
+def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Quaternion) -> Quaternion:
+    """World orientation of a frame of a link; of the world (tree -1) the frame itself."""
+    if tree < 0:
+        return local
+    return wp.transform_get_rotation(state.link_pose[world, link]) * local
+
+
+@func
+def user_row_count(kind: Int32) -> Int32:
+    """Number of rows of a user constraint."""
+    if kind == USER_GEAR:
+        return Int32(1)
+    if kind == USER_POINT_TO_POINT:
+        return Int32(3)
+    if kind == USER_PRISMATIC:
+        return Int32(5)
+    return Int32(6)
+
+
+@func
+def column(m: Matrix3, i: Int32) -> Vector3:
+    """Column `i` of a matrix."""
+    return Vector3(m[0, i], m[1, i], m[2, i])
+
+
+@func
+def across_axis(frame: Matrix3, axis: Vector3) -> Vector3:
+    """A unit vector perpendicular to `axis`, from the first column of `frame` that is not parallel."""
+    result = wp.cross(column(frame, 0), axis)
+    if wp.length(result) <= _PARALLEL:
+        result = wp.cross(column(frame, 1), axis)
+    return wp.normalize(result)
+
+
+@func
+def add_pose_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    couplings: Couplings,
+    world: Int32,
+    user: Int32,
+    place: Index4,
+) -> Index4:
+    """Add the rows of a point-to-point, fixed or prismatic constraint; returns what is free next.
+
+    Each row lets a not move against b along or about an axis, and takes back a share of the error.
+    """
+    kind = users.user_kind[user]
+    ends = Index4(
+        users.user_tree_a[user], users.user_link_a[user], users.user_tree_b[user], users.user_link_b[user]
+    )
+    point_a = world_point(state, world, ends[0], ends[1], users.user_pivot_a[user])
+    point_b = world_point(state, world, ends[2], ends[3], users.user_pivot_b[user])
+    apart = point_a - point_b
+    frame_a = world_frame(state, world, ends[0], ends[1], users.user_frame_a[user])
+    frame_b = world_frame(state, world, ends[2], ends[3], users.user_frame_b[user])
+    axes = rotation_matrix(frame_a)
+    turned = euler_xyz(rotation_matrix(wp.quat_inverse(frame_b) * frame_a))
+
+    # Directions along which the points may not part: three axes, or the two across the slide.
+    directions = wp.identity(3, real)
+    linear_count = Int32(3)
+    first_angle = Int32(0)
+    if kind == USER_PRISMATIC:
+        along = wp.quat_rotate(
+            wp.transform_get_rotation(state.link_pose[world, ends[1]]), users.user_axis[user]
+        )
+        first = across_axis(axes, along)
+        second = wp.normalize(wp.cross(along, first))
+        directions = wp.matrix_from_rows(first, second, along)
+        linear_count = Int32(2)
+        first_angle = Int32(2)
+
+    bound = users.user_max_impulse[user]
+    row = place[0]
+    block = place[1]
+    for i in range(user_row_count(kind)):
+        linear = Vector3(0.0, 0.0, 0.0)
+        angular = Vector3(0.0, 0.0, 0.0)
+        error = real(0.0)
+        if i < linear_count:
+            linear = Vector3(directions[i, 0], directions[i, 1], directions[i, 2])
+            error = wp.dot(apart, linear)
+        else:
+            axis = (i - linear_count + first_angle) % 3
+            angular = column(axes, axis)
+            error = turned[axis]
+        found = write_pair_jacobian(
+            model, state, scratch, couplings, world, row, block, ends, point_a, point_b, linear, angular
+        )
+        block = Int32(found[2])
+        change = -found[1] - error * settings.joint_erp / settings.time_step
+        write_row(couplings, world, row, found[0], change, 0.0, -bound, bound, 0.0)
+        row += 1
+    return Index4(row, block, 0, 0)
+
+
+@func
+def write_dof_jacobian(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    couplings: Couplings,
+    world: Int32,
+    tree: Int32,
+    dof: Int32,
+    share: real,
+    start: Int32,
+) -> Vector3:
+    """Write a row that is `share` times the rate of a dof; returns inverse mass, velocity, 0."""
+    blocks = (model.tree[tree].dof_count + 3) // 4
+    column_of_dof = dof - model.tree[tree].first_dof
+    response = model.tree[tree].first_block + column_of_dof * blocks
+    fill_zero(couplings.jacobian_row, start, world, blocks)
+    write_multiple(
+        couplings.jacobian_response, start, share, scratch.block_inverse_mass, response, world, blocks
+    )
+    couplings.entry_row[world, 4 * start + column_of_dof] = share
+    inverse_mass = share * couplings.entry_response[world, 4 * start + column_of_dof]
+    return Vector3(inverse_mass, share * state.dof_velocity[world, dof], 0.0)
+
+
+@func
+def joint_position(model: Model, state: State, world: Int32, link: Int32) -> real:
+    """Position of the joint that carries a link."""
+    return state.position[world, model.link[link].first_position]
+
+
+@func
+def add_gear_row(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    couplings: Couplings,
+    world: Int32,
+    user: Int32,
+    place: Index4,
+) -> Index4:
+    """Add the row that ties the rate of joint a to minus the gear ratio times that of joint b."""
+    link_a = users.user_link_a[user]
+    link_b = users.user_link_b[user]
+    auxiliary = users.user_gear_auxiliary[user]
+    ratio = users.user_gear_ratio[user]
+    auxiliary_rate = real(0.0)
+    error = real(0.0)
+    if auxiliary >= 0:
+        auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof]
+    if users.user_erp[user] != 0.0:
+        angle = joint_position(model, state, world, link_a) + ratio * joint_position(
+            model, state, world, link_b
+        )
+        if auxiliary >= 0:
+            angle -= joint_position(model, state, world, auxiliary)
+        error = -users.user_erp[user] * (users.user_relative_target[user] - angle)
+
+    row = place[0]
+    after = place_row(
+        model, couplings, world, row, users.user_tree_a[user], users.user_tree_b[user], place[1]
+    )
+    own = write_dof_jacobian(
+        model, state, scratch, couplings, world,
+        users.user_tree_a[user], model.link[link_a].first_dof, 1.0, place[1],
+    )  # fmt: skip
+    start_b = place[1] + couplings.coupling_place[world, row][1]
+    other = write_dof_jacobian(
+        model, state, scratch, couplings, world,
+        users.user_tree_b[user], model.link[link_b].first_dof, ratio, start_b,
+    )  # fmt: skip
+    change = auxiliary_rate - (own[1] + other[1]) - error * settings.joint_erp / settings.time_step
+    bound = users.user_max_impulse[user]
+    write_row(couplings, world, row, own[0] + other[0], change, 0.0, -bound, bound, 0.0)
+    return Index4(row + 1, after, 0, 0)
+
+
+@func
+def add_user_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    couplings: Couplings,
+    world: Int32,
+    user: Int32,
+    place: Index4,
+) -> Index4:
+    """Add the rows of one user constraint; returns the next free row and block."""
+    couplings.user_first_row[world, user] = place[0]
+    if users.user_kind[user] == USER_GEAR:
+        return add_gear_row(settings, model, state, scratch, users, couplings, world, user, place)
+    return add_pose_rows(settings, model, state, scratch, users, couplings, world, user, place)
+
+
+@func
+def keep_user_impulses(state: State, users: UserConstraints, couplings: Couplings, world: Int32, user: Int32):
+    """Report the impulses of a user constraint's rows."""
+    first = couplings.user_first_row[world, user]
+    for i in range(user_row_count(users.user_kind[user])):
+        impulse = real(0.0)
+        if users.user_enabled[world, user] != 0:
+            impulse = couplings.coupling_terms[world, first + i][ROW_IMPULSE]
+        state.user_impulse[world, user][i] = impulse

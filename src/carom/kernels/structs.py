@@ -1,0 +1,61 @@
+"""The structs of `carom.layouts` as Warp has them: device code takes them from here."""
+
+from typing import TYPE_CHECKING
+
+from carom.kernels.warp_types import warp_type
+from carom.layouts import chain, contacts, images, model, motor_commands, moving_tree, parallel, queries
+
+if TYPE_CHECKING:
+    from carom.layouts.chain import Chain, ChainSizes, Search
+    from carom.layouts.contacts import (
+        Contacts,
+        ContactTerms,
+        Couplings,
+        Pairs,
+        Patch,
+        Patches,
+        Shapes,
+        TermsRows,
+        UserConstraints,
+    )
+    from carom.layouts.images import Lighting, Picture, Scene, View
+    from carom.layouts.model import Dofs, Model, Scratch, Settings, State, Trees
+    from carom.layouts.motor_commands import MotorCommands
+    from carom.layouts.moving_tree import Control, Ends, Tree, TreeSizes
+    from carom.layouts.parallel import IslandProgress, IslandWork, PairWork
+    from carom.layouts.queries import ContactReport, Places, Rays, Searches
+else:
+    IslandProgress = warp_type(parallel.IslandProgress)
+    IslandWork = warp_type(parallel.IslandWork)
+    PairWork = warp_type(parallel.PairWork)
+    ChainSizes = warp_type(chain.ChainSizes)
+    Chain = warp_type(chain.Chain)
+    Search = warp_type(chain.Search)
+    Shapes = warp_type(contacts.Shapes)
+    Pairs = warp_type(contacts.Pairs)
+    Contacts = warp_type(contacts.Contacts)
+    UserConstraints = warp_type(contacts.UserConstraints)
+    Patch = warp_type(contacts.Patch)
+    ContactTerms = warp_type(contacts.ContactTerms)
+    Patches = warp_type(contacts.Patches)
+    TermsRows = warp_type(contacts.TermsRows)
+    Couplings = warp_type(contacts.Couplings)
+    Scene = warp_type(images.Scene)
+    View = warp_type(images.View)
+    Lighting = warp_type(images.Lighting)
+    Picture = warp_type(images.Picture)
+    Settings = warp_type(model.Settings)
+    Trees = warp_type(model.Trees)
+    Dofs = warp_type(model.Dofs)
+    Model = warp_type(model.Model)
+    State = warp_type(model.State)
+    Scratch = warp_type(model.Scratch)
+    MotorCommands = warp_type(motor_commands.MotorCommands)
+    TreeSizes = warp_type(moving_tree.TreeSizes)
+    Ends = warp_type(moving_tree.Ends)
+    Tree = warp_type(moving_tree.Tree)
+    Control = warp_type(moving_tree.Control)
+    Places = warp_type(queries.Places)
+    ContactReport = warp_type(queries.ContactReport)
+    Searches = warp_type(queries.Searches)
+    Rays = warp_type(queries.Rays)

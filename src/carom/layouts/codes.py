@@ -1,0 +1,144 @@
+"""Integer codes that kernels and Python share."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from carom.description import JointType
+
+
+class JointCode(IntEnum):
+    """Kinds of joint as the engine sees them; the values are PyBullet's."""
+
+    REVOLUTE = 0
+    PRISMATIC = 1
+    SPHERICAL = 2
+    PLANAR = 3
+    FIXED = 4
+
+
+class ConstraintKind(IntEnum):
+    """Constraints that act on the joints of one tree, and those that users create."""
+
+    MOTOR = 0
+    LIMIT = 1
+    SPHERICAL_MOTOR = 2
+    SPHERICAL_LIMIT = 3
+    USER = 4
+
+
+class UserConstraintKind(IntEnum):
+    """Constraints between links; the values are PyBullet's."""
+
+    PRISMATIC = 1
+    FIXED = 4
+    POINT_TO_POINT = 5
+    GEAR = 6
+
+
+class Activity(IntEnum):
+    """Whether a tree takes part in the simulation."""
+
+    ACTIVE = 0
+    DROWSY = 1  # takes part, but will not as soon as nobody of its island is active
+    ASLEEP = 2
+    STIRRED = 3  # was asleep until this substep; else as DROWSY
+
+
+class ShapeKind(IntEnum):
+    """Kinds of collision shape, and what `Shapes.shape_size` holds for each."""
+
+    SPHERE = 0  # radius
+    BOX = 1  # half extents
+    CAPSULE = 2  # radius, half length along z, what its bounds are larger by
+    CYLINDER = 3  # radius, half length along z
+    PLANE = 4  # unit normal
+    HULL = 5  # half extents of its bounds
+    TRIANGLES = 6  # half extents of its bounds
+    HEIGHTFIELD = 7  # half extents of its bounds
+
+
+class Rolling(IntEnum):
+    """About which axis of its frame a shape is round."""
+
+    NONE = 0
+    ABOUT_X = 1
+    ABOUT_Y = 2
+    ABOUT_Z = 3
+    ABOUT_ANY = 4
+
+
+JOINT_CODE = {
+    JointType.REVOLUTE: JointCode.REVOLUTE,
+    JointType.CONTINUOUS: JointCode.REVOLUTE,
+    JointType.PRISMATIC: JointCode.PRISMATIC,
+    JointType.SPHERICAL: JointCode.SPHERICAL,
+    JointType.PLANAR: JointCode.PLANAR,
+    JointType.FIXED: JointCode.FIXED,
+    JointType.FLOATING: JointCode.FIXED,
+}
+DOF_COUNT = {
+    JointCode.REVOLUTE: 1,
+    JointCode.PRISMATIC: 1,
+    JointCode.SPHERICAL: 3,
+    JointCode.PLANAR: 3,
+    JointCode.FIXED: 0,
+}
+POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
+
+BASE_POSITIONS = 7
+BASE_VELOCITIES = 6
+
+# What one constraint can add to the solver at most: three axes of a spherical joint.
+MAX_ROWS_PER_CONSTRAINT = 3
+
+# Columns of a motor's settings (`State.dof_motor`) and of an explicit PD drive (`State.dof_pd`).
+MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
+MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
+PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
+
+# Columns of the numbers of a row over two trees (`Couplings.coupling_terms`); ROW_SHARE is the impulse
+# that would bring about the whole change of velocity if nothing else pushed.
+ROW_SHARE, ROW_EFFECTIVE_MASS, ROW_INVERSE_MASS, ROW_LOWER, ROW_UPPER, ROW_IMPULSE = 0, 1, 2, 3, 4, 5
+ROW_SOFTNESS, ROW_FRICTION = 6, 7
+# Columns of a contact's rows (`Couplings.contact_rows`); -1 where there is none.
+NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
+
+# Columns of a contact candidate (`Pairs.candidate_terms`): point on shape b, normal on b, distance.
+CANDIDATE_POINT, CANDIDATE_NORMAL, CANDIDATE_DISTANCE = 0, 3, 6
+
+# Kernels read codes as Warp constants.
+REVOLUTE = int(JointCode.REVOLUTE)
+PRISMATIC = int(JointCode.PRISMATIC)
+SPHERICAL = int(JointCode.SPHERICAL)
+PLANAR = int(JointCode.PLANAR)
+FIXED = int(JointCode.FIXED)
+MOTOR = int(ConstraintKind.MOTOR)
+LIMIT = int(ConstraintKind.LIMIT)
+SPHERICAL_MOTOR = int(ConstraintKind.SPHERICAL_MOTOR)
+SPHERICAL_LIMIT = int(ConstraintKind.SPHERICAL_LIMIT)
+USER = int(ConstraintKind.USER)
+ACTIVE = int(Activity.ACTIVE)
+DROWSY = int(Activity.DROWSY)
+ASLEEP = int(Activity.ASLEEP)
+STIRRED = int(Activity.STIRRED)
+SPHERE = int(ShapeKind.SPHERE)
+BOX = int(ShapeKind.BOX)
+CAPSULE = int(ShapeKind.CAPSULE)
+CYLINDER = int(ShapeKind.CYLINDER)
+PLANE = int(ShapeKind.PLANE)
+HULL = int(ShapeKind.HULL)
+TRIANGLES = int(ShapeKind.TRIANGLES)
+HEIGHTFIELD = int(ShapeKind.HEIGHTFIELD)
+NO_ROLLING = int(Rolling.NONE)
+ROLLING_ABOUT_X = int(Rolling.ABOUT_X)
+ROLLING_ABOUT_ANY = int(Rolling.ABOUT_ANY)
+
+USER_PRISMATIC = int(UserConstraintKind.PRISMATIC)
+USER_FIXED = int(UserConstraintKind.FIXED)
+USER_POINT_TO_POINT = int(UserConstraintKind.POINT_TO_POINT)
+USER_GEAR = int(UserConstraintKind.GEAR)
+
+# What link forces are computed for; see `physics.dynamics.link_bias_forces`.
+FREE_MOTION = 0
+CONSTRAINT_FEEDBACK = 1

@@ -1,0 +1,286 @@
+"""What kernels work on: `Settings`, `Model`, `State` and `Scratch`.
+
+`Model` is topology and parameters, shared by all worlds; `State` and `Scratch` have a leading world
+axis. Quantities that are used together lie together, as the fields of one struct per tree, link,
+dof, constraint or row: the kernel finds them all from one address. A field's axis is the first
+word of its name: `Model.link` and `State.link_pose` have one entry per link.
+
+A *tree* is one body: a base and its links. A *dof* is one velocity coordinate; the six of the base
+come first, angular before linear. *Active* dofs are those that dynamics may change: all of a
+floating tree, all but the base's six of a fixed one; `tree_first_dof` is the first of them.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from carom.layouts.types import (
+    ArrayType,
+    Int32,
+    IntRows,
+    Matrix3,
+    Quaternion,
+    RealRows,
+    TransformRows,
+    Vector3,
+    Vector3Rows,
+    Vector4Rows,
+    Vector6Rows,
+    Vector8Rows,
+    real,
+    struct,
+)
+
+
+@struct
+class Settings:
+    """Engine parameters, passed to kernels by value."""
+
+    time_step: real  # of one substep [s]
+    iterations: Int32
+    inner_iterations: Int32
+    residual_threshold: real
+    joint_erp: real
+    contact_erp: real
+    friction_erp: real
+    contact_softness: real
+    contact_slop: real
+    contact_warm_starting: real
+    restitution_threshold: real
+    cone_friction: Int32
+    split_impulse: Int32
+    split_threshold: real
+    feedback_in_world: Int32
+    feedback_in_joint: Int32
+    tree_count: Int32
+    user_count: Int32
+    constraint_count: Int32
+    shape_count: Int32
+    filter_count: Int32  # entries of `Shapes.filter_link_a`
+    looks_ahead: Int32  # 1: some shape has a swept sphere, see `kernels.contact.bounds`
+    filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
+
+
+@struct
+class TreeModel:
+    """One body: a base and its links, and what holds for all of them."""
+
+    first_link: Int32
+    link_count: Int32
+    first_position: Int32
+    position_count: Int32
+    first_velocity: Int32
+    first_dof: Int32
+    dof_count: Int32
+    fixed: Int32
+    first_block: Int32  # of its matrices, in rows of four columns
+    first_delta: Int32  # of its vectors, in blocks of four
+    sensor_count: Int32
+    constraint_count: Int32
+    batch: Int32  # first tree of those solved together with it for lack of constraints
+    first_constraint: Int32  # of its batch, if it is the first tree of one
+    batch_constraints: Int32  # of its batch, if it is the first tree of one; else 0
+    can_sleep: Int32
+    can_wake: Int32  # by moving
+    sleep_threshold: real  # sum of its squared velocities below which it grows tired
+
+
+@struct
+class LinkModel:
+    """One link, or the base of a tree, and the joint to its parent."""
+
+    parent: Int32  # -1 for a base
+    joint_type: Int32
+    first_position: Int32
+    first_dof: Int32
+    dof_count: Int32
+    nearest_dof: Int32  # last of the dofs that move it, -1 if none does
+    sensor: Int32
+    joint_rotation: Quaternion  # inertial frame in the parent's inertial frame at position 0
+    pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
+    com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
+    axis: Vector3  # velocity per unit rate, in the inertial frame
+    unit_axis: Vector3
+    planar_axis1: Vector3  # first translation of a planar joint, in the inertial frame
+    planar_axis2: Vector3
+
+
+@struct
+class DofModel:
+    """One velocity coordinate."""
+
+    parent: Int32  # next active dof towards the root, -1 at the root
+
+
+@struct
+class ConstraintModel:
+    """What one joint motor, joint limit or user constraint may do."""
+
+    kind: Int32
+    tree: Int32
+    link: Int32  # of a user constraint: its row
+
+
+if TYPE_CHECKING:
+    Trees = Any
+    Links = Any
+    Dofs = Any
+    Constraints = Any
+else:
+    Trees = ArrayType(TreeModel)
+    Links = ArrayType(LinkModel)
+    Dofs = ArrayType(DofModel)
+    Constraints = ArrayType(ConstraintModel)
+
+
+@struct
+class Model:
+    """Topology and parameters of every body.
+
+    Link rows include the base of each tree, its first. Indices of links, dofs and positions count
+    over all trees. All worlds share the topology. What may differ from world to world has a leading world
+    axis, with one row for each world, or a single one that all of them share.
+    """
+
+    tree: Trees
+    link: Links
+    dof: Dofs
+    constraint: Constraints
+
+    gravity_vector: Vector3Rows  # its first entry [m/s²]
+    tree_linear_damping: RealRows
+    tree_angular_damping: RealRows
+    tree_max_velocity: RealRows
+    link_mass: RealRows
+    link_inertia: Vector3Rows  # principal moments
+    dof_damping: RealRows
+    constraint_lower: RealRows
+    constraint_upper: RealRows
+    constraint_twist: RealRows
+    constraint_max_impulse: RealRows
+
+
+@struct
+class State:
+    """What changes from step to step, and what users set for the next one."""
+
+    position: RealRows
+    dof_velocity: RealRows
+    dof_motor: Vector8Rows
+    dof_pd: Vector8Rows
+    dof_torque: RealRows
+    dof_motor_impulse: RealRows
+    link_pose: TransformRows  # of the inertial frame
+    link_twist: Vector6Rows  # velocity of the centre of mass, angular velocity
+    link_wrench: Vector6Rows  # force, torque about the centre of mass
+    link_reaction: Vector6Rows  # force, torque of the force-torque sensor
+    tree_island: IntRows  # root of its island; the next two are those of roots
+    tree_iterations: IntRows
+    tree_residual: RealRows
+    tree_activity: IntRows  # see `codes.Activity`
+    tree_tired: IntRows  # 1: it sleeps as soon as all of its island are
+    tree_idle_time: RealRows  # for how long it has hardly moved [s]
+    user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
+    status_entry: IntRows  # what became of the last step: see `layouts.status`
+
+
+@struct
+class LinkScratch:
+    """Motion, inertia and forces of one link.
+
+    Spatial quantities are in world axes and refer to the base's centre of mass: velocities and
+    accelerations are those of the point of the link that is there, moments are about it.
+    """
+
+    offset: Vector3  # centre of mass from the reference point
+    rotation: Matrix3
+    com_inertia: Matrix3  # about the centre of mass, world axes
+    omega: Vector3
+    velocity: Vector3
+    alpha: Vector3
+    acceleration: Vector3
+    force: Vector3
+    moment: Vector3
+    composite_mass: real
+    composite_first: Vector3
+    composite_inertia: Matrix3
+    constraint_force: Vector3
+    constraint_torque: Vector3
+
+
+@struct
+class TreeScratch:
+    """Whether a tree slept at the start of the step."""
+
+    start_activity: Int32
+    start_tired: Int32
+    start_idle_time: real
+
+
+@struct
+class DofScratch:
+    """Motion subspace and force of one dof."""
+
+    start_velocity: real  # at the start of the step
+    start_torque: real
+    angular: Vector3  # motion subspace
+    linear: Vector3
+    force: real
+    inverse_pivot: real
+
+
+@struct
+class RowScratch:
+    """One constraint row that acts on a single dof."""
+
+    constraint: Int32
+    entry: Int32  # of its dof in `entry_delta_velocity`
+    delta: Int32  # first block of its tree in `delta_velocity`
+    response: Int32  # first block of `block_response`
+    blocks: Int32
+    change: real  # of its dof's rate, wanted
+    effective_mass: real
+    lower: real  # bounds of the impulse
+    upper: real
+    impulse: real
+
+
+if TYPE_CHECKING:
+    TreeRows = Any
+    LinkRows = Any
+    DofRows = Any
+    ConstraintRows = Any
+else:
+    TreeRows = ArrayType(TreeScratch, 2)
+    LinkRows = ArrayType(LinkScratch, 2)
+    DofRows = ArrayType(DofScratch, 2)
+    ConstraintRows = ArrayType(RowScratch, 2)
+
+
+@struct
+class Scratch:
+    """Intermediate results of one step."""
+
+    tree: TreeRows
+    link: LinkRows
+    link_pose: TransformRows  # like `State.link_pose`, for other coordinates or of the substep before
+    dof: DofRows
+    position_start: RealRows
+
+    # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
+    # columns, and the `entry_` arrays show the same memory column by column.
+    block_factor: Vector4Rows
+    block_inverse_mass: Vector4Rows
+    block_response: Vector4Rows  # to the impulse that changes the rate of a row's dof by 1
+    delta_velocity: Vector4Rows
+    entry_factor: RealRows
+    entry_inverse_mass: RealRows
+    entry_delta_velocity: RealRows
+
+    row: ConstraintRows
+
+
+# Scratch arrays that show another array's blocks entry by entry.
+ENTRY_VIEWS = {
+    "entry_factor": "block_factor",
+    "entry_inverse_mass": "block_inverse_mass",
+    "entry_delta_velocity": "delta_velocity",
+}

@@ -1,0 +1,23 @@
+"""What the kernel that sets the motors of several joints works on."""
+
+from carom.layouts.types import Ints, Reals, struct
+
+# What the numbers are for: a velocity, a torque beside the motor, a position. The values are PyBullet's.
+VELOCITY, TORQUE, POSITION = 0, 1, 2
+# Bits that say which numbers are given.
+POSITIONS, VELOCITIES, FORCES, KPS, KDS = 1, 2, 4, 8, 16
+
+
+@struct
+class MotorCommands:
+    """What motors of one freedom each are told."""
+
+    joint_dof: Ints
+    joint_lower: Reals  # least target position
+    joint_upper: Reals
+    joint_position: Reals
+    joint_velocity: Reals
+    joint_force: Reals
+    joint_kp: Reals
+    joint_kd: Reals
+    joint_refused: Ints  # the first one: some number was not finite, and nothing has been done

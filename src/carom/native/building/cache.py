@@ -1,0 +1,111 @@
+"""Where what is built is kept, so that nothing is built twice."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from hashlib import blake2b
+from pathlib import Path
+
+MANIFEST = "manifest.json"
+_KEY_BYTES = 16
+_LOCK_SECONDS = 0.1
+
+
+def cache_folder() -> Path:
+    """The folder for libraries, objects and generated code; it need not be there yet.
+
+    `CAROM_CACHE_PATH` names another one.
+    """
+    named = os.environ.get("CAROM_CACHE_PATH")
+    if named:
+        return Path(named)
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local"
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "carom" / "native"
+
+
+def content_key(*contents: bytes | str) -> str:
+    """A name for what is made from contents.
+
+    Args:
+        *contents: The contents, in an order that matters.
+    """
+    digest = blake2b(digest_size=_KEY_BYTES)
+    for content in contents:
+        content = content.encode() if isinstance(content, str) else content
+        digest.update(f"{len(content)}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()
+
+
+@contextlib.contextmanager
+def work_folder(cache: Path) -> Iterator[Path]:
+    """A new folder in the cache, on its file system, that is gone afterwards.
+
+    Args:
+        cache: The cache folder.
+    """
+    cache.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=cache, prefix="work-", ignore_cleanup_errors=True) as folder:
+        yield Path(folder)
+
+
+def keep(made: Path, kept: Path) -> None:
+    """Move a file or folder to where it is to be kept, at once or not at all.
+
+    Another process may have put the same there meanwhile.
+
+    Args:
+        made: The file or folder.
+        kept: Its place.
+    """
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        os.replace(made, kept)
+    except OSError:
+        # Folders are not replaced; nor are, on Windows, files that are in use.
+        if not kept.exists():
+            raise
+
+
+@contextlib.contextmanager
+def alone(cache: Path) -> Iterator[None]:
+    """Wait until no other process builds with this cache, and keep others waiting meanwhile.
+
+    The lock goes with the process that holds it, however that ends.
+
+    Args:
+        cache: The cache folder.
+    """
+    cache.mkdir(parents=True, exist_ok=True)
+    with open(cache / "lock", "a+b") as lock:
+        _lock(lock.fileno())
+        yield
+
+
+def _lock(descriptor: int) -> None:
+    """Lock a file, trying again and again so that an interrupt is obeyed."""
+    while True:
+        try:
+            if sys.platform == "win32":
+                import msvcrt
+
+                os.lseek(descriptor, 0, os.SEEK_SET)
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            else:
+                import fcntl
+
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            time.sleep(_LOCK_SECONDS)
+        else:
+            return

@@ -1,0 +1,114 @@
+"""The kernels as C++, and what there is to know about them as JSON.
+
+Run as a program in a process of its own, for it needs Warp:
+`python -m carom.native.building.codegen DIGEST FOLDER MODULE...`.
+
+Warp generates the same C++ that it would compile itself. What it is not asked for here is left out: adjoints,
+comments with line numbers, names that depend on the content.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import warp as wp
+from warp._src.context import ModuleBuilder
+
+from carom.native.building.cache import MANIFEST
+from carom.native.building.manifest import (
+    fixed_layouts,
+    kernel_entry,
+    layout_assertions,
+    merge_layouts,
+    struct_layouts,
+)
+
+# Code is generated for blocks of one thread, which makes a kernel a plain C function.
+_BLOCK_SIZE = 1
+_COMMENT = re.compile(r"^[ \t]*//.*\n", re.MULTILINE)
+# Room for tiles, which a kernel would clear in memory that all threads share.
+_TILE_ROOM = re.compile(
+    r"^ *wp::tile_shared_storage_t tile_mem;\n#if defined\(WP_ENABLE_TILES_IN_STACK_MEMORY\)\n.*\n#endif\n",
+    re.MULTILINE,
+)
+
+
+# What structs have for adjoints is seen from outside, and several modules have the same structs.
+_SEEN = re.compile(r"^(?=CUDA_CALLABLE )", re.MULTILINE)
+
+
+class KernelClash(Exception):
+    """Two modules have kernels of the same name."""
+
+
+class _ForwardBuilder(ModuleBuilder):
+    """Generates no adjoints."""
+
+    def _codegen_functions(
+        self, functions: Any, device: str, forward_only: bool = False, reverse_only: bool = False
+    ) -> str:
+        if reverse_only:
+            return ""
+        return super()._codegen_functions(functions, device, forward_only, reverse_only)
+
+
+def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
+    """Write a `.cpp` for each module, and the manifest of all.
+
+    Args:
+        modules: Names of Python modules with kernels.
+        digest: What the manifest says that they were made from.
+        folder: Where to write.
+
+    Raises:
+        KernelClash: Two of them have a kernel of the same name.
+    """
+    kernels: dict[str, dict[str, Any]] = {}
+    structs: dict[str, dict[str, Any]] = {}
+    for name in modules:
+        source, built = _generate_module(name)
+        for kernel in sorted(built, key=lambda one: one.key):
+            if kernel.key in kernels:
+                raise KernelClash(
+                    f"{kernels[kernel.key]['module']} and {name} both have a kernel {kernel.key!r}; "
+                    "kernels of the native library need names of their own"
+                )
+            kernels[kernel.key] = kernel_entry(kernel, name)
+        merge_layouts(structs, struct_layouts(built))
+        source += layout_assertions(built)
+        (folder / f"{name}.cpp").write_text(source, encoding="utf-8", newline="\n")
+    merge_layouts(structs, fixed_layouts(kernel["dimensions"] for kernel in kernels.values()))
+    manifest = {
+        "digest": digest,
+        "kernels": dict(sorted(kernels.items())),
+        "structs": dict(sorted(structs.items())),
+    }
+    text = json.dumps(manifest, separators=(",", ":"))
+    (folder / MANIFEST).write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def _generate_module(name: str) -> tuple[str, list[Any]]:
+    """C++ of one module, and its kernels."""
+    module = wp.get_module(import_module(name).__name__)
+    # Names without a part that depends on the content.
+    module.options["strip_hash"] = True
+    options = module.resolve_options(wp.config, block_dim=_BLOCK_SIZE) | {"output_arch": None}
+    options["line_directives"] = False
+    builder = _ForwardBuilder(module, options, target="cpu")
+    source = _COMMENT.sub("", builder.codegen("cpu"))
+    source, count = _TILE_ROOM.subn("", source)
+    source = _SEEN.sub("static ", source)
+    kernels = list(builder.kernels)
+    if count != len(kernels):
+        raise RuntimeError(f"{name}: this version of Warp lays out kernels in another way than 1.19")
+    return '#include "prelude.h"\n' + source.replace("WP_API", "CAROM_EXPORT"), kernels
+
+
+if __name__ == "__main__":
+    generate(sys.argv[3:], sys.argv[1], Path(sys.argv[2]))

@@ -1,0 +1,106 @@
+"""Running programs side by side, so that an interrupt ends them all at once."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import IO
+
+from carom.native.building.zig import BuildError
+
+_POLL_SECONDS = 0.05
+# Of what a compiler said; errors come first, and what follows from them by the hundred.
+_MOST_CHARACTERS = 3000
+
+
+@dataclass(frozen=True)
+class Job:
+    """A program to run.
+
+    Attributes:
+        name: What it is about, for messages.
+        command: The program and its arguments.
+        done: Called when it has ended well.
+    """
+
+    name: str
+    command: Sequence[str]
+    done: Callable[[], None]
+
+
+def run_all(
+    jobs: Sequence[Job], environment: Mapping[str, str], progress: Callable[[int, int], None]
+) -> None:
+    """Run programs, as many at a time as there are cores, in this order.
+
+    Args:
+        jobs: The programs.
+        environment: Environment variables that they get.
+        progress: Called again and again with how many have ended, and how many there are.
+
+    Raises:
+        BuildError: One of them failed; the others are ended. The message has what it printed.
+    """
+    waiting = list(reversed(jobs))
+    running: list[tuple[Job, subprocess.Popen[bytes], IO[bytes]]] = []
+    ended = 0
+    try:
+        while waiting or running:
+            while waiting and len(running) < core_count():
+                running.append(_start(waiting.pop(), environment))
+            for entry in running:
+                job, process, output = entry
+                if process.poll() is None:
+                    continue
+                running.remove(entry)
+                with output:
+                    if process.returncode != 0:
+                        output.seek(0)
+                        said = output.read().decode(errors="replace").strip()
+                        raise BuildError(f"{job.name} could not be built:\n{said[:_MOST_CHARACTERS]}")
+                job.done()
+                ended += 1
+                break
+            else:
+                time.sleep(_POLL_SECONDS)
+            progress(ended, len(jobs))
+    finally:
+        for _, process, output in running:
+            _end(process)
+            output.close()
+
+
+def core_count() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _start(job: Job, environment: Mapping[str, str]) -> tuple[Job, subprocess.Popen[bytes], IO[bytes]]:
+    output = tempfile.TemporaryFile()  # noqa: SIM115 - closed when the program has ended
+    process = subprocess.Popen(
+        job.command,
+        env=dict(environment),
+        stdin=subprocess.DEVNULL,
+        stdout=output,
+        stderr=subprocess.STDOUT,
+        # Compilers start processes of their own; as one group all of them can be ended.
+        start_new_session=os.name == "posix",
+    )
+    return job, process, output
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    with contextlib.suppress(OSError):
+        if os.name == "posix":
+            os.killpg(process.pid, signal.SIGKILL)
+        else:
+            process.kill()
+    process.wait()

@@ -1,0 +1,73 @@
+"""Maths functions of our own, the same bits on every platform.
+
+They are musl's, whose sources come with Zig (but for the outermost layer of sine, cosine and tangent),
+compiled with the flags of the kernels and linked into the library under names of our own. Only those are
+taken that are called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from carom.native.building.flags import MATHS, PREFIX
+
+_ERRORS = ("__math_divzero.c", "__math_invalid.c", "__math_oflow.c", "__math_uflow.c", "__math_xflow.c")
+_EXP = ("exp.c", "exp_data.c", *_ERRORS)
+_OWN = "circular.c"
+_CIRCULAR = (_OWN, "__sin.c", "__cos.c", "__tan.c", "__rem_pio2.c", "__rem_pio2_large.c", "scalbn.c")
+# Sources of each function.
+_SOURCES = {
+    "sin": _CIRCULAR,
+    "cos": _CIRCULAR,
+    "tan": _CIRCULAR,
+    "asin": ("asin.c",),
+    "acos": ("acos.c",),
+    "atan": ("atan.c",),
+    "atan2": ("atan2.c", "atan.c"),
+    "exp": _EXP,
+    "log": ("log.c", "log_data.c", *_ERRORS),
+    "pow": ("pow.c", "pow_data.c", "exp_data.c", *_ERRORS),
+    "fmod": ("fmod.c",),
+    "cbrt": ("cbrt.c",),
+    "hypot": ("hypot.c",),
+}
+_HERE = Path(__file__).parent / "libm"
+
+
+def called_functions(objects: Iterable[Path]) -> set[str]:
+    """Which maths functions object files refer to.
+
+    Args:
+        objects: Object files of any format: all have the names of symbols in them, each ended by a zero.
+    """
+    contents = [path.read_bytes() for path in objects]
+    return {name for name in MATHS if any(f"{PREFIX}{name}\0".encode() in content for content in contents)}
+
+
+def maths_sources(functions: Iterable[str], zig_library: Path) -> list[Path]:
+    """The C sources of maths functions.
+
+    Args:
+        functions: Their names.
+        zig_library: The `lib` folder of Zig.
+
+    Returns:
+        Sources, each once, sorted by name.
+    """
+    musl = zig_library / "libc" / "musl" / "src" / "math"
+    names = {source for function in functions for source in _SOURCES[function]}
+    return [_HERE / name if name == _OWN else musl / name for name in sorted(names)]
+
+
+def include_folders(zig_library: Path) -> list[Path]:
+    """Where the sources find their headers, first those of our own.
+
+    Args:
+        zig_library: The `lib` folder of Zig.
+    """
+    return [
+        _HERE,
+        zig_library / "libc" / "musl" / "src" / "internal",
+        zig_library / "libc" / "musl" / "src" / "math",
+    ]

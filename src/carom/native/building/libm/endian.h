@@ -1,0 +1,6 @@
+// All platforms that Carom is built for are little-endian.
+#pragma once
+
+#define __LITTLE_ENDIAN 1234
+#define __BIG_ENDIAN 4321
+#define __BYTE_ORDER __LITTLE_ENDIAN

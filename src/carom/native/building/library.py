@@ -1,0 +1,234 @@
+"""Building the native library."""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import util
+from pathlib import Path
+from typing import TextIO
+
+from carom.native.building.cache import MANIFEST, alone, cache_folder, content_key, keep, work_folder
+from carom.native.building.flags import C_FLAGS, CPP_FLAGS, PLATFORM_FLAGS
+from carom.native.building.jobs import Job, run_all
+from carom.native.building.libm import called_functions, include_folders, maths_sources
+from carom.native.building.link import link_command
+from carom.native.building.progress import ProgressLine
+from carom.native.building.zig import BuildError, Zig, find_zig
+from carom.native.digest import source_digest
+from carom.native.kernel_modules import KERNEL_MODULES
+from carom.native.targets import Target
+
+_DIGEST_SOURCE = (
+    '#include "prelude.h"\nextern "C" {{ CAROM_EXPORT extern const char carom_digest[] = "{}"; }}\n'
+)
+_HERE = Path(__file__).parent
+
+
+@dataclass(frozen=True)
+class _Build:
+    """What all parts of one build need."""
+
+    root: Path
+    modules: tuple[str, ...]
+    target: Target
+    level: str
+    digest: str
+    cache: Path
+    zig: Zig
+    warp: Path
+    progress: ProgressLine
+
+
+def build(
+    root: Path,
+    target: Target,
+    level: str,
+    progress: TextIO | None = sys.stderr,
+    *,
+    modules: Sequence[str] = KERNEL_MODULES,
+    cache: Path | None = None,
+) -> Path:
+    """Build the native library, or find it in the cache.
+
+    Args:
+        root: The folder that the package `carom` is in.
+        target: For which platform.
+        level: For which of its CPU levels.
+        progress: Where to say how far it is; None for nowhere.
+        modules: Python modules whose kernels are in it.
+        cache: Where to keep what is built; None for `cache_folder()`.
+
+    Returns:
+        The library, in the cache; `manifest.json` is beside it.
+
+    Raises:
+        BuildError: Something is missing or does not compile.
+        KeyboardInterrupt: All that was started has been ended.
+    """
+    digest = source_digest(root)
+    cache = cache or cache_folder()
+    folder = digest if modules == KERNEL_MODULES else f"{digest}-{content_key(*modules)}"
+    library = cache / "libraries" / folder / target.library_name(level)
+    if not _is_there(library):
+        with alone(cache):
+            # Another process may have built it meanwhile.
+            if not _is_there(library):
+                line = ProgressLine(progress)
+                try:
+                    # What Zig keeps depends on nothing of ours.
+                    zig = find_zig(cache_folder() / "zig")
+                    _make(
+                        _Build(root, tuple(modules), target, level, digest, cache, zig, _warp_folder(), line),
+                        library,
+                    )
+                finally:
+                    line.end()
+    return library
+
+
+def _is_there(library: Path) -> bool:
+    return library.exists() and (library.parent / MANIFEST).exists()
+
+
+def _make(parts: _Build, library: Path) -> None:
+    code = _generated_code(parts)
+    with work_folder(parts.cache) as work:
+        objects = _compiled(parts, code, work)
+        made = work / "linked" / library.name
+        made.parent.mkdir()
+        command = link_command(parts.zig, parts.target, parts.level, objects, made)
+        job = Job(library.name, command, lambda: None)
+        run_all([job], parts.zig.environment(), _shows(parts.progress, "linking"))
+        keep(made, library)
+        (work / MANIFEST).write_bytes((code / MANIFEST).read_bytes())
+        keep(work / MANIFEST, library.parent / MANIFEST)
+    parts.progress.show(f"{library.name} is built", now=True)
+
+
+def build_all(root: Path, target: Target, progress: TextIO | None = sys.stderr) -> list[Path]:
+    """Build, or find in the cache, what a wheel has in it.
+
+    Args:
+        root: The folder that the package `carom` is in.
+        target: For which platform.
+        progress: Where to say how far it is; None for nowhere.
+
+    Returns:
+        A library for each CPU level that is shipped, and their manifest.
+
+    Raises:
+        BuildError: Something is missing or does not compile.
+        KeyboardInterrupt: All that was started has been ended.
+    """
+    libraries = [build(root, target, level, progress) for level in target.shipped]
+    return [*libraries, libraries[0].parent / MANIFEST]
+
+
+def _generated_code(parts: _Build) -> Path:
+    """The folder with the kernels as C++, and their manifest."""
+    # How code is generated is in the digest as well.
+    key = content_key(parts.digest, (parts.warp / "config.py").read_bytes(), *parts.modules)
+    folder = parts.cache / "code" / key
+    if folder.is_dir():
+        return folder
+    with work_folder(parts.cache) as work:
+        code = work / "code"
+        code.mkdir()
+        environment = {
+            **os.environ,
+            # The kernels of this root, whatever is installed, with the numbers that the library is for.
+            "PYTHONPATH": str(parts.root),
+            "WARP_CACHE_PATH": str(work / "warp"),
+        }
+        command = [
+            sys.executable,
+            "-m",
+            "carom.native.building.codegen",
+            parts.digest,
+            str(code),
+            *parts.modules,
+        ]
+        run_all(
+            [Job("the kernels' C++", command, lambda: None)],
+            environment,
+            _shows(parts.progress, "generating code"),
+        )
+        keep(code, folder)
+    return folder
+
+
+def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
+    """Objects of kernels, of hand-written C++, and of the maths functions that these call."""
+    own = sorted((parts.root / "carom" / "native" / "source").glob("*.cpp"))
+    digest = work / "digest.cpp"
+    digest.write_text(_DIGEST_SOURCE.format(parts.digest))
+    sources = [*sorted(code.glob("*.cpp")), *own, digest]
+    if parts.target.suffix == ".dll":
+        sources.append(_HERE / "windows.cpp")
+    includes = [_HERE, parts.warp / "native"]
+    objects = _objects(parts, "compiling kernels", "c++", CPP_FLAGS, sources, includes, work)
+    maths = maths_sources(called_functions(objects), parts.zig.library)
+    folders = include_folders(parts.zig.library)
+    return objects + _objects(parts, "compiling maths", "cc", C_FLAGS, maths, folders, work)
+
+
+def _objects(
+    parts: _Build,
+    doing: str,
+    language: str,
+    flags: tuple[str, ...],
+    sources: list[Path],
+    includes: list[Path],
+    work: Path,
+) -> list[Path]:
+    """Objects of sources, compiled where the cache has them not."""
+    flags = (*flags, *PLATFORM_FLAGS[parts.target.suffix])
+    header_files = [path for folder in includes for path in sorted(folder.glob("*.h"))]
+    headers = content_key(*(path.read_bytes() for path in header_files))
+    plain = parts.zig.command(language, parts.target, parts.level, flags)[1:]
+    objects = []
+    jobs = []
+    # The longest first, so that no core is left with one of them at the end.
+    for source in sorted(sources, key=lambda path: -path.stat().st_size):
+        key = content_key(source.read_bytes(), headers, parts.zig.version, *plain)
+        kept = parts.cache / "objects" / f"{key}.o"
+        objects.append((source.name, kept))
+        if kept.exists():
+            continue
+        made = work / f"{key}.o"
+        arguments = [*flags, *(f"-I{folder}" for folder in includes), "-c", source, "-o", made]
+        command = parts.zig.command(language, parts.target, parts.level, arguments)
+        jobs.append(Job(source.stem, command, functools.partial(keep, made, kept)))
+    run_all(jobs, parts.zig.environment(), _shows(parts.progress, doing))
+    return [kept for _, kept in sorted(objects)]
+
+
+def _shows(line: ProgressLine, doing: str) -> functools.partial[None]:
+    def show(ended: int, count: int) -> None:
+        line.show(f"{doing} {ended}/{count}" if count > 1 else doing)
+
+    return functools.partial(show)
+
+
+def _warp_folder() -> Path:
+    package = util.find_spec("warp")
+    folders = list(package.submodule_search_locations or ()) if package else []
+    if not folders:
+        raise BuildError(
+            "the native library is made from what NVIDIA Warp generates, which is not installed here: "
+            f"run {sys.executable} -m pip install 'carom[build]'"
+        )
+    version = re.search(
+        r'^version: str = "([^"]*)"', (Path(folders[0]) / "config.py").read_text(), re.MULTILINE
+    )
+    if version is None or not version[1].startswith("1.19."):
+        raise BuildError(
+            "the native library is made from what NVIDIA Warp 1.19 generates; installed here is "
+            f"{version[1] if version else 'another version'}"
+        )
+    return Path(folders[0])

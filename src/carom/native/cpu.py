@@ -1,0 +1,61 @@
+"""Which instructions the processor has."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import sys
+
+_LEVEL = "CAROM_CPU_LEVEL"
+# What the levels v3 and v4 of x86-64 have that the ones below have not, as Linux calls it. Whoever has these
+# has the rest of the level.
+_LINUX_FLAGS = {"v3": {"avx2", "bmi2", "fma", "f16c", "movbe"}, "v4": {"avx512bw", "avx512dq", "avx512vl"}}
+_MACOS_NAMES = {"v3": "hw.optional.avx2_0", "v4": "hw.optional.avx512vl"}
+# PF_AVX2_INSTRUCTIONS_AVAILABLE and PF_AVX512F_INSTRUCTIONS_AVAILABLE.
+_WINDOWS_FEATURES = {"v3": 40, "v4": 41}
+
+
+def cpu_levels() -> list[str]:
+    """The levels of libraries that run on this processor, the best first.
+
+    The environment variable `CAROM_CPU_LEVEL` takes the place of all of them.
+    """
+    asked = os.environ.get(_LEVEL)
+    if asked:
+        return [asked]
+    if platform.machine().lower() not in ("x86_64", "amd64", "x64"):
+        return ["v8"]
+    levels = ["v2"]
+    for level, has in _x86_features().items():
+        if not has:
+            break
+        levels.insert(0, level)
+    return levels
+
+
+def _x86_features() -> dict[str, bool]:
+    """Whether the processor has what v3 and v4 add."""
+    if sys.platform == "linux":
+        flags = _linux_flags()
+        return {level: wanted <= flags for level, wanted in _LINUX_FLAGS.items()}
+    if sys.platform == "win32":
+        has_feature = ctypes.windll.kernel32.IsProcessorFeaturePresent
+        return {level: bool(has_feature(feature)) for level, feature in _WINDOWS_FEATURES.items()}
+    if sys.platform == "darwin":
+        return {level: _macos_has(name) for level, name in _MACOS_NAMES.items()}
+    return {}
+
+
+def _linux_flags() -> set[str]:
+    try:
+        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as lines:
+            return next((set(line.split()) for line in lines if line.startswith("flags")), set())
+    except OSError:
+        return set()
+
+
+def _macos_has(name: str) -> bool:
+    value, size = ctypes.c_int(0), ctypes.c_size_t(ctypes.sizeof(ctypes.c_int))
+    found = ctypes.CDLL(None).sysctlbyname(name.encode(), ctypes.byref(value), ctypes.byref(size), None, 0)
+    return found == 0 and value.value != 0

@@ -1,0 +1,51 @@
+"""What the native library was made of, as one number.
+
+A library carries the digest of its sources. It fits the sources that are here if they have the same one, so
+it has to be known at every start: it is worked out from the files' contents alone, in a few milliseconds.
+"""
+
+from __future__ import annotations
+
+import os
+from hashlib import blake2b
+from pathlib import Path
+
+_DIGEST_BYTES = 16
+# Kernels and what they share with Python; C and C++; what decides how these are compiled.
+_FOLDERS = (
+    "carom/kernels",
+    "carom/layouts",
+    "carom/native/building",
+    "carom/native/building/libm",
+    "carom/native/source",
+)
+_SUFFIXES = (".c", ".cpp", ".h", ".py")
+
+
+def source_digest(root: Path) -> str:
+    """Digest of all that the native library is compiled from.
+
+    Args:
+        root: The folder that the package `carom` is in.
+
+    Returns:
+        32 hexadecimal digits; the same whatever the line endings.
+
+    Raises:
+        OSError: A folder is missing, or a file cannot be read.
+    """
+    digest = blake2b(digest_size=_DIGEST_BYTES)
+    rooms = [entry.name for entry in os.scandir(root / _FOLDERS[0]) if entry.is_dir()]
+    for folder in (*_FOLDERS, *(f"{_FOLDERS[0]}/{room}" for room in sorted(rooms))):
+        for name in sorted(os.listdir(root / folder)):
+            if name.endswith(_SUFFIXES):
+                content = _read(f"{root}/{folder}/{name}")
+                digest.update(f"{folder}/{name}\n{len(content)}\n".encode())
+                digest.update(content)
+    return digest.hexdigest()
+
+
+def _read(path: str) -> bytes:
+    with open(path, "rb") as file:
+        content = file.read()
+    return content.replace(b"\r\n", b"\n") if b"\r" in content else content

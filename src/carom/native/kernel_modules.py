@@ -1,0 +1,38 @@
+"""Which modules have the kernels."""
+
+# Those of the native library.
+KERNEL_MODULES = (
+    "carom.kernels.contact.stages",
+    "carom.kernels.dynamics.kinematics",
+    "carom.kernels.dynamics.motor_commands",
+    "carom.kernels.dynamics.step",
+    "carom.kernels.dynamics.step_ends",
+    "carom.kernels.images.draw",
+    "carom.kernels.inverse_kinematics.search",
+    "carom.kernels.moving_tree.dynamics",
+    "carom.kernels.moving_tree.motion",
+    "carom.kernels.moving_tree.stable_pd",
+    "carom.kernels.queries.closest",
+    "carom.kernels.queries.contact_report",
+    "carom.kernels.queries.rays",
+    "carom.kernels.solver.slumber",
+    "carom.kernels.solver.stages",
+)
+# Those of steps in fine launches, for GPUs; what takes longest to compile comes first.
+PARALLEL_MODULES = (
+    "carom.kernels.parallel.detection",
+    "carom.kernels.parallel.contact_rows",
+    "carom.kernels.parallel.restless_sweeps",
+    "carom.kernels.parallel.batches",
+    "carom.kernels.parallel.sweeps",
+    "carom.kernels.parallel.trees",
+    "carom.kernels.parallel.joint_rows",
+)
+# What a GPU has other kernels for: they take a world through a whole stage.
+_WHOLE_WORLDS = {
+    "carom.kernels.contact.stages",
+    "carom.kernels.dynamics.step",
+    "carom.kernels.dynamics.step_ends",
+    "carom.kernels.solver.stages",
+}
+CUDA_MODULES = (*PARALLEL_MODULES, *(name for name in KERNEL_MODULES if name not in _WHOLE_WORLDS))

@@ -1,0 +1,163 @@
+"""Kernels with their arguments, ready to run again and again at the least cost: one C call."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from carom.native.kernels import Kernel
+
+
+@functools.cache
+def _bounds(axes: int) -> Any:
+    """The C struct that says how many times a kernel runs along so many axes."""
+    fields = [
+        ("shape", ctypes.c_uint32 * axes),
+        ("size", ctypes.c_size_t),
+        ("threads_per_item", ctypes.c_size_t),
+    ]
+    return type("Bounds", (ctypes.Structure,), {"_fields_": fields})
+
+
+class Launch:
+    """A kernel with its arguments, ready to run again and again.
+
+    Arrays are kept alive, numbers and structs are copied; `replace` changes a number. Calling it returns
+    when the kernel is done.
+
+    Attributes:
+        kernel: The kernel.
+    """
+
+    __slots__ = ("_bounds", "_keep_alive", "_packed", "kernel")
+
+    def __init__(self, kernel: Kernel, count: int | tuple[int, ...], arguments: Sequence[Any]) -> None:
+        """Pack the arguments of a kernel.
+
+        Args:
+            kernel: The kernel.
+            count: How many times it runs, along each axis if there are several.
+            arguments: Its arguments: numbers, arrays (`carom.native.tables.array_view`) and structs.
+
+        Raises:
+            TypeError: There are too many or too few.
+        """
+        if len(arguments) != len(kernel.indices):
+            raise TypeError(f"{kernel.name} takes {', '.join(kernel.indices)}; {len(arguments)} were given")
+        self.kernel = kernel
+        self._keep_alive = list(arguments)
+        counts = count if isinstance(count, tuple) else (count,)
+        self._bounds = _bounds(len(counts))(counts, math.prod(counts), 1)
+        self._packed: Any = _packed_arguments(
+            *(kernel.scalars.get(place) or type(value) for place, value in enumerate(arguments))
+        )(*arguments)
+
+    def __call__(self) -> None:
+        """Run the kernel."""
+        self.kernel.function(ctypes.byref(self._bounds), ctypes.byref(self._packed))
+
+    def replace(self, index: int, value: Any) -> None:
+        """Change an argument for all later runs."""
+        self._keep_alive[index] = value
+        setattr(self._packed, f"p{index}", value)
+
+    def addresses(self, *scalars: str) -> list[int]:
+        """What another native function needs to run the kernel, as long as this launch is kept.
+
+        Args:
+            *scalars: Names of the numbers among the arguments that it will change.
+
+        Returns:
+            Addresses of the function, of its two arguments, and of these numbers; 0 where there is no such
+            argument.
+        """
+        packed = ctypes.addressof(self._packed)
+        indices, fields = self.kernel.indices, type(self._packed)
+        places = [
+            packed + getattr(fields, f"p{indices[name]}").offset if name in indices else 0 for name in scalars
+        ]
+        return [self.kernel.address, ctypes.addressof(self._bounds), packed, *places]
+
+    @property
+    def function(self) -> Callable[[], None]:
+        """The run as a plain function with the least overhead."""
+        return functools.partial(self.kernel.function, ctypes.byref(self._bounds), ctypes.byref(self._packed))
+
+    @property
+    def brief_function(self) -> Callable[[], None]:
+        """The same for kernels that take less time than giving other threads a turn meanwhile."""
+        return functools.partial(
+            self.kernel.brief_function, ctypes.byref(self._bounds), ctypes.byref(self._packed)
+        )
+
+
+@functools.cache
+def _packed_arguments(*types: Any) -> Any:
+    """The C struct of arguments of these types."""
+    fields = [(f"p{place}", kind) for place, kind in enumerate(types)]
+    return type("PackedArguments", (ctypes.Structure,), {"_fields_": fields})
+
+
+class TreeLaunch:
+    """A kernel one of whose arguments is a tree, ready to run on any: for what is over in a microsecond.
+
+    Args:
+        kernel: The kernel.
+        structs: Structs by the name kernels give them.
+    """
+
+    __slots__ = ("_launch", "_place", "_run", "_tree")
+
+    def __init__(self, kernel: Kernel, structs: KernelStructs) -> None:
+        self._launch = structs.launch(kernel, tree=0, first_world=0)
+        self._run = self._launch.brief_function
+        self._place = kernel.indices["tree"]
+        self._tree = 0
+
+    def __call__(self, tree: int) -> None:
+        """Run the kernel on a tree."""
+        if tree != self._tree:
+            self._launch.replace(self._place, tree)
+            self._tree = tree
+        self._run()
+
+
+class KernelStructs(dict[str, Any]):
+    """Structs by the names kernels give them.
+
+    It remembers the last launch of each kernel over them, for each choice of its numbers. Making one takes
+    a hundred times as long as running it, and most of what a world's users do between two steps leaves its
+    arrays where they are.
+    """
+
+    def __init__(self, **structs: Any) -> None:
+        super().__init__(structs)
+        self._launches: dict[Any, tuple[dict[str, Any], Launch]] = {}
+
+    def launch(self, kernel: Kernel, **scalars: float) -> Launch:
+        """A launch of a kernel with these structs and numbers.
+
+        Those made before of the same kernel and numbers become this one, or may keep arguments of the past.
+        """
+        indices = kernel.indices
+        arguments = {name: scalars[name] if name in scalars else self[name] for name in indices}
+        key = kernel, *scalars.items()
+        before, made = self._launches.get(key) or ({}, None)
+        if made is None:
+            made = Launch(kernel, 1, list(arguments.values()))
+        else:
+            for name, argument in arguments.items():
+                if name in scalars or argument is not before[name]:
+                    made.replace(indices[name], argument)
+        self._launches[key] = arguments, made
+        return made
+
+    def changed(self, name: str) -> None:
+        """Let the launches made before know that fields of a struct have other values now."""
+        struct = self.get(name)
+        for (kernel, *_), (arguments, made) in self._launches.items():
+            if arguments.get(name) is struct:
+                made.replace(kernel.indices[name], struct)

@@ -1,0 +1,140 @@
+"""The native library: finding the one for this machine, loading it, and what is known about its kernels."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import json
+import threading
+from collections.abc import Mapping
+from importlib import util
+from pathlib import Path
+from typing import Any
+
+from carom.errors import NativeLibraryError
+from carom.native.cpu import cpu_levels
+from carom.native.digest import source_digest
+from carom.native.targets import NoTarget, Target, this_target
+
+Arguments = tuple[tuple[str, str], ...]
+
+_HERE = Path(__file__).parent
+_ROOT = _HERE.parents[1]
+MANIFEST = "manifest.json"
+PACKAGED = _HERE / "libraries"
+"""Where wheels have their libraries."""
+# What compiles them.
+_COMPILERS = ("warp", "ziglang")
+_loading = threading.Lock()
+
+
+class Library:
+    """A loaded library.
+
+    Args:
+        path: The file; `manifest.json`, written when it was built, is beside it.
+        digest: What it has to be made from, as `source_digest` says.
+
+    Attributes:
+        path: The file.
+        perform: Performs programs of launches; see `carom.engine.interpreter`.
+
+    Raises:
+        NativeLibraryError: It is damaged, for another platform, or made from something else.
+    """
+
+    def __init__(self, path: Path, digest: str) -> None:
+        try:
+            # Calls through it let other threads run.
+            self._loaded = ctypes.CDLL(str(path))
+            self._kernels: Mapping[str, Any] = json.loads((path.parent / MANIFEST).read_text("utf-8"))[
+                "kernels"
+            ]
+            found = (ctypes.c_char * len(digest)).in_dll(self._loaded, "carom_digest").value.decode()
+            self.perform: Any = self._loaded.carom_perform
+        except (OSError, ValueError, KeyError) as problem:
+            raise NativeLibraryError(f"{path} cannot be loaded: {problem}. {_cure()}") from None
+        if found != digest:
+            raise NativeLibraryError(
+                f"{path} was made from other kernels than those that are here. {_cure()}"
+            )
+        self.perform.restype = None
+        self.path = path
+
+    def arguments(self, kernel: str) -> Arguments:
+        """Name and type of each argument of a kernel."""
+        return tuple((name, kind) for name, kind, _ in self._entry(kernel)["arguments"])
+
+    def function(self, kernel: str) -> Any:
+        """The C function of a kernel, which takes the addresses of its bounds and of its arguments."""
+        function = getattr(self._loaded, self._entry(kernel)["symbol"])
+        function.restype = None
+        return function
+
+    def _entry(self, kernel: str) -> Mapping[str, Any]:
+        entry = self._kernels.get(kernel)
+        if entry is None:
+            raise NativeLibraryError(f"the native library has no kernel {kernel!r}")
+        return entry
+
+
+def library() -> Library:
+    """The library for this machine; built first where kernels have been edited.
+
+    Raises:
+        NativeLibraryError: There is none, and none can be built.
+    """
+    # Threads that start at once get the same one.
+    with _loading:
+        return _library()
+
+
+@functools.cache
+def _library() -> Library:
+    digest = source_digest(_ROOT)
+    try:
+        target = this_target()
+    except NoTarget as problem:
+        raise NativeLibraryError(f"{problem}") from None
+    offered = cpu_levels()
+    # Those that are no quicker than the one before are there for who asks for them.
+    levels = [level for level in offered if level in target.shipped] or [
+        level for level in offered if level in target.levels
+    ]
+    if not levels:
+        raise NativeLibraryError(
+            f"CAROM_CPU_LEVEL is {offered[0]!r}; expected one of {', '.join(target.levels)}"
+        )
+    packaged = [PACKAGED / target.library_name(level) for level in levels]
+    fitting = next((path for path in packaged if path.exists()), None)
+    if fitting is not None and _is_made_from(digest, fitting):
+        return Library(fitting, digest)
+    if all(util.find_spec(compiler) for compiler in _COMPILERS):
+        return Library(_build(target, levels[0]), digest)
+    if fitting is not None:
+        return Library(fitting, digest)
+    raise NativeLibraryError(f"Carom's native library is not here ({packaged[0]}). {_cure()}")
+
+
+def _is_made_from(digest: str, path: Path) -> bool:
+    try:
+        return json.loads((path.parent / MANIFEST).read_text("utf-8"))["digest"] == digest
+    except (OSError, ValueError, KeyError):
+        return False
+
+
+def _build(target: Target, level: str) -> Path:
+    """The library for a CPU level, from the cache or compiled now."""
+    from carom.native.building.library import build
+    from carom.native.building.zig import BuildError
+
+    try:
+        return build(_ROOT, target, level)
+    except BuildError as problem:
+        raise NativeLibraryError(f"{problem}") from None
+
+
+def _cure() -> str:
+    if (_ROOT.parent / "pyproject.toml").exists():
+        return "Run `pip install --editable '.[build]'` in the clone, which brings what compiles it."
+    return "Install Carom again: `pip install --force-reinstall carom`."

@@ -1,0 +1,95 @@
+// Performs programs of kernel launches, world after world, without Python in between.
+//
+// A launch is a C function with the addresses of its bounds and of its arguments. A thread takes chunks of
+// worlds from a list that all threads share, so that uneven ones even out, and takes each world through all
+// of its steps while it is in the processor's caches. `carom.engine.interpreter` has the same structs.
+
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define CAROM_EXPORT extern "C" __declspec(dllexport)
+#else
+#define CAROM_EXPORT extern "C" __attribute__((visibility("default")))
+#endif
+
+namespace {
+
+struct Launch {
+    void (*function)(void* bounds, void* arguments);
+    void* bounds;
+    void* arguments;
+    int32_t* world;     // among the arguments
+    int32_t* substeps;  // likewise, or null
+};
+
+struct Program {
+    char* status;           // of the first world
+    int64_t status_stride;  // bytes from one world's status to the next
+    // Ends of the five parts of the list of launches.
+    int64_t begin_end, detection_end, motion_end, end_end, abandon_end;
+    Launch launches[1];
+};
+
+struct Run {
+    const Program* program;
+    const int32_t* worlds;
+    const int32_t* due;  // substeps of each step; where it is 0, contacts are found and nothing moves
+    int32_t* counter;    // place in `worlds` of the next chunk that threads share, or null
+    int32_t world_count;
+    int32_t step_count;
+    int32_t chunk;
+    int32_t resumed;  // 1: go on after the steps that each world has done already
+    int32_t first_substep;
+    int32_t end_substep;
+};
+
+// Columns of a world's status.
+enum { STATUS = 0, STEPS_DONE = 3 };
+
+bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status) {
+    for (int64_t i = from; i < to; ++i) {
+        const Launch& launch = program.launches[i];
+        *launch.world = world;
+        if (launch.substeps)
+            *launch.substeps = substeps;
+        launch.function(launch.bounds, launch.arguments);
+        if (status && status[STATUS])
+            return false;
+    }
+    return true;
+}
+
+void take_through_steps(const Run& run, int world) {
+    const Program& program = *run.program;
+    int32_t* status = reinterpret_cast<int32_t*>(program.status + world * program.status_stride);
+    if (!run.resumed)
+        status[STEPS_DONE] = 0;
+    for (int step = status[STEPS_DONE]; step < run.step_count; ++step) {
+        const int substeps = run.due[step], rounds = substeps > 0 ? substeps : 1;
+        const int64_t round_end = substeps > 0 ? program.motion_end : program.detection_end;
+        bool well = run.first_substep > 0 || perform(program, 0, program.begin_end, world, substeps, status);
+        for (int k = run.first_substep; well && k < run.end_substep && k < rounds; ++k)
+            well = perform(program, program.begin_end, round_end, world, substeps, status);
+        if (well && run.end_substep >= rounds)
+            well = perform(program, program.motion_end, program.end_end, world, substeps, status);
+        if (!well) {
+            perform(program, program.end_end, program.abandon_end, world, substeps, nullptr);
+            return;
+        }
+        status[STEPS_DONE] = step + 1;
+    }
+}
+
+}  // namespace
+
+CAROM_EXPORT void carom_perform(const Run* run) {
+    int next = 0;
+    for (;;) {
+        const int from = run->counter ? __atomic_fetch_add(run->counter, run->chunk, __ATOMIC_RELAXED) : next;
+        next = from + run->chunk;
+        for (int i = from; i < next && i < run->world_count; ++i)
+            take_through_steps(*run, run->worlds[i]);
+        if (next >= run->world_count)
+            return;
+    }
+}

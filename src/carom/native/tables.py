@@ -1,0 +1,345 @@
+"""Flat arrays that grow: the memory behind `Model`, `State` and `Scratch`.
+
+An `ArrayTable` owns one NumPy array per field. Arrays of the same axis (links, coordinates...)
+grow together and geometrically, so that adding bodies one by one costs linear time; the struct that kernels
+are given is filled with views of the same memory.
+
+Fields whose arrays have two dimensions have a world axis in front. Where there is one row on it, all
+worlds share that: kernels see it at a stride of zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from carom.layouts.types import ArrayType, ArrayView, Struct, Type
+from carom.native.undo import Undo
+from carom.native.zeros import zeros
+
+_FIRST_CAPACITY = 16
+
+
+def numbers_of(numbers: np.ndarray) -> memoryview[float]:
+    """The memory of an array of numbers: quicker than NumPy for single ones."""
+    return cast("memoryview[float]", numbers.data)
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One array of a table.
+
+    Attributes:
+        axis: Name of the axis its rows belong to.
+        per_world: Whether there is a world axis in front of it.
+        shape: Shape of one entry; () for a number or a struct.
+        scalar: NumPy type of the numbers, or of the struct.
+    """
+
+    axis: str
+    per_world: bool
+    shape: tuple[int, ...]
+    scalar: np.dtype[Any]
+
+
+@cache
+def fields_of(struct: type[Struct]) -> Mapping[str, Field]:
+    """The array fields of a struct; a field's axis is the first word of its name."""
+    fields = {}
+    for name, array in struct.fields.items():
+        if not isinstance(array, ArrayType):
+            continue
+        entry = array.entry
+        if isinstance(entry, Type):
+            shape, scalar = entry.shape, np.dtype(entry.scalar)
+        else:
+            shape, scalar = (), np.dtype(entry)
+        fields[name] = Field(name.partition("_")[0], array.ndim == 2, shape, scalar)
+    return fields
+
+
+def array_view(array: np.ndarray, axes: int = 1) -> ArrayView:
+    """An array as kernels are given it; it keeps the memory alive.
+
+    Args:
+        array: The array. Axes behind the first ones are those of its entries.
+        axes: How many axes kernels see: of two the first is the world axis, and where that has one row
+            all worlds are shown it.
+    """
+    shape, strides = array.shape, array.strides
+    view = ArrayView(array.ctypes.data, 0, shape[:axes], strides[:axes], axes)
+    if axes == 2 and shape[0] == 1:
+        view.strides[0] = 0
+    view.memory = array
+    return view
+
+
+def put_array(struct: Any, name: str, values: npt.ArrayLike) -> np.ndarray:
+    """Make a field of a struct an array of one axis with these values, which the struct keeps alive.
+
+    Args:
+        struct: The struct.
+        name: The field.
+        values: Shape (n, *shape of an entry).
+
+    Returns:
+        The array that kernels see.
+    """
+    field = fields_of(type(struct))[name]
+    array = np.ascontiguousarray(values, dtype=field.scalar).reshape(-1, *field.shape)
+    setattr(struct, name, array_view(array))
+    struct.__dict__.setdefault("memory", {})[name] = array
+    return array
+
+
+def put_zeros(struct: Any, name: str, count: int) -> np.ndarray:
+    """Make a field of a struct an array of so many zeros; see `put_array`."""
+    field = fields_of(type(struct))[name]
+    return put_array(struct, name, zeros((count, *field.shape), field.scalar))
+
+
+class ArrayTable:
+    """Arrays by name, grouped by axis, those of two dimensions with a leading world axis.
+
+    Attributes:
+        numpy: The arrays by the names of their fields. An array of structs is there as one array for
+            each of their fields, named after both: `link_mass` is the field `mass` of `link`.
+        capacity: Rows there are, by axis.
+        replacements: How often an array has been replaced by another.
+    """
+
+    def __init__(
+        self, struct: Any, world_count: int = 1, entry_views: Mapping[str, str] | None = None
+    ) -> None:
+        """Make the arrays with the least capacity.
+
+        Args:
+            struct: Struct whose fields are all arrays.
+            world_count: Length of the world axis.
+            entry_views: Fields that show the vectors of another field scalar by scalar.
+        """
+        self._struct = struct
+        self._entry_views = dict(entry_views or {})
+        self._fields = {
+            name: field for name, field in fields_of(struct).items() if name not in self._entry_views
+        }
+        self._world_counts = dict.fromkeys(self._fields, world_count)
+        self.capacity: dict[str, int] = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
+        self.replacements: int = 0
+        self._memory: dict[str, np.ndarray] = {}
+        self.numpy: dict[str, np.ndarray] = {}
+        self._made: Any = None
+        self._bytes: dict[str, memoryview[int]] = {}
+        self._replace({name: self._allocate(name, _FIRST_CAPACITY) for name in self._fields})
+
+    def _allocate(self, name: str, capacity: int) -> np.ndarray:
+        field = self._fields[name]
+        shape: tuple[int, ...] = (capacity,)
+        if field.per_world:
+            shape = (self._world_counts[name], *shape)
+        return zeros((*shape, *field.shape), field.scalar)
+
+    def _replace(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Put arrays that are ready in the place of others, all at once."""
+
+        def put() -> None:
+            self._memory.update(arrays)
+            self._follow()
+
+        Undo().at_once(put)
+
+    def _follow(self) -> None:
+        """Bring everything up to date that follows from the arrays."""
+        self.replacements += 1
+        self._made = None
+        self._bytes.clear()
+        for name, array in self._memory.items():
+            field = self._fields[name]
+            self.capacity[field.axis] = array.shape[int(field.per_world)]
+            if array.dtype.names is None:
+                self.numpy[name] = array
+            for part in array.dtype.names or ():
+                self.numpy[f"{name}_{part}"] = array[part]
+
+    def is_per_world(self, name: str) -> bool:
+        """Whether the array of that name in `numpy` has a world axis."""
+        field = self._fields.get(name) or self._fields[name.partition("_")[0]]
+        return field.per_world
+
+    def bytes_of(self, name: str) -> memoryview[int]:
+        """The memory of a field, for reading a few rows at less cost than NumPy has for one."""
+        memory = self._bytes.get(name)
+        if memory is None:
+            array: Any = self._memory[name]
+            memory = self._bytes[name] = memoryview(array).cast("B")
+        return memory
+
+    def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
+        """Make room for `needed` rows on each axis; true if arrays were replaced.
+
+        Args:
+            needed: Rows by axis.
+            growth: An axis that grows becomes at least so many times as long.
+        """
+        grown = {
+            axis: max(count, int(growth * self.capacity[axis]))
+            for axis, count in needed.items()
+            if axis in self.capacity and count > self.capacity[axis]
+        }
+        if not grown:
+            return False
+        # All of them are there before the first is put in place: memory may be short, or the user in a hurry.
+        self._replace(
+            {
+                name: self._lengthened(name, grown[field.axis])
+                for name, field in self._fields.items()
+                if field.axis in grown
+            }
+        )
+        return True
+
+    def _lengthened(self, name: str, capacity: int) -> np.ndarray:
+        """A longer array with the rows of one there is."""
+        old = self._memory[name]
+        new = self._allocate(name, capacity)
+        if self._fields[name].per_world:
+            new[:, : old.shape[1]] = old
+        else:
+            new[: len(old)] = old
+        return new
+
+    def spread(self, name: str, world_count: int) -> bool:
+        """Give each world rows of its own of a field that all have shared; true if they had not."""
+        if self._world_counts[name] == world_count:
+            return False
+        spread = np.repeat(self._memory[name], world_count, axis=0)
+        self._world_counts[name] = world_count
+        self._replace({name: spread})
+        return True
+
+    def copy(self, world_count: int | None = None, rows: Mapping[str, int] | None = None) -> ArrayTable:
+        """A table with the same content.
+
+        Args:
+            world_count: Give each of so many worlds rows of its own, all like those of the first; None for
+                worlds as they are.
+            rows: Of these axes, keep so many rows and no room for more.
+        """
+        rows = rows or {}
+        other = ArrayTable.__new__(ArrayTable)
+        other.__dict__.update(self.__dict__)
+        other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
+        other._world_counts = self._world_counts.copy()
+        other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
+        arrays = {}
+        for name, field in self._fields.items():
+            array, count = self._memory[name], other.capacity[field.axis]
+            if field.per_world:
+                other._world_counts[name] = world_count or len(array)
+                array = array[:, :count]
+                array = array.copy() if world_count is None else _repeated(array[0], world_count)
+            else:
+                array = array[:count].copy()
+            arrays[name] = array
+        other._replace(arrays)
+        return other
+
+    def bytes_per_world(self, rows: Mapping[str, int] | None = None) -> int:
+        """Memory that each world takes with so many rows on some axes [bytes]."""
+        rows = rows or {}
+        return sum(
+            rows.get(field.axis, self.capacity[field.axis]) * self._memory[name][0, :1].nbytes
+            for name, field in self._fields.items()
+            if field.per_world
+        )
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> ArrayTable:
+        memo[id(self)] = other = self.copy()
+        return other
+
+    def removal(
+        self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int], targets: Mapping[str, str]
+    ) -> Callable[[], None]:
+        """Make ready to remove a run of rows of some axes; later ones move up and the freed ones are zero.
+
+        Args:
+            cuts: First row and number of rows, by axis.
+            used: Rows in use, by axis.
+            targets: Fields whose values are rows of an axis, and which; they follow those rows.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        moves, freed, values = [], [], []
+        for name, field in self._fields.items():
+            if field.axis in cuts:
+                start, count = cuts[field.axis]
+                end, rows = used[field.axis], self._rows(name)
+                if start + count < end:
+                    moves.append((rows[start : end - count], rows[start + count : end].copy()))
+                freed.append(rows[end - count : end])
+        for name, target in targets.items():
+            if target in cuts:
+                axis = name.partition("_")[0]
+                first, gone = cuts.get(axis, (0, 0))
+                rows = self.numpy[name][: used[axis]]
+                kept = np.concatenate((rows[:first], rows[first + gone :]))
+                start, count = cuts[target]
+                kept[kept >= start + count] -= count
+                values.append((rows[: len(kept)], kept))
+
+        def remove() -> None:
+            for rows, moved in (*moves, *values):
+                rows[...] = moved
+            for rows in freed:
+                rows.fill(0)
+
+        return remove
+
+    def clear_beyond(self, used: Mapping[str, int]) -> None:
+        """Set all rows to zero but the first ones of the named axes."""
+        for name, field in self._fields.items():
+            if field.axis in used:
+                self._rows(name)[used[field.axis] :].fill(0)
+
+    def _rows(self, name: str) -> np.ndarray:
+        """An array with its rows in front."""
+        array = self._memory[name]
+        return array.swapaxes(0, 1) if self._fields[name].per_world else array
+
+    def struct(self) -> Any:
+        """A C struct whose fields are views of these arrays: the same one until some are replaced."""
+        if self._made is None:
+            self._made = self._make_struct()
+        return self._made
+
+    def _make_struct(self) -> Any:
+        struct = self._struct()
+        shown = {**self._memory}
+        for name, source in self._entry_views.items():
+            array = self._memory[source]
+            shown[name] = array.reshape(*array.shape[:-2], -1)
+        fields = fields_of(self._struct)
+        for name, array in shown.items():
+            setattr(struct, name, array_view(array, 2 if fields[name].per_world else 1))
+        # Setting a field copies the view, which no longer keeps the array alive.
+        struct.memory = shown
+        return struct
+
+    def clear(self) -> None:
+        """Set every entry to zero."""
+        for array in self.numpy.values():
+            array.fill(0)
+
+
+def _repeated(rows: np.ndarray, count: int) -> np.ndarray:
+    """The same rows so many times. Memory that holds nothing but zeros is not touched, and takes no room."""
+    array = zeros((count, *rows.shape), rows.dtype)
+    if rows.dtype.names is not None or rows.any():
+        array[:] = rows
+    return array

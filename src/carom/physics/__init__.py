@@ -1,1 +1,0 @@
-"""The step, one file per stage, as Warp kernels; and the parameters of the engine."""

@@ -1,1 +1,0 @@
-"""What runs on every triangle and every pixel, as Warp kernels."""

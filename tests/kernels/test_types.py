@@ -1,0 +1,82 @@
+"""The types of the layouts as the kernels' compiler has them, and float literals in kernels."""
+
+# Kernel code is checked by Warp, not by the Python type checker.
+# pyright: reportCallIssue=false
+
+import ctypes
+import importlib
+import pkgutil
+
+import numpy as np
+import pytest
+import warp as wp
+
+import carom.layouts
+from carom.kernels.types import RealRows, Vector3, func, kernel, real
+from carom.kernels.warp_types import warp_type
+from carom.layouts.types import NUMPY_REAL, Struct
+
+
+@func
+def tenth_of(value: real) -> real:
+    """A tenth, as a literal in a function."""
+    return value * 0.1
+
+
+@kernel
+def literals_kernel(answers: RealRows):
+    """Literals in all kinds of places."""
+    row = wp.tid()
+    third = 1.0 / 3.0
+    answers[row, 0] = third
+    answers[row, 1] = tenth_of(1.0)
+    answers[row, 2] = -0.7
+    answers[row, 3] = wp.dot(Vector3(0.1, 0.2, 0.3), Vector3(1.0, 10.0, 100.0))
+    total = real(0.0)
+    for i in range(3):
+        total += 0.1 * real(i)
+    answers[row, 4] = total
+    if third > 0.3333333333:
+        answers[row, 5] = 1e-300
+
+
+def test_numbers_are_double_precision():
+    assert real is wp.float64
+    assert NUMPY_REAL is np.float64
+
+
+def test_literals_in_kernels_are_double_precision():
+    answers = np.zeros((1, 6))
+    rows = wp.array2d(answers, dtype=real, device="cpu", copy=False)
+    wp.launch(literals_kernel, dim=1, inputs=[rows], device="cpu")
+    total = 0.0 + 0.1 * 0 + 0.1 * 1 + 0.1 * 2
+    expected = [1.0 / 3.0, 0.1, -0.7, 0.1 + 0.2 * 10.0 + 0.3 * 100.0, total, 1e-300]
+    np.testing.assert_allclose(answers[0], expected, rtol=1e-15)
+
+
+def test_functions_keep_their_names_and_descriptions():
+    assert tenth_of.__name__ == "tenth_of"
+    assert tenth_of.__doc__ == "A tenth, as a literal in a function."
+
+
+def all_structs() -> list[type[Struct]]:
+    modules = [
+        importlib.import_module(f"carom.layouts.{found.name}")
+        for found in pkgutil.iter_modules(carom.layouts.__path__)
+    ]
+    return [
+        value
+        for module in modules
+        for value in vars(module).values()
+        if isinstance(value, type) and issubclass(value, Struct) and value is not Struct
+        if value.__module__ == module.__name__
+    ]
+
+
+@pytest.mark.parametrize("declared", all_structs(), ids=lambda struct: struct.__name__)
+def test_structs_lie_in_memory_as_the_compiler_has_them(declared):
+    compiled = warp_type(declared).ctype
+    assert ctypes.sizeof(declared) == ctypes.sizeof(compiled)
+    assert {name: getattr(declared, name).offset for name in declared.fields} == {
+        name: getattr(compiled, name).offset for name in declared.fields
+    }

@@ -1,0 +1,180 @@
+"""Tables of arrays that grow."""
+
+import ctypes
+from typing import Any
+
+import numpy as np
+import pytest
+
+from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, State
+from carom.native.tables import ArrayTable, fields_of
+
+
+@pytest.fixture(params=[None, 1, 3], ids=["shared", "one world", "three worlds"])
+def table(request) -> ArrayTable:
+    return ArrayTable(Model) if request.param is None else ArrayTable(State, request.param)
+
+
+def rows(table: ArrayTable, name: str) -> np.ndarray:
+    """An array with its rows in front, whether or not it has a world axis."""
+    array = table.numpy[name]
+    return array if name in ("link_unit_axis", "dof_parent") else array.swapaxes(0, 1)
+
+
+def test_fields_belong_to_the_axis_they_are_named_after():
+    fields = fields_of(State)
+    assert fields["link_pose"].axis == "link"
+    assert fields["dof_motor"].axis == "dof"
+    assert fields["link_pose"].shape == (7,)
+    assert fields["dof_motor"].shape == (8,)
+    assert fields["dof_velocity"].shape == ()
+    assert fields["dof_velocity"].scalar == np.float64
+    assert fields["tree_island"].scalar == np.int32
+
+
+def test_fields_of_an_array_of_structs_are_arrays_of_their_own():
+    link = fields_of(Model)["link"]
+    assert (link.axis, link.shape) == ("link", ())
+    assert link.scalar["joint_rotation"].base == np.float64
+    numpy = ArrayTable(Model).numpy
+    assert numpy["link_joint_type"].shape == (16,)
+    assert numpy["link_joint_rotation"].shape == (16, 4)
+    assert numpy["link_parent"].dtype == np.int32
+    numpy["link_unit_axis"][3] = (1.0, 2.0, 3.0)
+    assert numpy["link_unit_axis"][3].tolist() == [1.0, 2.0, 3.0]
+    assert ArrayTable(Scratch, 2).numpy["link_rotation"].shape == (2, 16, 3, 3)
+
+
+def test_arrays_start_zeroed_with_some_room(table):
+    for array in table.numpy.values():
+        assert not array.any()
+    assert set(table.capacity.values()) == {16}
+
+
+def test_reserving_what_there_is_changes_nothing(table):
+    before = dict(table.numpy)
+    assert table.reserve({"link": 16, "dof": 3, "no such axis": 99}) is False
+    assert all(table.numpy[name] is array for name, array in before.items())
+
+
+def test_growth_is_geometric_and_keeps_what_was_there(table):
+    name = "link_unit_axis" if "link_unit_axis" in table.numpy else "link_pose"
+    view = rows(table, name)
+    view[:] = np.arange(16.0).reshape(16, *[1] * (view.ndim - 1))
+    assert table.reserve({"link": 17}) is True
+    assert table.capacity["link"] == 32
+    assert table.capacity["dof"] == 16
+    grown = rows(table, name)
+    assert len(grown) == 32
+    np.testing.assert_array_equal(grown[:16], view)
+    assert not grown[16:].any()
+    table.reserve({"link": 1000})
+    assert table.capacity["link"] == 1000
+    np.testing.assert_array_equal(rows(table, name)[:16], view)
+
+
+def test_adding_rows_one_by_one_replaces_arrays_seldom():
+    table = ArrayTable(Model)
+    assert sum(table.reserve({"link": count}) for count in range(1, 2000)) == 7
+
+
+@pytest.mark.parametrize(
+    ("start", "count", "used"),
+    [(0, 4, 16), (5, 3, 16), (13, 3, 16), (15, 1, 16), (0, 16, 16), (5, 3, 12), (9, 3, 12)],
+)
+def test_deleted_rows_close_up_and_leave_zeros(table, start, count, used):
+    name = "link_unit_axis" if "link_unit_axis" in table.numpy else "link_twist"
+    view = rows(table, name)
+    view[:] = np.arange(1.0, 17.0).reshape(16, *[1] * (view.ndim - 1))
+    other = rows(table, "dof_parent" if "dof_parent" in table.numpy else "dof_velocity")
+    other[:] = 5
+    kept = np.delete(view[:used], np.s_[start : start + count], axis=0)
+    expected = np.concatenate([kept, 0 * view[:count], view[used:]])
+    table.removal({"link": (start, count)}, {"link": used}, {})()
+    np.testing.assert_array_equal(view, expected)
+    assert (other == 5).all()
+
+
+def shown(view, dtype) -> np.ndarray:
+    """What a kernel sees of the first axes of an array, as an array over the same memory."""
+    shape, strides = view.shape[: view.ndim], view.strides[: view.ndim]
+    memory: Any = (
+        ctypes.c_char * sum(n * step for n, step in zip(shape, strides, strict=True))
+    ).from_address(view.data)
+    return np.ndarray(shape, dtype, memory, strides=strides)
+
+
+def test_structs_share_the_memory_of_the_arrays(table):
+    struct = table.struct()
+    for number, (name, array) in enumerate(table.numpy.items()):
+        array.fill(number % 100)
+        field, _, part = name.partition("_")
+        whole = name in struct.fields
+        view = getattr(struct, name if whole else field)
+        assert view.data <= array.ctypes.data < view.data + view.shape[0] * max(view.strides[0], 1)
+        assert view.strides[: view.ndim] == list(array.strides[: view.ndim]) or view.strides[0] == 0
+        assert view.shape[: view.ndim] == list(array.shape[: view.ndim])
+        assert whole or part in struct.fields[field].entry.fields
+
+
+def test_entry_views_show_blocks_column_by_column():
+    table = ArrayTable(Scratch, 2, ENTRY_VIEWS)
+    assert not set(ENTRY_VIEWS) & set(table.numpy)
+    struct = table.struct()
+    for name, source in ENTRY_VIEWS.items():
+        blocks = table.numpy[source]
+        blocks[:] = np.arange(blocks.size).reshape(blocks.shape)
+        entries = getattr(struct, name)
+        assert entries.data == blocks.ctypes.data
+        np.testing.assert_array_equal(shown(entries, np.float64), blocks.reshape(2, -1))
+
+
+def test_all_worlds_share_a_single_row_until_it_is_spread():
+    table = ArrayTable(Model)
+    table.numpy["link_mass"][:, 3] = 2.5
+    shared = table.struct().link_mass
+    assert shared.strides[0] == 0
+    assert table.spread("link_mass", 4) is True
+    assert table.spread("link_mass", 4) is False
+    own = table.struct().link_mass
+    assert own.strides[0] == own.shape[1] * 8
+    np.testing.assert_array_equal(table.numpy["link_mass"][:, 3], 2.5)
+    table.reserve({"link": 17})
+    assert table.numpy["link_mass"].shape == (4, 32)
+    assert table.numpy["link_inertia"].shape == (1, 32, 3)
+
+
+def test_growth_that_fails_leaves_everything_as_it_was(monkeypatch):
+    table = ArrayTable(Model)
+    before = dict(table.numpy)
+    allocate, made = ArrayTable._allocate, []
+
+    def run_short(self, name, capacity):
+        made.append(name)
+        if len(made) > 2:
+            raise MemoryError
+        return allocate(self, name, capacity)
+
+    monkeypatch.setattr(ArrayTable, "_allocate", run_short)
+    with pytest.raises(MemoryError):
+        table.reserve({"link": 1000})
+    assert set(table.capacity.values()) == {16}
+    assert all(table.numpy[name] is array for name, array in before.items())
+
+
+def test_clear_sets_everything_to_zero(table):
+    for array in table.numpy.values():
+        array.fill(3)
+    table.clear()
+    assert not any(array.any() for array in table.numpy.values())
+
+
+def test_bytes_of_a_field_follow_it_when_it_is_replaced():
+    table = ArrayTable(Model)
+    table.numpy["link_unit_axis"][0] = 2.5
+    before = table.bytes_of("link")
+    assert table.bytes_of("link") is before
+    table.reserve({"link": 1000})
+    after = table.bytes_of("link")
+    assert len(after) > len(before)
+    assert after[: len(before)] == before
