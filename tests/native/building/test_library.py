@@ -1,0 +1,86 @@
+import ctypes
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.native.building.conftest import ROOT, SMALL_MODULE
+from tools.wheels.build import faults
+from tools.wheels.structure import read_library
+
+from carom.native.building.cache import MANIFEST
+from carom.native.building.library import build
+from carom.native.digest import source_digest
+from carom.native.targets import TARGETS, Target
+
+
+def _generate(folder: Path, hash_seed: str) -> dict[str, bytes]:
+    folder.mkdir()
+    command = [sys.executable, "-m", "carom.native.building.codegen", "digest", str(folder), SMALL_MODULE]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONHASHSEED": hash_seed}
+    subprocess.run(command, env=environment, check=True)
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_generated_code_is_the_same_every_time_and_has_no_paths(tmp_path: Path):
+    first = _generate(tmp_path / "first", "1")
+    assert first == _generate(tmp_path / "second", "2")
+    assert set(first) == {f"{SMALL_MODULE}.cpp", MANIFEST}
+    source = first[f"{SMALL_MODULE}.cpp"].decode()
+    assert "CAROM_EXPORT void report_contacts_kernel_cpu_forward(" in source
+    assert not any(word in source for word in ("<L ", "#line", str(ROOT), "adj_report_contacts"))
+
+
+def test_the_library_exports_its_kernels_and_digest_and_needs_nothing(library: Path, target: Target):
+    found = read_library(library)
+    assert faults(found, target, next(iter(target.levels))) == []
+    assert {"report_contacts_kernel_cpu_forward", "carom_digest"} <= found.exported
+
+
+def test_it_carries_the_digest_of_its_sources(library: Path):
+    digest = source_digest(ROOT)
+    assert (ctypes.c_char * 33).in_dll(ctypes.CDLL(str(library)), "carom_digest").value.decode() == digest
+    assert json.loads((library.parent / MANIFEST).read_text())["digest"] == digest
+
+
+def test_the_manifest_says_how_a_kernel_is_called(library: Path):
+    manifest = json.loads((library.parent / MANIFEST).read_text())
+    kernel = manifest["kernels"]["report_contacts_kernel"]
+    assert kernel["symbol"] == "report_contacts_kernel_cpu_forward"
+    assert kernel["module"] == SMALL_MODULE
+    assert kernel["dimensions"] == 1
+    assert kernel["arguments"][0][2] == 0
+    assert manifest["structs"]["array"]["size"] == 56
+    assert manifest["structs"]["bounds(1)"] == {
+        "fields": [["shape", "uint32[1]", 0], ["size", "uint64", 8], ["coord_mult", "uint64", 16]],
+        "size": 24,
+    }
+    contacts = manifest["structs"]["carom.kernels.warp_types.Contacts"]
+    assert contacts["fields"][0][:2] == ["contact_shapes", "array(vector(4,int32),2)"]
+
+
+def test_a_kernel_over_no_threads_can_be_called(library: Path):
+    kernel = json.loads((library.parent / MANIFEST).read_text())["kernels"]["report_contacts_kernel"]
+    bounds = np.zeros(3, dtype=np.int64)
+    arguments = np.zeros(kernel["size"], dtype=np.uint8)
+    function = getattr(ctypes.CDLL(str(library)), kernel["symbol"])
+    function.argtypes = ctypes.c_void_p, ctypes.c_void_p
+    function(bounds.ctypes.data, arguments.ctypes.data)
+    assert not arguments.any()
+
+
+def test_it_is_built_once(library: Path, target: Target, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("carom.native.building.library.find_zig", pytest.fail)
+    level = next(iter(target.levels))
+    assert build(ROOT, target, level, None, [SMALL_MODULE]) == library
+
+
+@pytest.mark.parametrize("name", ["aarch64-linux", "arm64-macos", "x86_64-windows"])
+def test_it_is_built_for_another_platform(name: str):
+    target = TARGETS[name]
+    level = next(iter(target.levels))
+    library = build(ROOT, target, level, None, [SMALL_MODULE])
+    assert faults(read_library(library), target, level) == []
