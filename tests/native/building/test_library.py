@@ -72,15 +72,15 @@ def test_a_kernel_over_no_threads_can_be_called(library: Path):
     assert not arguments.any()
 
 
-def test_it_is_built_once(library: Path, target: Target, monkeypatch: pytest.MonkeyPatch):
+def test_it_is_built_once(library: Path, target: Target, cache: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("carom.native.building.library.find_zig", pytest.fail)
     level = next(iter(target.levels))
-    assert build(ROOT, target, level, None, [SMALL_MODULE]) == library
+    assert build(ROOT, target, level, None, modules=[SMALL_MODULE], cache=cache) == library
 
 
 @pytest.mark.parametrize("name", ["aarch64-linux", "arm64-macos", "x86_64-windows"])
-def test_it_is_built_for_another_platform(name: str):
+def test_it_is_built_for_another_platform(name: str, cache: Path):
     target = TARGETS[name]
     level = next(iter(target.levels))
-    library = build(ROOT, target, level, None, [SMALL_MODULE])
+    library = build(ROOT, target, level, None, modules=[SMALL_MODULE], cache=cache)
     assert faults(read_library(library), target, level) == []
