@@ -1,0 +1,160 @@
+"""Long runs, and digests of their results, which are the same on every machine.
+
+Nothing in them comes from a file, a random generator or a library's sine: what differs between machines
+outside the kernels stays out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import struct
+import sys
+from itertools import pairwise
+
+import pybullet as p
+
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
+
+
+def _begin() -> None:
+    p.resetSimulation()
+    p.setGravity(0, 0, -9.8125)
+
+
+def _chain(links: int, height: float) -> int:
+    """An arm of boxes, whose hinges turn about y and x in turn."""
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.0625, 0.0625, 0.125])
+    axes = [[0, 1, 0] if number % 2 == 0 else [1, 0, 0] for number in range(links)]
+    return p.createMultiBody(
+        0,
+        box,
+        -1,
+        [0, 0, height],
+        linkMasses=[0.5] * links,
+        linkCollisionShapeIndices=[box] * links,
+        linkVisualShapeIndices=[-1] * links,
+        linkPositions=[[0.03125, 0, 0.3125]] * links,
+        linkOrientations=[IDENTITY] * links,
+        linkInertialFramePositions=[[0, 0, 0]] * links,
+        linkInertialFrameOrientations=[IDENTITY] * links,
+        linkParentIndices=list(range(links)),
+        linkJointTypes=[p.JOINT_REVOLUTE] * links,
+        linkJointAxis=axes,
+    )
+
+
+def _joints(body: int) -> list[float]:
+    states = [p.getJointState(body, joint) for joint in range(p.getNumJoints(body))]
+    return [number for state in states for number in (state[0], state[1], *state[2], state[3])]
+
+
+def _poses() -> list[float]:
+    bodies = [p.getBodyUniqueId(index) for index in range(p.getNumBodies())]
+    return [number for body in bodies for part in p.getBasePositionAndOrientation(body) for number in part]
+
+
+def arm() -> list[float]:
+    """An arm that swings, then is held by its motors; a sensor in it."""
+    _begin()
+    body = _chain(6, 1.0)
+    p.enableJointForceTorqueSensor(body, 2)
+    for joint in range(6):
+        p.setJointMotorControl2(body, joint, p.VELOCITY_CONTROL, force=0)
+    numbers = []
+    for step in range(960):
+        if step == 480:
+            targets = [0.5, -0.25, 0.75, 0.125, -0.5, 0.25]
+            p.setJointMotorControlArray(
+                body, range(6), p.POSITION_CONTROL, targetPositions=targets, forces=[40.0] * 6
+            )
+        p.stepSimulation()
+        if step % 60 == 0:
+            numbers += _joints(body)
+    return numbers
+
+
+def stack() -> list[float]:
+    """Boxes, balls, capsules and cylinders that fall onto each other."""
+    _begin()
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    shapes = [
+        p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.25, 0.25, 0.125]),
+        p.createCollisionShape(p.GEOM_SPHERE, radius=0.1875),
+        p.createCollisionShape(p.GEOM_CAPSULE, radius=0.125, height=0.25),
+        p.createCollisionShape(p.GEOM_CYLINDER, radius=0.1875, height=0.25),
+    ]
+    for number in range(24):
+        place = [0.0625 * (number % 3), 0.03125 * (number % 5), 0.25 + 0.375 * number]
+        body = p.createMultiBody(1.0 + 0.25 * (number % 4), shapes[number % 4], -1, place)
+        p.changeDynamics(body, -1, rollingFriction=0.0009765625, restitution=0.25 * (number % 2))
+    numbers = []
+    for step in range(960):
+        p.stepSimulation()
+        if step % 60 == 0:
+            numbers += _poses()
+    for contact in p.getContactPoints():
+        numbers += [*contact[5], *contact[6], *contact[7], contact[8], contact[9]]
+    return numbers
+
+
+def tied() -> list[float]:
+    """Bodies tied together by user constraints, and an arm that pushes them."""
+    _begin()
+    body = _chain(4, 0.5)
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.125, 0.125, 0.125])
+    boxes = [p.createMultiBody(0.75, box, -1, [0.5, 0.25 * number, 1.0]) for number in range(4)]
+    for first, second in pairwise(boxes):
+        p.createConstraint(
+            first, -1, second, -1, p.JOINT_POINT2POINT, [0, 0, 0], [0, 0.125, 0], [0, -0.125, 0]
+        )
+    p.createConstraint(boxes[0], -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1.0])
+    numbers = []
+    for step in range(480):
+        p.setJointMotorControl2(body, 0, p.TORQUE_CONTROL, force=2.0 if step % 120 < 60 else -2.0)
+        p.stepSimulation()
+        if step % 40 == 0:
+            numbers += _poses() + _joints(body)
+    return numbers
+
+
+def questions() -> list[float]:
+    """Inverse kinematics and dynamics, Jacobians, rays and nearest points."""
+    _begin()
+    body = _chain(6, 1.0)
+    sphere = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.25), -1, [0.75, 0.25, 1.5])
+    numbers: list[float] = []
+    for number in range(8):
+        target = [0.25 + 0.0625 * number, 0.125 * number - 0.5, 1.75]
+        numbers += p.calculateInverseKinematics(body, 5, target, maxNumIterations=50)
+        pose = [0.125 * number, -0.25, 0.0625 * number, 0.5, -0.125, 0.25]
+        numbers += p.calculateInverseDynamics(body, pose, [0.5] * 6, [0.25] * 6)
+        for rows in p.calculateJacobian(body, 5, [0, 0, 0.125], pose, [0.0] * 6, [0.0] * 6):
+            numbers += [entry for row in rows for entry in row]
+        for row in p.calculateMassMatrix(body, pose):
+            numbers += row
+        hit = p.rayTest([2, 0.0625 * number, 1.5], [-2, 0.0625 * number, 1.4375])[0]
+        numbers += [hit[0], hit[2], *hit[3], *hit[4]]
+    for near in p.getClosestPoints(body, sphere, 5.0):
+        numbers += [*near[5], *near[6], *near[7], near[8]]
+    return numbers
+
+
+RUNS = (arm, stack, tied, questions)
+
+
+def digests() -> dict[str, str]:
+    """A digest of the bits of all numbers of each run."""
+    p.connect(p.DIRECT)
+    results = {}
+    for run in RUNS:
+        numbers = run()
+        results[run.__name__] = hashlib.blake2b(
+            struct.pack(f"<{len(numbers)}d", *numbers), digest_size=8
+        ).hexdigest()
+    p.disconnect()
+    return results
+
+
+if __name__ == "__main__":
+    json.dump(digests(), sys.stdout)

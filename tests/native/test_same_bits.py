@@ -1,0 +1,41 @@
+"""The same calls give the same bits on every machine and at every CPU level."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from tests.native.long_runs import digests
+
+from carom.native.cpu import cpu_levels
+from carom.native.library import library
+from carom.native.targets import this_target
+
+DIGESTS = {
+    "arm": "44a72bd4a08b3ca5",
+    "stack": "a1f1ac4cf25170f3",
+    "tied": "2a3a54cf08b535dd",
+    "questions": "54d8874ff3d1bde4",
+}
+"""Of the bits of all numbers in `long_runs`; they change when what the kernels compute does."""
+
+
+def test_long_runs_give_the_bits_they_have_always_given():
+    assert digests() == DIGESTS
+
+
+@pytest.mark.slow
+def test_levels_agree(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.delenv("CAROM_CPU_LEVEL", raising=False)
+    oldest = next(iter(this_target().levels))
+    if oldest not in cpu_levels() or library().path.stem.endswith(oldest):
+        pytest.skip("this machine has no other level")
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.native.long_runs"],
+        env={**os.environ, "CAROM_CPU_LEVEL": oldest},
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert json.loads(done.stdout) == DIGESTS
