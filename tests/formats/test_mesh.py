@@ -202,7 +202,7 @@ class TestCollada:
             ('source="#s"', 'source="#t"', "no POSITION input"),
             ("float_array>", "int_array>", "<float_array> is missing"),
             ('stride="4"', 'stride="5"', "do not make rows"),
-            ('stride="4"', 'stride="1"', "do not make rows"),
+            ('stride="4"', 'stride="1"', "stride has to be from 3 to"),
             ("0 0 0 9", "0 0 nan 9", "finite"),
             ("0 0 0 9", "0 0 x 9", "numbers"),
         ],
