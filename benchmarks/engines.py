@@ -85,7 +85,7 @@ class Engine:
         """Seconds that building all kernels into an empty cache takes."""
         command = [str(self.interpreter), "-m", "carom", "warmup"]
         with tempfile.TemporaryDirectory() as cache:
-            environment = self._environment() | {"WARP_CACHE_PATH": cache}
+            environment = self._environment() | {"CAROM_CACHE_PATH": cache}
             start = time.perf_counter()
             subprocess.run(
                 command,
