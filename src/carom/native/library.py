@@ -106,25 +106,27 @@ def _library() -> Library:
             f"CAROM_CPU_LEVEL is {offered[0]!r}; expected one of {', '.join(target.levels)}"
         )
     packaged = [PACKAGED / target.library_name(level) for level in levels]
-    fitting = next((path for path in packaged if path.exists()), None)
-    if fitting is not None and _is_made_from(digest, fitting):
-        return Library(fitting, digest)
-    if all(util.find_spec(compiler) for compiler in _COMPILERS):
-        return Library(_build(target, levels[0]), digest)
-    if fitting is not None:
-        return Library(fitting, digest)
-    raise NativeLibraryError(f"Carom's native library is not here ({packaged[0]}). {_cure()}")
+    found = next((path for path in packaged if path.exists()), None)
+    can_build = all(util.find_spec(compiler) for compiler in _COMPILERS)
+    if found is not None:
+        try:
+            return Library(found, digest)
+        except NativeLibraryError:
+            if not can_build:
+                raise
+    elif not can_build:
+        raise NativeLibraryError(f"Carom's native library is not here ({packaged[0]}). {_cure()}")
+    return Library(_built(target, levels[0], digest), digest)
 
 
-def _is_made_from(digest: str, path: Path) -> bool:
-    try:
-        return json.loads((path.parent / MANIFEST).read_text("utf-8"))["digest"] == digest
-    except (OSError, ValueError, KeyError):
-        return False
-
-
-def _build(target: Target, level: str) -> Path:
+def _built(target: Target, level: str, digest: str) -> Path:
     """The library for a CPU level, from the cache or compiled now."""
+    from carom.native.building.cache import cache_folder, is_there, library_place
+
+    # What builds it is imported where something has to be built.
+    path = library_place(cache_folder(), digest, target.library_name(level))
+    if is_there(path):
+        return path
     from carom.native.building.library import build
     from carom.native.building.zig import BuildError
 

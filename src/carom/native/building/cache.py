@@ -33,6 +33,16 @@ def cache_folder() -> Path:
     return Path(base) / "carom" / "native"
 
 
+def library_place(cache: Path, digest: str, name: str) -> Path:
+    """Where a library is kept that was made from the sources of a digest; it need not be there yet."""
+    return cache / "libraries" / digest / name
+
+
+def is_there(library: Path) -> bool:
+    """Whether a library and its manifest are there."""
+    return library.exists() and (library.parent / MANIFEST).exists()
+
+
 def content_key(*contents: bytes | str) -> str:
     """A name for what is made from contents.
 

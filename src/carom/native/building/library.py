@@ -12,7 +12,16 @@ from importlib import util
 from pathlib import Path
 from typing import TextIO
 
-from carom.native.building.cache import MANIFEST, alone, cache_folder, content_key, keep, work_folder
+from carom.native.building.cache import (
+    MANIFEST,
+    alone,
+    cache_folder,
+    content_key,
+    is_there,
+    keep,
+    library_place,
+    work_folder,
+)
 from carom.native.building.flags import C_FLAGS, CPP_FLAGS, PLATFORM_FLAGS
 from carom.native.building.jobs import Job, run_all
 from carom.native.building.libm import called_functions, include_folders, maths_sources
@@ -73,11 +82,11 @@ def build(
     digest = source_digest(root)
     cache = cache or cache_folder()
     folder = digest if modules == KERNEL_MODULES else f"{digest}-{content_key(*modules)}"
-    library = cache / "libraries" / folder / target.library_name(level)
-    if not _is_there(library):
+    library = library_place(cache, folder, target.library_name(level))
+    if not is_there(library):
         with alone(cache):
             # Another process may have built it meanwhile.
-            if not _is_there(library):
+            if not is_there(library):
                 line = ProgressLine(progress)
                 try:
                     # What Zig keeps depends on nothing of ours.
@@ -89,10 +98,6 @@ def build(
                 finally:
                     line.end()
     return library
-
-
-def _is_there(library: Path) -> bool:
-    return library.exists() and (library.parent / MANIFEST).exists()
 
 
 def _make(parts: _Build, library: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from typing import TextIO
 
@@ -50,8 +49,3 @@ class ProgressLine:
             self._stream.write("\n")
             self._stream.flush()
             self._length = 0
-
-
-def to_terminal() -> ProgressLine:
-    """A line on the standard error stream."""
-    return ProgressLine(sys.stderr)

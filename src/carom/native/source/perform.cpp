@@ -6,11 +6,7 @@
 
 #include <stdint.h>
 
-#if defined(_WIN32)
-#define CAROM_EXPORT extern "C" __declspec(dllexport)
-#else
-#define CAROM_EXPORT extern "C" __attribute__((visibility("default")))
-#endif
+#include "export.h"
 
 namespace {
 
@@ -82,7 +78,7 @@ void take_through_steps(const Run& run, int world) {
 
 }  // namespace
 
-CAROM_EXPORT void carom_perform(const Run* run) {
+extern "C" CAROM_EXPORT void carom_perform(const Run* run) {
     int next = 0;
     for (;;) {
         const int from = run->counter ? __atomic_fetch_add(run->counter, run->chunk, __ATOMIC_RELAXED) : next;
