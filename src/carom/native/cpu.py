@@ -1,4 +1,4 @@
-"""Which instructions the processor has."""
+"""What the processor has: instructions, and cores for this process."""
 
 from __future__ import annotations
 
@@ -14,6 +14,13 @@ _LINUX_FLAGS = {"v3": {"avx2", "bmi2", "fma", "f16c", "movbe"}, "v4": {"avx512bw
 _MACOS_NAMES = {"v3": "hw.optional.avx2_0", "v4": "hw.optional.avx512vl"}
 # PF_AVX2_INSTRUCTIONS_AVAILABLE and PF_AVX512F_INSTRUCTIONS_AVAILABLE.
 _WINDOWS_FEATURES = {"v3": 40, "v4": 41}
+
+
+def core_count() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def cpu_levels() -> list[str]:

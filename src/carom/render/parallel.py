@@ -6,14 +6,15 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
+from carom.native.cpu import core_count
+
 MAX_WORKERS = 8
 """More threads than this gain nothing for images of usual size."""
 
 
 def worker_count() -> int:
     """How many threads share the work: one for each processor this process may use."""
-    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(processors, MAX_WORKERS)
+    return min(core_count(), MAX_WORKERS)
 
 
 def run_all(tasks: Sequence[Callable[[], None]]) -> None:

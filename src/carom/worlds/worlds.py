@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Iterator
 from functools import cached_property
@@ -16,6 +15,7 @@ from carom.checks import Array
 from carom.engine.engine import MOST_STEPS, Engine
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
+from carom.native.cpu import core_count
 from carom.user_constraints import UserConstraint
 from carom.world import World
 from carom.worlds.body import BodyBatch
@@ -73,9 +73,7 @@ class Worlds:
         state, contacts = self._scene.arrays.state, self._scene.touch.contacts
         check_memory(count, state.bytes_per_world(self._scene.arrays.used) + contacts.bytes_per_world())
         arrays = self._scene.arrays.repeated(count)
-        self._engine = Engine(
-            arrays, self._scene.touch.repeated(arrays), min(count, threads or _processors())
-        )
+        self._engine = Engine(arrays, self._scene.touch.repeated(arrays), min(count, threads or core_count()))
         self._engine.update_settings(self._scene.parameters)
         self.time_step: float = world.parameters.time_step
         self.times: Array = np.full(count, world.time)
@@ -332,10 +330,3 @@ class Worlds:
             where: Which worlds: a mask (count,) or their numbers; None for all.
         """
         return take_images(self._scene, self._engine, camera, world_numbers(where, self.count))
-
-
-def _processors() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:
-        return os.cpu_count() or 1

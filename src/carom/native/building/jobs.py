@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import IO
 
 from carom.native.building.zig import BuildError
+from carom.native.cpu import core_count
 
 _POLL_SECONDS = 0.05
 # Of what a compiler said; errors come first, and what follows from them by the hundred.
@@ -74,13 +75,6 @@ def run_all(
         for _, process, output in running:
             _end(process)
             output.close()
-
-
-def core_count() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _start(job: Job, environment: Mapping[str, str]) -> tuple[Job, subprocess.Popen[bytes], IO[bytes]]:
