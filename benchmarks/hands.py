@@ -20,8 +20,8 @@ from tests.viewer.browser import Page, chromium
 import pybullet as p
 import pybullet_data
 from carom import World
-from pybullet._clients import clients
-from pybullet._page_window import PageWindow
+from pybullet._clients.clients import clients
+from pybullet._window.page_window import PageWindow
 
 WANTED_DELAY = 0.020
 WANTED_PICTURES = 30.0

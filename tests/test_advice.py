@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-import carom.cli
+import carom.cli.command_line
 import pybullet as p
 import pybullet_data
 from carom import World
@@ -20,7 +20,7 @@ CALL = r"p\.setAdditionalSearchPath\(pybullet_data\.getDataPath\(\)\)"
 
 @pytest.fixture
 def direct(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    from pybullet._clients import Client
+    from pybullet._clients.clients import Client
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(Client, "latest_search_path", None)
@@ -129,5 +129,5 @@ def test_worlds_and_the_command_line_find_shipped_files_by_name(tmp_path: Path, 
     assert world.load_mjcf("mjcf/ant.xml")
     with pytest.raises(DescriptionError, match=r"did you mean cube_small.urdf\?"):
         world.load_urdf("cube_smal.urdf")
-    assert carom.cli.main(["convert", "r2d2.urdf", "out.urdf"]) == 0
+    assert carom.cli.command_line.main(["convert", "r2d2.urdf", "out.urdf"]) == 0
     assert (tmp_path / "out.urdf").is_file()

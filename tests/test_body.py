@@ -20,8 +20,8 @@ from tests.physics.robots import (
 
 from carom import Body, World
 from carom.description import Box, Collision, JointType, Pose
-from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.scene.link_dynamics import LinkDynamics
 
 
 def boxes(*, fixed_base: bool = False) -> BodySpec:

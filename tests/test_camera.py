@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom import Camera, World
-from carom.body import Body
 from carom.description import Box, JointType, Plane, Pose, Sphere, Visual
 from carom.model.body_spec import BodySpec, LinkSpec
+from carom.scene.body import Body
 
 
 def body_of(world: World, geometry, position=(0.0, 0.0, 0.0), name="thing") -> Body:

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from carom.cli import main
+from carom.cli.command_line import main
 from carom.version import __version__
 
 ROBOT = """<robot name="crane">

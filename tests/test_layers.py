@@ -1,117 +1,79 @@
-"""Imports point one way; docs/architecture.md says why each layer may know the ones below it."""
+"""Imports point one way, between rooms and inside them; docs/architecture.md has the rooms.
+
+What counts is every import that is ever performed: at the top of a module, inside a function, or by name.
+Imports for the type checker are none: a body may say of what type the world is that holds it.
+"""
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 SOURCE = Path(__file__).parents[1] / "src"
+MOST_FILES_IN_A_FOLDER = 25
 
-DESCRIPTION = {"carom.errors", "carom.description"}
-MODEL = {*DESCRIPTION, "carom.formats", "carom.geometry", "carom.layouts", "carom.native", "carom.model"}
-ENGINE = {*MODEL, "carom.engine"}
+# From the ground up: a room may import those on floors below its own.
+FLOORS = (
+    {
+        "carom.checks",
+        "carom.description",
+        "carom.errors",
+        "carom.suggestions",
+        "carom.version",
+        "eglRenderer",
+        "pybullet_data",
+    },
+    {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.layouts", "carom.remote"},
+    {"carom.kernels", "carom.native"},
+    {"carom.model"},
+    {"carom.algorithms", "carom.engine"},
+    {"carom.gpu", "carom.queries", "carom.scene"},
+    {"carom.world_files"},
+    {"carom.render"},
+    {"carom.camera", "carom.viewer"},
+    {"carom.recording", "carom.world"},
+    {"carom.worlds"},
+    {"carom.vector"},
+    # The drop-in.
+    {"pybullet._calls"},
+    {"pybullet._maths"},
+    {"pybullet._clients"},
+    {
+        "pybullet._algorithms",
+        "pybullet._cameras",
+        "pybullet._joints",
+        "pybullet._loading",
+        "pybullet._plugins",
+        "pybullet._shapes",
+    },
+    {"pybullet._bodies", "pybullet._engine"},
+    {"pybullet._contacts"},
+    {"pybullet._logs"},
+    {"pybullet._window"},
+    {"pybullet._connections"},
+    {"pybullet"},
+    # What runs it, and what comes with it.
+    {"carom.cli", "pybullet_utils"},
+    {"carom.__main__", "pybullet_examples", "pybullet_robots"},
+    {"pybullet_envs"},
+)
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
-# What each layer may import beside itself, the standard library and third parties.
-MAY_IMPORT = {
-    "carom.errors": set(),
-    "carom.version": set(),
-    "carom.checks": set(),
-    "carom.named": set(),
+# Rooms that are kept free of the others below them, and what they may import.
+KEPT_APART = {
     "carom.description": {"carom.errors"},
-    "carom.geometry": DESCRIPTION,
-    "carom.formats": {*DESCRIPTION, "carom.geometry"},
+    "carom.geometry": {"carom.errors", "carom.description"},
     "carom.layouts": {"carom.description"},
-    "carom.native": {"carom.errors", "carom.layouts"},
-    "carom.model": {*DESCRIPTION, "carom.formats", "carom.geometry", "carom.layouts", "carom.native"},
-    # Device code: nothing that runs on the host imports it.
+    # Device code: nothing that runs on the host imports it but what compiles and launches it.
     "carom.kernels": {"carom.layouts"},
-    "carom.engine": MODEL,
-    "carom.gpu": {*ENGINE, "carom.kernels"},
+    "carom.native": {"carom.errors", "carom.layouts"},
+    # They know nothing of physics.
     "carom.remote": {"carom.errors"},
-    # It takes any vector environment, and so needs none of ours.
     "carom.cluster": {"carom.errors"},
     "carom.control": {"carom.checks"},
-    "carom.saved": MODEL,
-    # World, bodies, joints, links: the modules directly under carom that are not named here.
-    "carom.world": {
-        *ENGINE,
-        "carom.checks",
-        "carom.named",
-        "carom.saved",
-        "carom.version",
-    },
-    "carom.worlds": {*ENGINE, "carom.checks", "carom.world", "carom.camera"},
-    "carom.vector": {"carom.checks", "carom.world", "carom.worlds", "carom.camera", "pybullet_data"},
-    "carom.algorithms": {*ENGINE, "carom.world"},
-    "carom.render": {*ENGINE, "carom.saved", "carom.world"},
-    "carom.viewer": {*ENGINE, "carom.checks", "carom.world", "carom.render"},
-    "carom.camera": {*DESCRIPTION, "carom.checks", "carom.world", "carom.render"},
-    "carom.video": {"carom.checks"},
-    "carom.recorder": {"carom.checks", "carom.world", "carom.camera", "carom.video"},
-    "carom.warmup": {*ENGINE, "carom.algorithms", "carom.render"},
-    "carom.record": {"carom.world", "carom.viewer"},
-    "carom": {
-        "carom.world",
-        "carom.worlds",
-        "carom.camera",
-        "carom.recorder",
-        "carom.control",
-        "carom.version",
-    },
-    "carom.cli": {
-        *MODEL,
-        "carom.serve",
-        "carom.record",
-        "carom.world",
-        "carom.viewer",
-        "carom.version",
-        "carom.warmup",
-        "pybullet_data",
-    },
-    "carom.serve": {"carom.errors", "carom.warmup", "pybullet"},
-    "carom.__main__": {"carom.cli"},
-    "pybullet": {
-        *MODEL,
-        "carom.world",
-        "carom.algorithms",
-        "carom.remote",
-        "carom.render",
-        "carom.camera",
-        "carom.video",
-        "carom.recorder",
-        "carom.viewer",
-        "carom.version",
-    },
-    "pybullet_data": set(),
-    "eglRenderer": set(),
-    # The URDF editor writes files of its own.
-    "pybullet_utils": {"pybullet", "pybullet_data", *DESCRIPTION, "carom.formats"},
-    "pybullet_robots": {"pybullet", "pybullet_data", "pybullet_utils"},
-    "pybullet_envs": {
-        "pybullet",
-        "pybullet_data",
-        "pybullet_utils",
-        "pybullet_robots",
-        # Environments many at once.
-        *MODEL,
-        "carom.checks",
-        "carom.camera",
-        "carom.vector",
-        "carom.world",
-        "carom.worlds",
-    },
-    "pybullet_examples": {"pybullet_utils"},
 }
-
-
-def layer_of(module: str) -> str | None:
-    """The layer a module is in; None for the standard library and third parties."""
-    package, *rest = module.split(".")
-    if package != "carom" or not rest:
-        return package if package in MAY_IMPORT else None
-    layer = f"carom.{rest[0]}"
-    is_part_of_the_world = layer not in MAY_IMPORT and (SOURCE / "carom" / f"{rest[0]}.py").is_file()
-    return "carom.world" if is_part_of_the_world else layer
+LAUNCH_KERNELS = {"carom.gpu", "carom.kernels"}
 
 
 def module_name(path: Path) -> str:
@@ -119,39 +81,96 @@ def module_name(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def imported_modules(path: Path) -> set[str]:
-    """Absolute names of all modules a file imports, local imports included."""
-    package = module_name(path).split(".")
-    if path.name != "__init__.py":
-        package = package[:-1]
-    names = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+MODULES = {module_name(path): path for path in sorted(SOURCE.rglob("*.py"))}
+
+
+def room_of(module: str) -> str | None:
+    """The room a module is in; None for the standard library and third parties."""
+    package, _, rest = module.partition(".")
+    room = f"{package}.{rest.partition('.')[0]}" if rest else package
+    return room if room in FLOOR else package if package in FLOOR else None
+
+
+def performed(tree: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of a module, without what only the type checker sees."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+            for other in node.orelse:
+                yield other
+                yield from performed(other)
+            continue
+        yield node
+        yield from performed(node)
+
+
+def imported_modules(module: str) -> set[str]:
+    """The modules of ours that a module imports, also in its functions and by name."""
+    path = MODULES[module]
+    package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
+    nodes = list(performed(ast.parse(path.read_text(encoding="utf-8"))))
+    names: set[str] = set()
+    for node in nodes:
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             above = package[: len(package) - node.level + 1] if node.level else []
             origin = ".".join([*above, *([node.module] if node.module else [])])
-            inside_a_package = (SOURCE / Path(*origin.split("."))).is_dir()
-            # `from carom import model` imports carom.model, `from carom.world import World` carom.world.
-            names.update(f"{origin}.{alias.name}" if inside_a_package else origin for alias in node.names)
-    return names
+            for alias in node.names:
+                inside = f"{origin}.{alias.name}"
+                names.add(inside if inside in MODULES else origin)
+    if any(isinstance(node, ast.Name) and node.id == "import_module" for node in nodes):
+        texts = {
+            node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        }
+        names.update(texts & MODULES.keys())
+    return (names & MODULES.keys()) - {module}
 
 
-SOURCES = sorted(SOURCE.rglob("*.py"))
+IMPORTS = {module: imported_modules(module) for module in MODULES}
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=module_name)
-def test_a_module_imports_only_the_layers_below_its_own(path):
-    layer = layer_of(module_name(path))
-    assert layer in MAY_IMPORT, f"{module_name(path)} belongs to no layer; add it to the table and the docs"
-    imported = {layer_of(name) for name in imported_modules(path)} - {None, layer}
-    assert imported <= MAY_IMPORT[layer]
-
-
-def test_the_table_is_a_hierarchy():
-    graph = {layer: set(targets) for layer, targets in MAY_IMPORT.items()}
-    while graph:
-        leaves = [layer for layer, targets in graph.items() if not targets & graph.keys()]
-        assert leaves, f"these layers import each other in a circle: {sorted(graph)}"
+def circles(graph: dict[str, set[str]]) -> set[str]:
+    """The nodes that are in a circle, or lead from one to another."""
+    left = {node: set(targets) & graph.keys() for node, targets in graph.items()}
+    while leaves := [node for node, targets in left.items() if not targets & left.keys()]:
         for leaf in leaves:
-            del graph[leaf]
+            del left[leaf]
+    return set(left)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_module_imports_only_rooms_on_lower_floors(module: str) -> None:
+    # The package itself only hands out names.
+    if module == "carom":
+        return
+    room = room_of(module)
+    assert room in FLOOR, f"{module} belongs to no room; add it to the floors and the docs"
+    imported = {room_of(name) for name in IMPORTS[module] if name != "carom"} - {room, None}
+    assert not [name for name in imported if FLOOR[str(name)] >= FLOOR[room]]
+    if room in KEPT_APART:
+        assert imported <= KEPT_APART[room]
+    if room not in LAUNCH_KERNELS:
+        assert "carom.kernels" not in imported
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    handing_out_names = {"carom"}
+    assert not circles({name: IMPORTS[name] - handing_out_names for name in MODULES})
+
+
+def test_circles_are_found() -> None:
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": {"a"}}) == {"a", "b", "c", "d"}
+    assert not circles({"a": {"b", "c"}, "b": {"c"}, "c": set()})
+
+
+def test_imports_by_name_and_in_functions_are_seen() -> None:
+    assert "carom.viewer.replay.recorder" in IMPORTS["carom.world.recordable"]
+    assert "carom.world.world" in IMPORTS["carom"]
+    assert "carom.world.world" not in IMPORTS["carom.scene.body"]
+
+
+@pytest.mark.parametrize(
+    "folder", sorted({path.relative_to(SOURCE).parent for path in MODULES.values()}), ids=str
+)
+def test_no_folder_has_more_files_than_one_takes_in(folder: Path) -> None:
+    assert len(list((SOURCE / folder).glob("*.py"))) <= MOST_FILES_IN_A_FOLDER

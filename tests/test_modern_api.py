@@ -71,7 +71,7 @@ def load(world, tmp_path):
 
 def test_the_package_offers_its_names_lazily_and_no_others():
     assert {"World", "Body", "Joint", "Link", "control"} <= set(dir(carom))
-    assert carom.Joint.__module__ == "carom.joint"
+    assert carom.Joint.__module__ == "carom.scene.joint"
     assert carom.control.PID
     with pytest.raises(AttributeError, match="Wrold"):
         getattr(carom, "Wrold")  # noqa: B009

@@ -10,7 +10,7 @@ import pytest
 import pybullet as p
 import pybullet_data
 from carom import Camera, Recorder, World
-from carom.video import VideoFile
+from carom.recording.video import VideoFile
 
 av = pytest.importorskip("av")
 WIDTH, HEIGHT = 65, 48

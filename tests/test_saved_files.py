@@ -15,8 +15,8 @@ from typing import Any
 import pytest
 
 import pybullet as p
-from carom.saved import container
-from carom.saved.references import is_image, references
+from carom.world_files import container
+from carom.world_files.references import is_image, references
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(20)
 CORNERS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n"

@@ -16,8 +16,8 @@ from carom.errors import DescriptionError, StateError
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.render.appearance import appearance_of
-from carom.saved.container import Blocks, packed
-from carom.snapshot import Snapshot
+from carom.scene.snapshot import Snapshot
+from carom.world_files.container import Blocks, packed
 
 DATA = Path(pybullet_data.getDataPath())
 

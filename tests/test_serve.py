@@ -14,9 +14,9 @@ from tests.patience import PATIENCE
 from tests.servers import environment
 
 import pybullet as p
-from carom.cli import main
+from carom.cli.command_line import main
 from carom.remote.meeting import find
-from pybullet._server_options import KEY_VARIABLE
+from pybullet._connections.server_options import KEY_VARIABLE
 
 ARM = str(Path(__file__).parent / "pybullet" / "robots" / "arm.urdf")
 KEY = "a key that only the two of us know"
@@ -132,7 +132,7 @@ def test_a_key_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_cannot_be_served(
     options: list[str], problem: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("carom.serve.warmup", lambda: None)
+    monkeypatch.setattr("carom.cli.serve.warmup", lambda: None)
     assert main(["serve", *options]) == 1
     assert problem in capsys.readouterr().err
     assert not p.isConnected()

@@ -14,12 +14,12 @@ from carom.version import __version__
 
 if TYPE_CHECKING:
     from carom import control
-    from carom.body import Body
     from carom.camera import Camera
-    from carom.joint import Joint
-    from carom.link import Link
-    from carom.recorder import Recorder
-    from carom.world import World
+    from carom.recording.recorder import Recorder
+    from carom.scene.body import Body
+    from carom.scene.joint import Joint
+    from carom.scene.link import Link
+    from carom.world.world import World
     from carom.worlds.worlds import Worlds
 
 _suggest_names()
@@ -27,12 +27,12 @@ _suggest_names()
 __all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "Worlds", "__version__", "control"]
 
 _HOME = {
-    "Body": "carom.body",
+    "Body": "carom.scene.body",
     "Camera": "carom.camera",
-    "Joint": "carom.joint",
-    "Link": "carom.link",
-    "Recorder": "carom.recorder",
-    "World": "carom.world",
+    "Joint": "carom.scene.joint",
+    "Link": "carom.scene.link",
+    "Recorder": "carom.recording.recorder",
+    "World": "carom.world.world",
     "Worlds": "carom.worlds.worlds",
 }
 

@@ -1,7 +1,7 @@
-"""`python -m carom` is the command line of `carom.cli`."""
+"""`python -m carom` is the command line of `carom.cli.command_line`."""
 
 import sys
 
-from carom.cli import main
+from carom.cli.command_line import main
 
 sys.exit(main())

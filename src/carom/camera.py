@@ -14,16 +14,16 @@ from numpy.typing import ArrayLike, NDArray
 from carom.checks import Array, positive, vector
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, quaternion_from_matrix
-from carom.link import LinkPose
 from carom.render.lights import Light
 from carom.render.projection import look_at, pinhole_projection, poses_to_matrices
 from carom.render.renderer import renderer_of
 from carom.render.scene import LINK_SHIFT
+from carom.scene.link import LinkPose
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.link import Link
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.scene.link import Link
+    from carom.world.world import World
 
 NOTHING = -1
 """Body of pixels that show nothing."""

@@ -10,7 +10,7 @@ from carom.algorithms import inverse_dynamics, mass_matrix
 from carom.algorithms.extended_model import ExtendedModel, extended_bias_forces, extended_mass_matrix
 from carom.algorithms.extended_nodes import extended_nodes
 from carom.algorithms.stable_pd import JointTarget, stable_pd_torques
-from carom.body import Body
+from carom.scene.body import Body
 
 ROBOTS = Path(__file__).parents[1] / "pybullet" / "robots"
 INERTIA_FROM_FILE = 2

@@ -14,7 +14,7 @@ import pybullet as p
 from carom import World
 from carom.algorithms import inverse_kinematics
 from carom.description import JointType
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 ORACLE = json.loads(Path(__file__).with_name("reach_oracle.json").read_text(encoding="utf-8"))
 ARRIVED = 1e-4

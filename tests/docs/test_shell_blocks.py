@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from tests.docs.blocks import PAGES, ROOT, blocks
 
-from carom import cli
+from carom.cli import command_line as cli
 
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")

@@ -3,7 +3,7 @@
 import runpy
 from pathlib import Path
 
-from carom.cli import main
+from carom.cli.command_line import main
 
 ROOT = Path(__file__).parents[2]
 

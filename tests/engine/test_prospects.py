@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import pybullet as p
-from pybullet._clients import client_of
+from pybullet._clients.clients import client_of
 
 KINDS = ("bare", "scenery", "loose", "folding")
 FOLDING = """<robot name="folding"><link name="a"><collision><geometry><sphere radius="0.1"/></geometry>

@@ -13,8 +13,8 @@ from pybullet_view import dynamics_infos, joint_infos, with_plain_capsules
 from scene_cases import DATA
 from test_scenes_against_oracle import differences
 
-from carom.cli import main
-from carom.convert import convert
+from carom.cli.command_line import main
+from carom.cli.convert import convert
 from carom.description import Link, Pose, Robot, Visual
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
@@ -24,8 +24,8 @@ from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import roll_pitch_yaw, urdf_text
 from carom.layouts.flags import LoadFlags
-from carom.loading import mjcf_bodies, urdf_body
 from carom.model.assemble import assemble
+from carom.model.from_files import mjcf_bodies, urdf_body
 
 URDFS = sorted(DATA.glob("*.urdf"))
 ROBOTS = [

@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.errors import DescriptionError
+from carom.formats.xml_element import MAX_DEPTH, MAX_ELEMENTS, Element, TreeBuilder
 from carom.formats.xml_tolerant import read_tolerantly
-from carom.formats.xml_tree import MAX_DEPTH, MAX_ELEMENTS, Element, TreeBuilder, parse_xml
+from carom.formats.xml_tree import parse_xml
 
 FILE = Path("some.xml")
 

@@ -27,7 +27,7 @@ from tests.fuzz.memory import check_memory
 
 import pybullet as p
 import pybullet_data
-from carom.saved import container
+from carom.world_files import container
 
 _DATA = Path(pybullet_data.getDataPath())
 _TEST_DATA = Path(__file__).parents[1] / "formats" / "data"

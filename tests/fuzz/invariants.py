@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 _STEPS = 3
 

@@ -13,7 +13,7 @@ import pytest
 
 import pybullet as p
 import pybullet_data
-from carom.saved import container
+from carom.world_files import container
 
 CYLINDER = """<robot name="thin"><link name="base"><collision><geometry>
 <cylinder radius="0.015" length="{length}"/></geometry></collision></link></robot>"""
@@ -98,7 +98,7 @@ def test_saved_worlds_with_immense_numbers(client: int, tmp_path: Path) -> None:
 
 
 def _motors(body: int) -> list[float]:
-    from pybullet._clients import clients
+    from pybullet._clients.clients import clients
 
     world = clients[0].world
     return world.motor[world.bodies[body].first_velocity :].ravel().tolist()

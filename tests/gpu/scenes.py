@@ -13,7 +13,7 @@ import pybullet_data
 from carom import World
 from carom.layouts.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
 from carom.model.body_spec import BASE
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import numpy as np
 import pybullet as p
 import pybullet_data
 from carom.native.tables import ArrayTable
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 _ROBOT = """<robot name="noted"><link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"
 ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>

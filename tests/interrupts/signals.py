@@ -20,7 +20,7 @@ from typing import Any
 from tests.interrupts.scenes import CALLS, Scene, build, follow
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 # Calls take from 50 µs to some milliseconds.
 _SHORTEST, _LONGEST = 2e-5, 4e-3

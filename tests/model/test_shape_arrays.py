@@ -28,10 +28,10 @@ from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.layouts.codes import ShapeKind
 from carom.layouts.flags import LoadFlags
-from carom.link_dynamics import LinkDynamics
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows, WorldArrays
 from carom.model.shape_arrays import ShapeArrays
+from carom.scene.link_dynamics import LinkDynamics
 
 MESHES = Path(__file__).parents[1] / "formats" / "data" / "meshes"
 TETRAHEDRON = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)

@@ -8,7 +8,7 @@ import pytest
 from tests.servers import Servers
 
 import pybullet as p
-from pybullet._clients import Client
+from pybullet._clients.clients import Client
 
 ROBOTS = Path(__file__).parent / "robots"
 

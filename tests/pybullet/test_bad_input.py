@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 NO_BODY, NO_JOINT, NO_CLIENT = 99, 99, 7
 TURN = [0, 0, 0, 1]
@@ -159,19 +159,19 @@ NEGATIVE_JOINT = {
 
 
 MODULES = (
-    "_algebra",
-    "_bodies",
-    "_connection",
-    "_debug_drawing",
-    "_dynamics",
-    "_engine",
-    "_forces",
-    "_gui",
-    "_joints",
-    "_links",
-    "_loading",
-    "_motors",
-    "_motors_multi_dof",
+    "_algorithms.algebra",
+    "_bodies.bodies",
+    "_connections.connection",
+    "_window.debug_drawing",
+    "_bodies.dynamics",
+    "_engine.engine",
+    "_bodies.forces",
+    "_window.gui",
+    "_joints.joints",
+    "_bodies.links",
+    "_loading.loading",
+    "_joints.motors",
+    "_joints.motors_multi_dof",
 )
 
 

@@ -15,9 +15,9 @@ from tests.patience import until
 import pybullet as p
 import pybullet_data
 from carom.remote.values import pack
-from pybullet import _command_log as command_log
-from pybullet._command_log import COMMANDS, Command
-from pybullet._detours import functions
+from pybullet._calls.detours import functions
+from pybullet._logs import command_log
+from pybullet._logs.command_log import COMMANDS, Command
 
 ROBOT = "r2d2.urdf"
 

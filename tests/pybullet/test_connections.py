@@ -53,7 +53,7 @@ def test_worlds_are_independent() -> None:
 
 def test_a_step_from_a_thousand_worlds_down() -> None:
     assert p.connect(p.DIRECT) == 0
-    from pybullet import _clients
+    from pybullet._clients.clients import clients as _clients
 
     taken = dict.fromkeys(range(1, _clients.MAX_CLIENTS), _clients.clients[0])
     _clients.clients.update(taken)

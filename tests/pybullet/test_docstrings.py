@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from pybullet import _unavailable
+from pybullet._calls import unavailable
 
 GENERATOR = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "docs" / "drop_in.py"))
 FUNCTIONS: dict[str, Any] = {
-    name: function for name, function in GENERATOR["functions"]().items() if name not in _unavailable.__all__
+    name: function for name, function in GENERATOR["functions"]().items() if name not in unavailable.__all__
 }
 # They answer whatever happens.
 NEVER_RAISE = {"getAPIVersion", "getConnectionInfo", "isConnected", "isNumpyEnabled"}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 DATA = Path(__file__).parents[2] / "src" / "pybullet_data"
 LISTS = {

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 POSITION, VELOCITY, KP, KD, IMPULSE, CLAMP, DAMPING, TARGET_W = range(8)
 TIME_STEP = 1 / 240

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pybullet import _errors
+from pybullet._calls import errors
 
 # Checked at run time: what is tested here is calls that are wrong, too.
 p: Any = import_module("pybullet")
@@ -90,7 +90,7 @@ def test_what_is_drawn_in_a_window(ball: int, wrong: Any) -> None:
 
 
 def test_the_first_such_call_warns(ball: int, caplog: pytest.LogCaptureFixture) -> None:
-    _errors.warn_once.cache_clear()
+    errors.warn_once.cache_clear()
     for _ in range(3):
         p.changeVisualShape(ball, -1, rgbaColor=[1, 0, 0])
     assert [record.message for record in caplog.records] == [

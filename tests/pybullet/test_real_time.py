@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from tests.patience import PATIENCE
 
 import pybullet as p
-from pybullet._clients import clients
-from pybullet._real_time import Pace
+from pybullet._clients.clients import clients
+from pybullet._clients.real_time import Pace
 
 
 @given(st.lists(st.floats(0.0, 0.05), max_size=200), st.floats(0.001, 0.05))

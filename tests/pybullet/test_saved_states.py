@@ -174,7 +174,7 @@ def test_files_that_are_none(scene, tmp_path: Path) -> None:
 
 @pytest.mark.insides
 def test_saving_and_removing_states_does_not_pile_up(scene) -> None:
-    from pybullet._clients import clients
+    from pybullet._clients.clients import clients
 
     for _ in range(10_000):
         p.removeState(p.saveState())

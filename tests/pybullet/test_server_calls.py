@@ -16,9 +16,9 @@ from carom.remote.connection import Connection
 from carom.remote.errors import ServerGone
 from carom.remote.meeting import find
 from carom.remote.values import pack
-from pybullet._clients import clients
-from pybullet._detours import functions
-from pybullet._remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
+from pybullet._calls.detours import functions
+from pybullet._clients.clients import clients
+from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
 
 ARM = str(Path(__file__).parent / "robots" / "arm.urdf")
 

@@ -6,8 +6,8 @@ import pytest
 from tests.pybullet.test_servers import ARM, another, until
 
 import pybullet as p
-from pybullet._clients import clients
-from pybullet._window import RecordingWindow
+from pybullet._clients.clients import clients
+from pybullet._window.window import RecordingWindow
 
 
 @pytest.mark.parametrize("method", [p.GUI_SERVER, p.GRAPHICS_SERVER, p.GRAPHICS_SERVER_MAIN_THREAD])

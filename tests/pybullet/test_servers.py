@@ -16,7 +16,7 @@ from tests.pybullet.conftest import keys
 from tests.servers import Process, Servers
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 from pybullet_utils.bullet_client import BulletClient
 
 ROBOTS = Path(__file__).parent / "robots"

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 # Checked at run time: what is tested here is calls that are wrong, too.
 p: Any = import_module("pybullet")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 RADIUS = 0.1
 

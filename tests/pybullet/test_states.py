@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 NO_WRENCH = (0.0,) * 6
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import pybullet as p
-from pybullet import _unavailable
+from pybullet._calls import unavailable
 
 HERE = Path(__file__).parent
 SURFACE = json.loads((HERE / "surface.json").read_text())
@@ -84,7 +84,7 @@ def test_builtins_work_with_partial_and_by_keyword(client: int) -> None:
     assert p.getPhysicsEngineParameters(client)["gravityAccelerationZ"] == 0.0
 
 
-@pytest.mark.parametrize("name", _unavailable.__all__)
+@pytest.mark.parametrize("name", unavailable.__all__)
 def test_unavailable_functions_check_their_arguments_and_say_so(name: str) -> None:
     function = getattr(p, name)
     needed = [

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import pybullet as p
-from pybullet._clients import clients
-from pybullet._window import DebugLine, DebugPoints, DebugText, RecordingWindow
+from pybullet._clients.clients import clients
+from pybullet._window.window import DebugLine, DebugPoints, DebugText, RecordingWindow
 
 
 @pytest.fixture

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.body import Body
 from carom.description import Box, Collision, Geometry, Material, Pose, Visual
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.render.image_target import RawImage
 from carom.render.lights import Light
 from carom.render.projection import look_at, pinhole_projection
 from carom.render.renderer import renderer_of
-from carom.world import World
+from carom.scene.body import Body
+from carom.world.world import World
 
 NEAR, FAR = 0.1, 50.0
 

@@ -13,7 +13,7 @@ from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.render.appearance import GREY, WHITE, appearance_of
 from carom.render.renderer import renderer_of
-from carom.world import World
+from carom.world.world import World
 
 RED = (1.0, 0.0, 0.0, 1.0)
 UNIT_BOX = Box((0.5, 0.5, 0.5))

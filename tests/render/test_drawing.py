@@ -15,7 +15,7 @@ from carom.render.appearance import appearance_of
 from carom.render.lights import Light
 from carom.render.projection import look_at, parallel_projection
 from carom.render.renderer import MAX_SIDE, Renderer, renderer_of
-from carom.world import World
+from carom.world.world import World
 
 PLACES = st.floats(-1.5, 1.5)
 SIDES = st.floats(0.1, 1.0)

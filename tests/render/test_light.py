@@ -11,7 +11,7 @@ from carom.render.appearance import appearance_of
 from carom.render.lights import Light
 from carom.render.projection import look_at, parallel_projection
 from carom.render.renderer import renderer_of
-from carom.world import World
+from carom.world.world import World
 
 ABOVE: dict[str, Any] = {"eye": (0.0, 0.0, 4.0), "target": (0.0, 0.0, 0.0)}
 

@@ -8,7 +8,7 @@ from drawing import add_shape, draw
 
 from carom.description import Box
 from carom.render import parallel
-from carom.world import World
+from carom.world.world import World
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])

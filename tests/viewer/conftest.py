@@ -5,8 +5,8 @@ from tests.viewer.browser import Page, chromium
 
 import pybullet as p
 from carom.viewer.viewer import Viewer
-from pybullet._clients import clients
-from pybullet._page_window import PageWindow
+from pybullet._clients.clients import clients
+from pybullet._window.page_window import PageWindow
 
 
 @pytest.fixture

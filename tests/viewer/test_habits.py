@@ -132,7 +132,7 @@ def test_nothing_goes_on_after_ctrl_c(tmp_path: Path):
 import atexit
 import signal
 import pybullet as p
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 p.connect(p.GUI, options="--port=0")
 atexit.register(clients[0].window.viewer.pause, False)  # the last page is gone, and a while has passed
@@ -188,7 +188,7 @@ def test_key_d_keeps_bodies_awake(viewer: Viewer):
 def test_key_p_writes_a_trace_of_the_steps_while_it_is_held(
     viewer: Viewer, monkeypatch: pytest.MonkeyPatch, tmp_path
 ):
-    monkeypatch.setattr("pybullet._page_window.gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr("pybullet._window.page_window.gettempdir", lambda: str(tmp_path))
     with Watcher(viewer.address) as page:
         page.tell("profile", running=True)
         until(lambda: list(tmp_path.iterdir()))

@@ -10,7 +10,7 @@ from tests.viewer.watcher import Watcher
 
 import pybullet as p
 from carom.viewer.viewer import Viewer
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 
 @pytest.fixture

@@ -7,14 +7,14 @@ import pytest
 from tests.patience import until
 from tests.viewer.watcher import Watcher
 
-import carom.cli
+import carom.cli.command_line
 import pybullet as p
 import pybullet_data
+from carom.cli.show_robot import RobotView
 from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
-from carom.viewer.robot import RobotView
 from carom.viewer.viewer import Viewer
-from carom.world import World
+from carom.world.world import World
 
 DATA = Path(pybullet_data.getDataPath())
 
@@ -178,7 +178,7 @@ def test_files_without_robots_are_refused(tmp_path: Path, capsys: pytest.Capture
     (tmp_path / "nothing.sdf").write_text("<sdf version='1.6'/>")
     with pytest.raises(DescriptionError):
         robot_view(str(tmp_path / "nothing.sdf"))
-    assert carom.cli.main(["view", str(tmp_path / "missing.urdf")]) == 1
+    assert carom.cli.command_line.main(["view", str(tmp_path / "missing.urdf")]) == 1
     assert capsys.readouterr().err.startswith("carom: ")
 
 

@@ -15,7 +15,7 @@ import pybullet_data
 from carom import World
 from carom.viewer import Viewer as ModernViewer
 from carom.viewer.viewer import Viewer
-from pybullet._clients import clients
+from pybullet._clients.clients import clients
 
 pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()

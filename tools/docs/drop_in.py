@@ -6,53 +6,53 @@ from pathlib import Path
 from typing import Any
 
 import pybullet
-from pybullet import _constants
+from pybullet._calls import constants as codes
 
 DOCS = Path(__file__).parents[2] / "docs"
 
 # The order of the sections; files not named here follow, under their names.
 TITLES = {
-    "_connection": "Connections",
-    "_loading": "Loading",
-    "_loading_scenes": "Loading scenes",
-    "_collision_shapes": "Collision shapes",
-    "_visual_shapes": "Visual shapes",
-    "_multi_body": "Bodies made of shapes",
-    "_vhacd": "Convex decomposition",
-    "_engine": "Stepping and engine parameters",
-    "_bodies": "Bodies",
-    "_joints": "Joints",
-    "_motors": "Motors",
-    "_motors_multi_dof": "Motors of joints with several freedoms",
-    "_links": "Links",
-    "_dynamics": "Masses, friction, damping, limits",
-    "_forces": "External forces",
-    "_contacts": "Contacts",
-    "_nearby": "Nearest points and overlaps",
-    "_rays": "Rays",
-    "_collision_filters": "Collision filters",
-    "_shape_data": "What shapes a body has",
-    "_constraints": "Constraints",
-    "_algebra": "Inverse dynamics, Jacobians, mass matrices",
-    "_inverse_kinematics": "Inverse kinematics",
-    "_gui": "Sliders, keys and the window's camera",
-    "_debug_drawing": "Drawings",
-    "_camera": "Camera images",
-    "_camera_legacy": "Camera images, the old way",
-    "_camera_maths": "Camera matrices",
-    "_textures": "Colours and textures",
-    "_soft_bodies": "Soft bodies",
-    "_scene_script": "Scenes as scripts",
-    "_states": "States and world files",
-    "_user_data": "User data",
-    "_logging": "Logs",
-    "_plugins": "Plugins",
-    "_maths": "Maths",
+    "_connections.connection": "Connections",
+    "_loading.loading": "Loading",
+    "_loading.loading_scenes": "Loading scenes",
+    "_shapes.collision_shapes": "Collision shapes",
+    "_shapes.visual_shapes": "Visual shapes",
+    "_loading.multi_body": "Bodies made of shapes",
+    "_shapes.vhacd": "Convex decomposition",
+    "_engine.engine": "Stepping and engine parameters",
+    "_bodies.bodies": "Bodies",
+    "_joints.joints": "Joints",
+    "_joints.motors": "Motors",
+    "_joints.motors_multi_dof": "Motors of joints with several freedoms",
+    "_bodies.links": "Links",
+    "_bodies.dynamics": "Masses, friction, damping, limits",
+    "_bodies.forces": "External forces",
+    "_contacts.contacts": "Contacts",
+    "_contacts.nearby": "Nearest points and overlaps",
+    "_contacts.rays": "Rays",
+    "_contacts.collision_filters": "Collision filters",
+    "_shapes.shape_data": "What shapes a body has",
+    "_joints.constraints": "Constraints",
+    "_algorithms.algebra": "Inverse dynamics, Jacobians, mass matrices",
+    "_algorithms.inverse_kinematics": "Inverse kinematics",
+    "_window.gui": "Sliders, keys and the window's camera",
+    "_window.debug_drawing": "Drawings",
+    "_cameras.camera": "Camera images",
+    "_cameras.camera_legacy": "Camera images, the old way",
+    "_maths.camera_maths": "Camera matrices",
+    "_shapes.textures": "Colours and textures",
+    "_bodies.soft_bodies": "Soft bodies",
+    "_loading.scene_script": "Scenes as scripts",
+    "_engine.states": "States and world files",
+    "_bodies.user_data": "User data",
+    "_logs.logging": "Logs",
+    "_plugins.plugins": "Plugins",
+    "_maths.maths": "Maths",
 }
-UNAVAILABLE = "_unavailable"
+UNAVAILABLE = "_calls.unavailable"
 
 NOTES = {
-    "_gui": "The window is [a page in the browser](viewer.md).",
+    "_window.gui": "The window is [a page in the browser](viewer.md).",
 }
 
 # What the examples of the reference start from. They are run as tests.
@@ -83,8 +83,8 @@ WITHOUT_EFFECT = {
     **dict.fromkeys(
         ["CONTACT_REPORT_EXISTING", "CONTACT_RECOMPUTE_CLOSEST", "SENSOR_FORCE_TORQUE"], _NOBODY_TAKES_IT
     ),
-    **{name: _NOBODY_TAKES_IT for name in vars(_constants) if name.startswith("IK_HAS_")},
-    **{name: _NO_DEVICES for name in vars(_constants) if name.startswith(("VR_", "COV_ENABLE_VR_"))},
+    **{name: _NOBODY_TAKES_IT for name in vars(codes) if name.startswith("IK_HAS_")},
+    **{name: _NO_DEVICES for name in vars(codes) if name.startswith(("VR_", "COV_ENABLE_VR_"))},
     **dict.fromkeys(
         ["RESET_USE_DEFORMABLE_WORLD", "RESET_USE_REDUCED_DEFORMABLE_WORLD", "MESH_DATA_SIMULATION_MESH"],
         _NO_SOFT_BODIES,
@@ -117,9 +117,10 @@ def functions() -> dict[str, Any]:
 
 
 def home(function: Any) -> str:
-    """The file a function is written in, without its ending."""
+    """The room and the file a function is written in, such as `_joints.motors`."""
     # The builtins that `pybullet` consists of call a Python function, their `__self__`.
-    return Path(inspect.getsourcefile(function.__self__) or "").stem
+    path = Path(inspect.getsourcefile(function.__self__) or "")
+    return f"{path.parent.name}.{path.stem}"
 
 
 def first_line(function: Any) -> str:
@@ -134,7 +135,8 @@ def sections() -> dict[str, tuple[str, list[str]]]:
         by_home[home(function)].append(name)
     missing = by_home.pop(UNAVAILABLE, [])
     others = {
-        file: file.strip("_").replace("_", " ").capitalize() for file in sorted(by_home.keys() - TITLES)
+        file: file.partition(".")[2].replace("_", " ").capitalize()
+        for file in sorted(by_home.keys() - TITLES)
     }
     ordered = {file: (title, by_home[file]) for file, title in (TITLES | others).items() if file in by_home}
     return {**ordered, UNAVAILABLE: ("Not available yet", sorted(missing))}
@@ -144,7 +146,7 @@ def constants() -> dict[str, dict[str, int]]:
     """The constants by the titles they have in their file, with their values."""
     groups: dict[str, dict[str, int]] = {}
     title = ""
-    for line in inspect.getsource(_constants).splitlines():
+    for line in inspect.getsource(codes).splitlines():
         if line.startswith("# "):
             title = line.removeprefix("# ")
         elif " = " in line:

@@ -15,7 +15,7 @@ from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 # Of an unlimited joint: the range that new starts are drawn from, either way from 0 [rad or m].
 _UNLIMITED_RANGE = {JointCode.PRISMATIC: 1.0}

@@ -18,7 +18,7 @@ from carom.description.transform import matrix_vector, rotation_matrix, transpos
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 
 class ExtendedModel:

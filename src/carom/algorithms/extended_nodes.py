@@ -24,7 +24,7 @@ from carom.model.body_spec import BASE, LinkSpec
 from carom.model.bounds import Bounds, shape_bounds
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _X, _Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)

@@ -13,7 +13,7 @@ from carom.description.transform import conjugate, rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 
 def inverse_dynamics(

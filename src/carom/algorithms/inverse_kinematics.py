@@ -20,7 +20,7 @@ from carom.native.launch import Launch
 from carom.native.tables import ArrayTable, numbers_of
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 DEFAULT_ITERATIONS = 20
 DEFAULT_THRESHOLD = 1e-4

@@ -17,7 +17,7 @@ from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 

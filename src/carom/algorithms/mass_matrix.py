@@ -10,7 +10,7 @@ import numpy as np
 from carom.algorithms.moving_tree import moving_tree
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 
 def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ from carom.native.launch import Launch
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 Rows = tuple[tuple[float, ...], ...]
 Numbers = Sequence[float] | np.ndarray

@@ -14,7 +14,7 @@ from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 
 @dataclass(frozen=True, slots=True)

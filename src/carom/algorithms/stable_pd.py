@@ -24,7 +24,7 @@ from carom.native.launch import Launch
 from carom.native.tables import ArrayTable, numbers_of
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
 _UNSTATED_FORCE = 100000.0

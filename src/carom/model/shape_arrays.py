@@ -55,7 +55,7 @@ SURFACE_FIELDS = {
 
 
 class Surface(Protocol):
-    """How a link touches; `carom.link_dynamics.LinkDynamics` is one."""
+    """How a link touches; `carom.scene.link_dynamics.LinkDynamics` is one."""
 
     lateral_friction: float
     rolling_friction: float

@@ -25,8 +25,8 @@ from carom.render.render_mesh import RenderMesh
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 _log = logging.getLogger("carom")
 

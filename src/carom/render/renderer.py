@@ -15,7 +15,7 @@ from carom.render.projection import Matrix, is_singular, poses_to_matrices
 from carom.render.scene import SceneArrays
 
 if TYPE_CHECKING:
-    from carom.world import World
+    from carom.world.world import World
 
 MAX_SIDE = 16384
 MAX_PIXELS = 64 << 20

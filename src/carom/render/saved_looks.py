@@ -13,11 +13,11 @@ from carom.description.pose import Vector3
 from carom.model.body_spec import BASE
 from carom.render.appearance import appearance_of
 from carom.render.textures import NO_TEXTURE
-from carom.saved.records import Reader, Writer
+from carom.world_files.records import Reader, Writer
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 
 @dataclass(slots=True)

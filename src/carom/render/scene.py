@@ -20,8 +20,8 @@ from carom.render.render_mesh import RenderMesh
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 MAX_PART_TRIANGLES = 2048
 """Larger meshes are cut: parts out of sight cost nothing, and the others are shared out to threads."""

@@ -15,7 +15,7 @@ from carom.camera import Camera
 from carom.checks import Array
 from carom.vector.single import SingleEnv
 from carom.vector.worlds_env import WorldsEnv
-from carom.world import World
+from carom.world.world import World
 from carom.worlds.checks import Mask
 
 _TIME_STEP, _STEPS = 1.0 / 240.0, 12

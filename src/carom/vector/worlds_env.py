@@ -16,7 +16,7 @@ from carom.camera import Camera
 from carom.checks import Array
 from carom.vector.actions import ActionChecker
 from carom.vector.random import RandomSources
-from carom.world import World
+from carom.world.world import World
 from carom.worlds.checks import Mask
 from carom.worlds.worlds import Worlds
 

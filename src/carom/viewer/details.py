@@ -13,8 +13,8 @@ from carom.viewer.board import Board
 from carom.viewer.rays import Rays
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 # How long a frame waits for a world that is stepping before it repeats the last details [s].
 _PATIENCE = 0.005

@@ -11,7 +11,7 @@ import numpy as np
 from carom.viewer.board import Board
 
 if TYPE_CHECKING:
-    from carom.ray_cast import Points, RayHit
+    from carom.queries.ray_cast import Points, RayHit
 
 RAY_COLUMNS = 10
 _MOST_RAYS = 5000

@@ -22,8 +22,8 @@ from carom.layouts.codes import (
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 Columns = NDArray[np.float32]
 

@@ -16,8 +16,8 @@ from carom.viewer.messages import encoded
 from carom.viewer.shapes import Assets, described
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 Blocks = Sequence[tuple[str, NDArray[np.float32]]]
 

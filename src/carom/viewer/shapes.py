@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.constraints import moving_links
 from carom.description import Box, Cylinder, Geometry, Plane, Pose, Sphere
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
@@ -21,10 +20,11 @@ from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
 from carom.render.render_mesh import RenderMesh
 from carom.render.textures import NO_TEXTURE
+from carom.scene.joint_constraints import moving_links
 from carom.viewer.board import Board
 
 if TYPE_CHECKING:
-    from carom.body import Body
+    from carom.scene.body import Body
 
 _MAX_TEXTURE_SIDE = 4096
 # Neighbouring numbers of bodies get colours far apart: each turns the hue by the golden ratio.

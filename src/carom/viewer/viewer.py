@@ -36,7 +36,7 @@ from carom.viewer.steps.sleeping import Sleeping
 from carom.viewer.steps.turnstile import Turnstile
 
 if TYPE_CHECKING:
-    from carom.world import World
+    from carom.world.world import World
 
 # How long a page that goes may keep the server from letting go of what it held [s].
 _PATIENCE = 1.0

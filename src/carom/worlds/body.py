@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import joint_motor
-from carom.body import ROUNDING, Body
 from carom.checks import Array, finite
 from carom.description import JointType
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.world import World
+from carom.scene import joint_motor
+from carom.scene.body import ROUNDING, Body
+from carom.world.world import World
 from carom.worlds.checks import broadcast, choose, world_numbers
 from carom.worlds.dynamics import change_dynamics
 from carom.worlds.poses import PoseFinder

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.body import Body
-from carom.dynamics_changes import OF_BODY, shape_inertia
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
 from carom.model.shape_arrays import SURFACE_FIELDS
+from carom.scene.body import Body
+from carom.scene.dynamics_changes import OF_BODY, shape_inertia
 from carom.worlds.checks import broadcast
 
 # Fields of the shapes by what users call them, of those that can differ between worlds.

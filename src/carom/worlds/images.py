@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.engine.engine import Engine
-from carom.world import World
+from carom.world.world import World
 from carom.worlds.lone import copy_coordinates
 
 if TYPE_CHECKING:

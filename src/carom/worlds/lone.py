@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.dynamics_changes import OF_BODY
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
-from carom.world import World
+from carom.scene.dynamics_changes import OF_BODY
+from carom.world.world import World
 from carom.worlds.dynamics import OF_SURFACE
 
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.body import Body
 from carom.checks import Array
 from carom.engine.engine import MOST_STEPS, Engine
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
-from carom.user_constraints import UserConstraint
-from carom.world import World
+from carom.scene.body import Body
+from carom.scene.user_constraints import UserConstraint
+from carom.world.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.checks import Mask, broadcast, world_numbers
 from carom.worlds.contacts import ContactSummary, links_touching, summarise_contacts

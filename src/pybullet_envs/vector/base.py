@@ -10,8 +10,8 @@ from gymnasium.vector import AutoresetMode
 
 from carom.camera import Camera
 from carom.vector.worlds_env import WorldsEnv
-from carom.world import World
-from pybullet._clients import client_of
+from carom.world.world import World
+from pybullet._clients.clients import client_of
 from pybullet_envs.env_bases import BulletEnv
 
 # As `BulletEnv.render` has them.

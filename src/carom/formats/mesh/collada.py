@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
-from carom.formats.xml_tree import Element, parse_root
+from carom.formats.xml_element import Element
+from carom.formats.xml_tree import parse_root
 
 # Numbers that sources hold for each vertex, and primitives for each corner.
 _MOST_COLUMNS = 1000

@@ -31,7 +31,7 @@ from carom.formats.mjcf.joint import FREE, joint_position, read_joint
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _DENSITY = 1000.0
 """Of every geom [kg/m³], as in PyBullet."""

@@ -11,7 +11,7 @@ from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _FLOAT = struct.Struct("f")
 SINGLE_PI = 3.1415927410125732

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.robot.context import shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 MAIN = "main"
 _LIMITS = ("limited", "range")

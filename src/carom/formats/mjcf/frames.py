@@ -17,7 +17,7 @@ from carom.description.transform import (
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}

@@ -30,7 +30,7 @@ from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _FRICTION = 0.5
 _CONTACT_DIMENSIONS = "3"

@@ -10,7 +10,7 @@ from carom.description.transform import rotate
 from carom.formats.mjcf.context import SINGLE_PI, MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 FREE = "free"
 _UNLIMITED = (1.0, 0.0)

@@ -14,7 +14,8 @@ from carom.formats.robot.context import shown
 from carom.formats.robot.file import MAX_FILE_BYTES, locate
 from carom.formats.robot.includes import Includes
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import MAX_ELEMENTS, Element, parse_root
+from carom.formats.xml_element import MAX_ELEMENTS, Element
+from carom.formats.xml_tree import parse_root
 
 _log = logging.getLogger(__name__)
 

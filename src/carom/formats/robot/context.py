@@ -12,7 +12,7 @@ from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _log = logging.getLogger(__name__)
 _LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")

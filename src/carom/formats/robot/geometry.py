@@ -10,7 +10,7 @@ from typing import TypeVar
 from carom.description import Geometry, Plane
 from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 Context = TypeVar("Context", bound=FileContext)
 

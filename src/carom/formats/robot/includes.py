@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 MAX_INCLUDES = 512
 """Most files that one file may include, directly or through others."""

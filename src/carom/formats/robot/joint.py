@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from carom.description import JointLimit, JointType
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 WITHOUT_AXIS = (JointType.FIXED, JointType.FLOATING)
 _NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)

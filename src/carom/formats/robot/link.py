@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from carom.description import Collision, ContactParameters, Geometry, Inertial, Mesh
 from carom.formats.robot.context import FileContext
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 MASSLESS = Inertial(mass=0.0)
 """Of the link that is the world."""

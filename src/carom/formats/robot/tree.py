@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from carom.description import Joint, Link
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _MOST_NAMES = 8
 

@@ -6,7 +6,7 @@ from carom.description import Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 
 class SdfContext(FileContext):

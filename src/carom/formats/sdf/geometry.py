@@ -7,7 +7,7 @@ from pathlib import Path
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
 from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, read_geometry, shape_file
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _CYLINDER_SIZE, _CAPSULE_SIZE = 0.1, 1.0
 """Radius and length of those that state none [m]; not scaled in PyBullet, and so not here."""

@@ -9,7 +9,7 @@ from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
 from carom.formats.robot.joint import WITHOUT_AXIS, link_index, read_dynamics, read_joint_type, read_limit
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 WORLD = "world"
 _TYPES = {kind.value: kind for kind in JointType} | {"ball": JointType.SPHERICAL}

@@ -6,7 +6,7 @@ from carom.description import Link, Material, Visual
 from carom.formats.robot.link import read_collision, read_contact, read_inertial
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.geometry import read_sdf_geometry
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 
 def read_sdf_link(context: SdfContext, element: Element) -> Link:

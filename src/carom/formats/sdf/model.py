@@ -15,7 +15,7 @@ from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.sdf.link import read_sdf_link
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
 

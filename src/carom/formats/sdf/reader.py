@@ -14,7 +14,8 @@ from carom.formats.robot.includes import Includes
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import Element, parse_root
+from carom.formats.xml_element import Element
+from carom.formats.xml_tree import parse_root
 
 _MODEL_FILE = "model.sdf"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from carom.description import Material
 from carom.formats.robot.context import FileContext
 from carom.formats.search import AssetSearch
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 
 class UrdfContext(FileContext):

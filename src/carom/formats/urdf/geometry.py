@@ -7,7 +7,7 @@ from carom.description.pose import Vector3
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, read_geometry, shape_file
 from carom.formats.urdf.context import UrdfContext
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 
 def read_urdf_geometry(context: UrdfContext, owner: Element) -> Geometry:

@@ -10,7 +10,7 @@ from carom.errors import DescriptionError
 from carom.formats.robot.context import shown
 from carom.formats.robot.joint import WITHOUT_AXIS, link_index, read_dynamics, read_joint_type, read_limit
 from carom.formats.urdf.context import UrdfContext
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 _TYPES = {kind.value: kind for kind in JointType}
 _NEEDS_AXIS_LENGTH = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.PLANAR)

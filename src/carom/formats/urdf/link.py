@@ -7,7 +7,7 @@ from carom.formats.robot.link import read_collision, read_contact, read_inertial
 from carom.formats.urdf.context import UrdfContext
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.material import read_visual_material
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 
 def read_link(context: UrdfContext, element: Element) -> Link:

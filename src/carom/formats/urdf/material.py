@@ -7,7 +7,7 @@ from pathlib import Path
 from carom.description import Material
 from carom.formats.robot.context import shown
 from carom.formats.urdf.context import UrdfContext
-from carom.formats.xml_tree import Element
+from carom.formats.xml_element import Element
 
 
 def read_global_materials(context: UrdfContext) -> None:

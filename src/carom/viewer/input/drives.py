@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from carom.joint_motor import aim_at_position
 from carom.layouts.codes import JointCode
+from carom.scene.joint_motor import aim_at_position
 
 if TYPE_CHECKING:
-    from carom.world import World
+    from carom.world.world import World
 
 _GAIN, _VELOCITY_GAIN = 0.1, 1.0
 # Greatest force of the drive where the file states no effort [N m or N].

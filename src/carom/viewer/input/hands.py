@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from carom.constraints import moving_links
 from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
+from carom.scene.joint_constraints import moving_links
 
 if TYPE_CHECKING:
-    from carom.user_constraints import UserConstraint
-    from carom.world import World
+    from carom.scene.user_constraints import UserConstraint
+    from carom.world.world import World
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 # The greatest force a hand pulls with, by the mass of what it pulls [N/kg] and at least [N]: enough to lift

@@ -17,7 +17,7 @@ from carom.viewer.replay.recording import Recording
 from carom.viewer.scene_feed import SceneFeed
 
 if TYPE_CHECKING:
-    from carom.world import World
+    from carom.world.world import World
 
 _PAGE = 1
 # Times are sums of time steps: how far a frame may be early [of the time between two].

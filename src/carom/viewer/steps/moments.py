@@ -8,9 +8,9 @@ from carom.errors import StateError
 from carom.viewer.board import Board
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.snapshot import Snapshot
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.scene.snapshot import Snapshot
+    from carom.world.world import World
 
 _MOST_MARKS = 32
 

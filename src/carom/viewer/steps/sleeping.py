@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from carom.dynamics_changes import change_dynamics
 from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
+from carom.scene.dynamics_changes import change_dynamics
 
 if TYPE_CHECKING:
-    from carom.body import Body
-    from carom.world import World
+    from carom.scene.body import Body
+    from carom.world.world import World
 
 
 class Sleeping:

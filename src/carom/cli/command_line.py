@@ -1,0 +1,258 @@
+"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert`, `serve`, `warmup`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import pybullet_data
+from carom.description import Pose
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose
+from carom.errors import CaromError
+from carom.formats.search import AssetSearch
+from carom.formats.urdf import read_urdf
+from carom.layouts.flags import LoadFlags
+from carom.model.assemble import assemble
+from carom.model.body_spec import BASE, BodySpec
+from carom.version import __version__
+
+OK, FAILED = 0, 1
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        arguments: Words of the command line; those of the process by default.
+
+    Returns:
+        Exit status: 0 when all went well, 1 when a file cannot be used. argparse itself ends the
+        process with 2 when it does not understand the command.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        options.command(options)
+    except (CaromError, OSError) as problem:
+        print(f"carom: {problem}", file=sys.stderr)
+        return FAILED
+    return OK
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="carom", description="A robot simulator that runs PyBullet scripts."
+    )
+    parser.add_argument("--version", action="version", version=f"carom {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    info = commands.add_parser("info", help="print the joint and link tables of a robot file")
+    info.add_argument("file", type=Path, help="URDF file; one that pybullet_data ships is found by its name")
+    info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
+    info.add_argument("--fixed-base", action="store_true", help="hold the base where it is")
+    info.add_argument(
+        "--inertia-from-file", action="store_true", help="use <inertia>, not the collision shapes"
+    )
+    info.add_argument("--merge-fixed-links", action="store_true", help="merge links that cannot move")
+    info.set_defaults(command=_info)
+
+    view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
+    view.add_argument(
+        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data"
+    )
+    view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
+    view.add_argument(
+        "--port", type=int, help="port to serve the page at (default 8400, or any other that is free)"
+    )
+    view.set_defaults(command=_view)
+
+    record = commands.add_parser("record", help="run a script and write a page that replays its world")
+    record.add_argument("script", type=Path, help="Python script, unchanged")
+    record.add_argument("output", type=Path, help="HTML file to write")
+    record.add_argument("arguments", nargs=argparse.REMAINDER, help="arguments of the script")
+    record.add_argument("--seconds", type=_positive, help="end the script after so much simulated time")
+    record.add_argument("--fps", type=_positive, default=60.0, help="frames for each second (default 60)")
+    record.set_defaults(command=_record)
+
+    convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
+    convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
+    convert.add_argument("output", type=Path, help="URDF file to write")
+    convert.add_argument("--model", help="the one to take from a file with several, by name or number from 0")
+    convert.set_defaults(command=_convert)
+
+    serve = commands.add_parser("serve", help="serve a world that scripts in other processes can join")
+    serve.add_argument(
+        "--key", type=int, default=12347, help="of shared memory, as in connect (default 12347)"
+    )
+    for transport, port in (("tcp", 6667), ("udp", 1234)):
+        serve.add_argument(
+            f"--{transport}",
+            type=int,
+            nargs="?",
+            const=port,
+            metavar="PORT",
+            help=f"be found by connect(p.{transport.upper()}) as well (port {port} if none is stated)",
+        )
+    serve.add_argument("--bind", default="127.0.0.1", help="address of these ports (default 127.0.0.1)")
+    serve.add_argument(
+        "--key-file", type=Path, help="file with the key clients have to know; written if there is none"
+    )
+    serve.add_argument("--gui", action="store_true", help="show the world in the browser")
+    serve.add_argument("--gui-port", type=int, help="port to serve the page at")
+    serve.set_defaults(command=_serve)
+
+    warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
+    warmup.set_defaults(command=_warmup)
+    return parser
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
+    return value
+
+
+def _info(options: argparse.Namespace) -> None:
+    flags = LoadFlags.NONE
+    if options.inertia_from_file:
+        flags |= LoadFlags.USE_INERTIA_FROM_FILE
+    if options.merge_fixed_links:
+        flags |= LoadFlags.MERGE_FIXED_LINKS
+    search = AssetSearch(Path(pybullet_data.getDataPath()))
+    robot = read_urdf(options.file, scale=options.scale, search=search)
+    print(describe(assemble(robot, flags=flags, fixed_base=options.fixed_base)))
+
+
+def _view(options: argparse.Namespace) -> None:
+    from carom.cli.show_robot import RobotView
+    from carom.viewer.display import tunnel_command
+
+    search = AssetSearch(Path(pybullet_data.getDataPath()))
+    view = RobotView(options.file, search, options.host, options.port)
+    print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    if tunnel := tunnel_command(view.viewer.address):
+        print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
+    try:
+        view.run()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        view.viewer.close()
+
+
+def _record(options: argparse.Namespace) -> None:
+    from carom.cli.record import Take, record
+
+    take = Take(options.script, options.output, options.arguments, options.seconds, options.fps)
+    if not take.script.is_file():
+        raise FileNotFoundError(f"{take.script}: no such script")
+    files = record(take)
+    for file in files:
+        print(f"Wrote {file}")
+    if not files:
+        print(f"{take.script} made no world, so there is nothing to replay.", file=sys.stderr)
+
+
+def _convert(options: argparse.Namespace) -> None:
+    from carom.cli.convert import convert
+
+    convert(options.input, options.output, options.model)
+
+
+def _serve(options: argparse.Namespace) -> None:
+    from carom.cli.serve import Service, serve
+
+    stated = {"tcp": options.tcp, "udp": options.udp, "port": options.gui_port, "key-file": options.key_file}
+    words = [f'--{name}="{value}"' for name, value in stated.items() if value is not None]
+    serve(Service(options.key, options.gui, [f"--bind={options.bind}", *words]))
+
+
+def _warmup(_options: argparse.Namespace) -> None:
+    from carom.cli.warmup import warmup
+
+    began = time.perf_counter()
+    warmup()
+    print(f"The physics kernels are ready, after {time.perf_counter() - began:.1f} s.")
+
+
+def describe(spec: BodySpec) -> str:
+    """The joint table and the link table of a body, as text."""
+    movable = sum(link.joint_type.value != "fixed" for link in spec.links)
+    base = "fixed" if spec.fixed_base else "floating"
+    joints = "joint" if movable == 1 else "joints"
+    heading = f"{spec.name}: {len(spec.links) + 1} links, {movable} movable {joints}, {base} base"
+    return "\n\n".join([heading, _joint_table(spec), _link_table(spec)])
+
+
+def _joint_table(spec: BodySpec) -> str:
+    header = ["#", "joint", "type", "axis", "limits", "effort", "velocity", "damping", "friction", "parent"]
+    rows = []
+    for index, link in enumerate(spec.links):
+        movable = link.joint_type.value != "fixed"
+        drive = (link.effort, link.velocity, link.damping, link.friction)
+        rows.append(
+            [
+                str(index),
+                link.joint_name,
+                link.joint_type.value,
+                _numbers(link.joint_axis) if movable else "",
+                f"{link.lower:g} .. {link.upper:g}" if link.limited else "",
+                *(f"{value:g}" if movable else "" for value in drive),
+                spec.link(link.parent).name,
+            ]
+        )
+    return (
+        _table(header, rows)
+        + "\nAxes are in the joint frame. Units: rad, N m, s, and for prismatic joints m, N, s."
+    )
+
+
+def _link_table(spec: BodySpec) -> str:
+    header = ["#", "link", "mass", "inertia", "centre of mass", "position", "orientation", "shapes"]
+    poses = link_poses(spec)
+    rows = [
+        [
+            str(index),
+            link.name,
+            f"{link.mass:g}",
+            _numbers(link.inertia),
+            _numbers(link.inertial_frame.position),
+            _numbers(poses[index].position),
+            _numbers(poses[index].orientation),
+            str(len(link.collisions)),
+        ]
+        for index, link in [(BASE, spec.base), *enumerate(spec.links)]
+    ]
+    return _table(header, rows) + (
+        "\nPrincipal inertia; centre of mass in the link frame; link frame in the base's, all joints at 0,"
+        "\norientation x y z w; number of collision shapes. Units: kg, m."
+    )
+
+
+def link_poses(spec: BodySpec) -> dict[int, Pose]:
+    """Link frames in the base's link frame with all joints at 0, by link index."""
+    poses = {BASE: IDENTITY}
+    for index, link in enumerate(spec.links):
+        poses[index] = compose(poses[link.parent], link.joint_frame)
+    return poses
+
+
+def _numbers(values: Iterable[float]) -> str:
+    # Adding 0 turns -0 into 0.
+    return " ".join(f"{value + 0.0:.4g}" for value in values)
+
+
+def _table(header: list[str], rows: list[list[str]]) -> str:
+    widths = [max(map(len, column)) for column in zip(header, *rows, strict=True)]
+    lines = [header, ["-" * width for width in widths], *rows]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )

@@ -1,0 +1,105 @@
+"""Running a script and recording its world: `python -m carom record script.py out.html`."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import runpy
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from threading import current_thread, main_thread
+from typing import Any
+
+from carom.viewer.replay import ReplayRecorder
+from carom.world.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """What is to be recorded.
+
+    Attributes:
+        script: The script.
+        output: The HTML file. Further worlds of the script go to `output-2.html` and so on.
+        arguments: Of the script.
+        seconds: Simulated time after which the script is ended [s]; None: when it ends by itself.
+        fps: Frames for each second of simulated time.
+    """
+
+    script: Path
+    output: Path
+    arguments: Sequence[str] = ()
+    seconds: float | None = None
+    fps: float = 60.0
+
+
+class _Enough(BaseException):
+    """Ends a script; no `except Exception` of its own holds it up."""
+
+
+class _Watch:
+    """Ends the script after some simulated time; one of `World.observers`."""
+
+    def __init__(self, world: World, seconds: float) -> None:
+        self._world = world
+        self._seconds = seconds
+        self.over = False
+
+    def before_step(self) -> None:
+        """Nothing."""
+
+    def after_step(self) -> None:
+        """Looks at the clock."""
+        if self._world.time < self._seconds:
+            return
+        self.over = True
+        if current_thread() is main_thread():
+            raise _Enough
+        # Real-time simulation steps in the background, while the script sleeps.
+        _thread.interrupt_main()
+
+
+def record(take: Take) -> list[Path]:
+    """Runs a script and writes a replay of each world it makes, even if the script fails.
+
+    Returns:
+        The files that were written.
+
+    Raises:
+        OSError: The script cannot be read, or a file not be written.
+        Exception: Whatever the script raises.
+    """
+    # Nobody is to be asked: what is recorded is what the script does by itself.
+    os.environ.setdefault("CI", "1")
+    recorders: list[tuple[Path, ReplayRecorder]] = []
+    watches: list[_Watch] = []
+    begin = World.__init__
+
+    def begin_recorded(world: World, *arguments: Any, **keywords: Any) -> None:
+        begin(world, *arguments, **keywords)
+        number = len(recorders) + 1
+        name = take.output.name if number == 1 else f"{take.output.stem}-{number}{take.output.suffix}"
+        path = take.output.with_name(name)
+        title = take.script.stem if number == 1 else f"{take.script.stem} {number}"
+        recorders.append((path, ReplayRecorder(world, path, fps=take.fps, title=title)))
+        if take.seconds is not None:
+            watches.append(_Watch(world, take.seconds))
+            world.observers.append(watches[-1])
+
+    World.__init__ = begin_recorded  # pyright: ignore[reportAttributeAccessIssue]
+    arguments = sys.argv
+    sys.argv = [str(take.script), *take.arguments]
+    sys.path.insert(0, str(take.script.resolve().parent))
+    try:
+        runpy.run_path(str(take.script), run_name="__main__")
+    except (_Enough, KeyboardInterrupt, SystemExit):
+        pass
+    finally:
+        World.__init__ = begin
+        sys.argv = arguments
+        sys.path.pop(0)
+        for _, recorder in recorders:
+            recorder.stop()
+    return [path for path, recorder in recorders if recorder.frame_count]

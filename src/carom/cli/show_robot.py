@@ -1,0 +1,97 @@
+"""Looking at a robot: a slider for each joint, and nothing that falls."""
+
+from __future__ import annotations
+
+import time
+from math import isfinite, pi
+from pathlib import Path
+
+from carom.errors import DescriptionError
+from carom.formats.any_file import read_robots
+from carom.formats.search import AssetSearch
+from carom.layouts.codes import JointCode
+from carom.layouts.flags import LoadFlags
+from carom.model.assemble import assemble
+from carom.scene.body import Body
+from carom.viewer.items import Slider
+from carom.viewer.viewer import Viewer
+from carom.world.world import World
+
+_PERIOD = 1.0 / 60.0
+# Reach of the sliders of joints without limits [rad or m].
+_FULL_TURN = pi
+_SLIDE = 1.0
+# How far from a robot the camera is, in sizes of the robot.
+_DISTANCE = 1.1
+_LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
+
+
+class RobotView:
+    """Shows the robots of a file, and moves their joints as the sliders say.
+
+    Args:
+        file: URDF, SDF or MJCF file.
+        search: Where a file that is not there as named, and meshes, are looked for.
+        host: Address to serve the page at.
+        port: Port to serve it at; None for the usual one or any that is free.
+
+    Raises:
+        DescriptionError: The file cannot be used, or there is no robot in it.
+        OSError: The page cannot be served there.
+
+    Attributes:
+        viewer: What shows it.
+    """
+
+    def __init__(self, file: Path, search: AssetSearch, host: str, port: int | None) -> None:
+        self._world = World()
+        bodies = [
+            self._world.load(
+                assemble(placed.robot, flags=_LOOKS, fixed_base=True),
+                placed.pose.position,
+                placed.pose.orientation,
+            )
+            for placed in read_robots(file, search=search)
+        ]
+        if not bodies:
+            raise DescriptionError("it holds no robot", file=file)
+        self.viewer: Viewer = Viewer(self._world, host=host, port=port, title=file.name)
+        self.viewer.configure({"names": True})
+        self._sliders: list[tuple[Body, int, Slider]] = []
+        for body in bodies:
+            self._add_sliders(body)
+        self._look_at_it()
+        self.viewer.open_browser()
+
+    def run(self) -> None:
+        """Follows the sliders until the user closes the page."""
+        while self.viewer.is_open:
+            self.follow()
+            time.sleep(_PERIOD)
+
+    def follow(self) -> None:
+        """Puts the joints where the sliders are."""
+        for body, joint, slider in self._sliders:
+            if body.joints[joint].position != slider.value:
+                body.set_joint_state(joint, [slider.value], [0.0])
+
+    def _add_sliders(self, body: Body) -> None:
+        for joint, code in enumerate(body.joint_types):
+            if code not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+                continue
+            reach = _FULL_TURN if code == JointCode.REVOLUTE else _SLIDE
+            lower, upper = body.joints[joint].limits
+            if not (isfinite(lower) and isfinite(upper) and lower < upper):
+                lower, upper = -reach, reach
+            slider = Slider(body.joints[joint].name, lower, upper, min(max(0.0, lower), upper))
+            self.viewer.controls.add(len(self._sliders), slider)
+            self._sliders.append((body, joint, slider))
+
+    def _look_at_it(self) -> None:
+        """Moves the camera to where everything is in view."""
+        self.follow()
+        points = self._world.link_pose[:, :3]
+        lower, upper = points.min(axis=0), points.max(axis=0)
+        x, y, z = (float(value) for value in 0.5 * (lower + upper))
+        size = max(float(max(upper - lower)), 0.5)
+        self.viewer.camera.move(_DISTANCE * size, 50.0, -20.0, (x, y, z))

@@ -1,0 +1,106 @@
+"""Elements of XML documents as a small tree that remembers line numbers and keeps within bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from carom.errors import DescriptionError
+
+DOCTYPE_REFUSED = "document types with external or internal declarations (entities) are not accepted"
+"""What is said of a document with entities."""
+
+MAX_DEPTH = 100
+"""Deepest nesting of elements."""
+
+MAX_ELEMENTS = 200_000
+"""Most elements in one document."""
+
+
+class Element:
+    """An element of an XML document.
+
+    Attributes:
+        tag: Name.
+        attributes: Attribute values by name, entities replaced.
+        line: Line of the start tag, counted from 1.
+        children: Child elements in document order.
+        text: Character data before the first child element.
+    """
+
+    __slots__ = ("attributes", "children", "line", "tag", "text")
+
+    def __init__(self, tag: str, attributes: dict[str, str], line: int) -> None:
+        self.tag: str = tag
+        self.attributes: dict[str, str] = attributes
+        self.line: int = line
+        self.children: list[Element] = []
+        self.text: str = ""
+
+    def first(self, tag: str) -> Element | None:
+        """The first child of that name."""
+        for child in self.children:
+            if child.tag == tag:
+                return child
+        return None
+
+    def all(self, tag: str) -> Iterator[Element]:
+        """Every child of that name, in order."""
+        return (child for child in self.children if child.tag == tag)
+
+    def path_to(self, target: Element) -> list[Element]:
+        """The elements from this one down to `target`, both included; empty where it is not inside."""
+        if target is self:
+            return [self]
+        for child in self.children:
+            below = child.path_to(target)
+            if below:
+                return [self, *below]
+        return []
+
+
+class TreeBuilder:
+    """Grows the tree from a stream of start tags, end tags and text, and keeps it within bounds."""
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+        self.roots: list[Element] = []
+        self.open: list[Element] = []
+        self._count = 0
+        self._chunks: list[str] = []
+
+    def start(self, tag: str, attributes: dict[str, str], line: int) -> None:
+        """A start tag."""
+        element = Element(tag, attributes, line)
+        self._count += 1
+        if self._count > MAX_ELEMENTS:
+            raise self.error(f"more than {MAX_ELEMENTS} elements", line)
+        if len(self.open) >= MAX_DEPTH:
+            raise self.error(f"elements nested deeper than {MAX_DEPTH}", line)
+        if self.open:
+            parent = self.open[-1]
+            if self._chunks:
+                self._flush(parent)
+            parent.children.append(element)
+        else:
+            self.roots.append(element)
+        self.open.append(element)
+
+    def end(self) -> None:
+        """The end tag of the innermost open element."""
+        element = self.open.pop()
+        if self._chunks:
+            self._flush(element)
+
+    def data(self, text: str) -> None:
+        """Character data."""
+        self._chunks.append(text)
+
+    def error(self, reason: str, line: int) -> DescriptionError:
+        """An error at a line of this document."""
+        return DescriptionError(reason, file=self.file, line=line)
+
+    def _flush(self, owner: Element) -> None:
+        if not owner.children:
+            owner.text = "".join(self._chunks)
+        self._chunks.clear()

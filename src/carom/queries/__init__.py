@@ -1,0 +1,1 @@
+"""Questions about a world: rays, nearest points, overlaps, contacts."""

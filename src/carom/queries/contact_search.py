@@ -1,0 +1,87 @@
+"""Reading contacts: the memory of the questions and of the answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from struct import Struct
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom.layouts.queries import ContactReport
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import report_contacts_kernel
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable, numbers_of
+from carom.queries.question import Question
+
+_VECTOR = Struct(f"3{np.dtype(NUMPY_REAL).char}")
+
+
+class ContactColumns(NamedTuple):
+    """Contacts in columns, which are to be read at once.
+
+    Attributes:
+        found: How many there are.
+        columns: An iterable for each of: number of the first body, of the second body, link of the first
+            body, of the second body (-1: the base), point on the first body, on the second body (in world
+            axes [m]), normal on the second body towards the first, distance (negative: penetration [m]),
+            force along the normal, along a friction direction [N], that direction, force along another one,
+            that direction. After the last contact they go on.
+    """
+
+    found: int
+    columns: tuple[Iterable[Any], ...]
+
+
+NO_CONTACTS = ContactColumns(0, ())
+
+
+class ContactSearch:
+    """The contacts of a world.
+
+    Args:
+        structs: Warp structs by the name kernels give them, `places` among them.
+    """
+
+    def __init__(self, structs: KernelStructs) -> None:
+        asked = {"body_a": -1, "link_a": -2, "body_b": -1, "link_b": -2, "time_step": NUMPY_REAL(0.0)}
+        self._search = Question(
+            report_contacts_kernel, structs, "report", ArrayTable(ContactReport), asked, world=0
+        )
+        self._view()
+
+    def __call__(
+        self, count: int, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
+    ) -> ContactColumns:
+        """Those of the `count` contacts there are that were asked for.
+
+        For the arguments see `report_contacts_kernel`.
+        """
+        if count > self._search.room:
+            self._search.reserve(count)
+            self._view()
+        self._search(count, body_a, link_a, body_b, link_b, time_step)
+        found = self._found[0]
+        if not found:
+            return NO_CONTACTS
+        on_a, on_b, normal, direction1, direction2 = map(_VECTOR.iter_unpack, self._vectors)
+        distance, force, force1, force2 = self._reals
+        return ContactColumns(
+            found,
+            (*self._indices, on_a, on_b, normal, distance, force, force1, direction1, force2, direction2),
+        )
+
+    def _view(self) -> None:
+        """Take the memory of the present arrays."""
+        arrays, memory = self._search.arrays.numpy, self._search.arrays.bytes_of
+        self._found: memoryview[int] = arrays["report_count"].data
+        self._indices: list[memoryview[int]] = [
+            arrays[f"report_{name}"].data for name in ("body_a", "body_b", "link_a", "link_b")
+        ]
+        self._reals = [
+            numbers_of(arrays[f"report_{name}"]) for name in ("distance", "force", "force1", "force2")
+        ]
+        self._vectors = [
+            memory(f"report_{name}") for name in ("point_a", "point_b", "normal", "direction1", "direction2")
+        ]

@@ -1,0 +1,121 @@
+"""The nearest points of links: the memory of the questions and of the answers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from struct import Struct
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.description.pose import Vector3
+from carom.engine.touch_arrays import TouchArrays
+from carom.layouts.queries import Searches
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import closest_points_kernel
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable
+from carom.queries.question import Question
+
+_ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
+_INDEX = np.dtype(np.int32)
+# Pairs of links whose shapes are remembered: scripts ask for the same ones step by step.
+_MOST_REMEMBERED = 64
+
+
+NearestPoints = tuple[int, int, Vector3, Vector3, Vector3, float]
+"""Rows of two links, point on the first one, on the second one (in world axes [m]), normal on the second one
+towards the first, distance (negative if they overlap)."""
+
+
+class ShapePairs(NamedTuple):
+    """All pairs of shapes of pairs of links.
+
+    Attributes:
+        links: Rows of the links of each.
+        first: Rows of the shapes of the first links, as they are in memory.
+        second: The same of the second links.
+    """
+
+    links: list[tuple[int, int]]
+    first: bytes
+    second: bytes
+
+
+class PairSearch:
+    """The searches of a world.
+
+    Args:
+        structs: Warp structs by the name kernels give them.
+        touch: The arrays of shapes.
+    """
+
+    def __init__(self, structs: KernelStructs, touch: TouchArrays) -> None:
+        self._shapes = touch.shapes.table.numpy
+        self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
+        self._asked: ShapePairs | None = None
+        self._search = Question(
+            closest_points_kernel,
+            structs,
+            "searches",
+            ArrayTable(Searches, 1),
+            {"reach": NUMPY_REAL(0.0)},
+        )
+        self._view()
+
+    def shape_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
+        """All pairs of a shape of one of some links, and of one of others."""
+        known = self._remembered.get((first, second))
+        if known is None:
+            if len(self._remembered) >= _MOST_REMEMBERED:
+                self._remembered.clear()
+            known = self._remembered[first, second] = self._find_pairs(first, second)
+        return known
+
+    def __call__(self, pairs: ShapePairs, reach: float) -> list[NearestPoints]:
+        """The nearest points of pairs of shapes that are no farther apart than `reach` [m]."""
+        count = len(pairs.links)
+        if pairs is not self._asked:
+            if count > self._search.room:
+                self._search.reserve(count)
+                self._view()
+            size = count * _INDEX.itemsize
+            self._first[:size], self._second[:size] = pairs.first, pairs.second
+            self._asked = pairs
+        self._search(count, reach)
+        found = self._count[0]
+        if not found:
+            return []
+        rows = zip(range(found), self._pair, _ROW.iter_unpack(self._found), strict=False)
+        return [
+            (
+                *pairs.links[pair],
+                (x + distance * nx, y + distance * ny, z + distance * nz),
+                (x, y, z),
+                (nx, ny, nz),
+                distance,
+            )
+            for _, pair, (x, y, z, nx, ny, nz, distance, _) in rows
+        ]
+
+    def _find_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
+        links, shapes = [], []
+        for a, b in product(first, second):
+            for pair in product(self._shapes_of(a), self._shapes_of(b)):
+                links.append((a, b))
+                shapes.append(pair)
+        sides = np.array(shapes, dtype=_INDEX).reshape(-1, 2).T
+        return ShapePairs(links, sides[0].tobytes(), sides[1].tobytes())
+
+    def _shapes_of(self, link: int) -> range:
+        first = int(self._shapes["link_first_shape"][link])
+        return range(first, first + int(self._shapes["link_shape_count"][link]))
+
+    def _view(self) -> None:
+        """Take the memory of the present arrays."""
+        arrays, memory = self._search.arrays.numpy, self._search.arrays.bytes_of
+        self._first, self._second = memory("search_first"), memory("search_second")
+        self._count: memoryview[int] = arrays["search_count"][0].data
+        self._pair: memoryview[int] = arrays["search_pair"][0].data
+        self._found = memory("search_found")

@@ -1,0 +1,200 @@
+"""Geometric questions about a world as it stands: rays, nearest points, overlaps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from functools import cached_property
+from struct import Struct
+
+import numpy as np
+
+from carom.description.pose import Vector3
+from carom.description.transform import rotation_matrix
+from carom.engine.places import places_struct
+from carom.engine.touch_arrays import TouchArrays
+from carom.layouts.codes import PLANE
+from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
+from carom.layouts.types import NUMPY_REAL
+from carom.model.bounds import Bounds, turned_box
+from carom.native.kernels import place_shapes_kernel, prepare_rays_kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
+from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
+from carom.queries.pair_search import NearestPoints, PairSearch
+from carom.queries.ray_cast import Points, RayCast, RayHit
+
+_POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
+# A distance that counts as none.
+_FAR = 1e30
+
+
+class Queries:
+    """Launches of the collision queries of a world, over its present arrays.
+
+    Args:
+        structs: Structs by the name kernels give them.
+        positions: The memory of the coordinates of all bodies.
+        places: Body and link that each row of the link arrays stands for.
+        present_poses: `World.present_poses`.
+        touch: The arrays of shapes.
+        pairs: Room for the intermediate results of collision detection.
+    """
+
+    def __init__(
+        self,
+        structs: KernelStructs,
+        positions: memoryview[float],
+        places: Sequence[tuple[int, int]],
+        present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
+        touch: TouchArrays,
+        pairs: ArrayTable,
+    ) -> None:
+        self._structs = structs
+        structs["places"] = places_struct(places)
+        self._link_count = len(places)
+        self._touch = touch
+        self._positions = positions
+        self._present_poses = present_poses
+        self._all_shapes = touch.shapes
+        self._shape_count = touch.shapes.shape_count
+        self._shapes = touch.shapes.table.numpy
+        self._pairs = pairs.numpy
+        self._counts = memoryview(pairs.numpy["count_pairs"][0])
+        self._contact_counts = memoryview(touch.contacts.numpy["count_contacts"][0])
+        self._ready_for: tuple[int, bytes] | None = None
+
+    @cached_property
+    def _make_ready(self) -> dict[int, Launch]:
+        return {
+            PLACED: self._structs.launch(place_shapes_kernel),
+            IN_HIERARCHY: self._structs.launch(prepare_rays_kernel, first_world=0),
+        }
+
+    @cached_property
+    def _cast(self) -> RayCast:
+        return RayCast(self._structs)
+
+    @cached_property
+    def _search(self) -> PairSearch:
+        return PairSearch(self._structs, self._touch)
+
+    @cached_property
+    def _contacts(self) -> ContactSearch:
+        return ContactSearch(self._structs)
+
+    @cached_property
+    def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Of each shape the lowest and the highest corner, whether it has no bounds, and its link."""
+        rows = slice(self._shape_count)
+        endless = self._shapes["shape_kind"][rows] == PLANE
+        lowest, highest = (self._pairs[name][0, rows] for name in ("shape_lower", "shape_upper"))
+        return lowest, highest, endless, self._shapes["shape_link"][rows]
+
+    @cached_property
+    def _without_shapes(self) -> list[tuple[int, Bounds]]:
+        """The links without shapes: their rows, and their bounds about their inertial frames."""
+        counts = self._shapes["link_shape_count"][: self._link_count].tolist()
+        return [(row, self._all_shapes.bounds(row)) for row, count in enumerate(counts) if not count]
+
+    def cast_rays(
+        self,
+        starts: Points,
+        ends: Points,
+        *,
+        mask: int = -1,
+        hit_number: int = 0,
+        separation: float = 0.0,
+    ) -> tuple[RayHit, ...]:
+        """What rays hit.
+
+        Args:
+            starts: Their starts in world axes [m], shape (n, 3).
+            ends: Their ends, shape (n, 3).
+            mask: Collision groups that are hit.
+            hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
+            separation: Later hits on a link less than this fraction of the ray after one do not count.
+        """
+        self._prepare(IN_HIERARCHY)
+        return self._cast(starts, ends, mask, hit_number, separation)
+
+    def cast_ray(
+        self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
+    ) -> RayHit:
+        """What one ray hits; the arguments are those of `cast_rays` for it."""
+        self._prepare(IN_HIERARCHY)
+        return self._cast.one(start, end, mask, hit_number, separation)
+
+    def nearest(self, first: Sequence[int], second: Sequence[int], reach: float) -> list[NearestPoints]:
+        """The nearest points of all shapes of some links and of others, up to `reach` apart.
+
+        Args:
+            first: Rows of links in the world's arrays, as a range or tuple.
+            second: Rows of the other links.
+            reach: Largest distance [m].
+
+        Returns:
+            The points, in the order of `first`, then of `second`, then of the shapes of each.
+        """
+        pairs = self._search.shape_pairs(first, second)
+        if not pairs.links:
+            return []
+        self._prepare(PLACED)
+        return self._search(pairs, min(reach, _FAR))
+
+    def contacts(
+        self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
+    ) -> ContactColumns:
+        """The contacts of the last step, or detection, between two bodies or links.
+
+        Args:
+            body_a: Number of a body, which is then the first of each contact; negative for any.
+            link_a: Its link, -1 for the base, -2 and less for any.
+            body_b: Number of the second body; negative for any.
+            link_b: Its link.
+            time_step: Of a step [s]; makes forces of impulses.
+
+        Returns:
+            The contacts, to be read at once.
+        """
+        count = self._contact_counts[THERE]
+        return self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
+
+    def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
+        """Rows of the links whose bounds meet a box; those of links without shapes are a point, or nearly.
+
+        Args:
+            lower: Lowest corner of the box in world axes [m].
+            upper: Its highest corner.
+        """
+        found: set[int] = set()
+        if self._shape_count:
+            self._prepare(PLACED)
+            lowest, highest, endless, links = self._extents
+            meets = ((lowest <= upper) & (highest >= lower)).all(axis=1) | endless
+            found.update(links[meets].tolist())
+        if self._without_shapes:
+            with self._present_poses() as poses:
+                for row, bounds in self._without_shapes:
+                    x, y, z, qx, qy, qz, qw = _POSE.unpack_from(poses, row * _POSE.size)
+                    turn = rotation_matrix((qx, qy, qz, qw))
+                    center, half = turned_box(bounds.center, bounds.half, turn, (x, y, z))
+                    if all(map(_meet, center, half, lower, upper)):
+                        found.add(row)
+        return sorted(found)
+
+    def _prepare(self, readiness: int) -> None:
+        """Place the shapes by the present coordinates, unless they are there already.
+
+        What steps leave is overwritten, and the other way round; everything else that could move a shape ends
+        these `Queries`.
+        """
+        wanted = (self._all_shapes.changes, self._positions.tobytes())
+        if self._counts[READINESS] < readiness or wanted != self._ready_for:
+            with self._present_poses():
+                self._make_ready[readiness]()
+            self._ready_for = wanted
+
+
+def _meet(center: float, half: float, lower: float, upper: float) -> bool:
+    return center - half <= upper and center + half >= lower

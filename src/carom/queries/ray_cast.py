@@ -1,0 +1,87 @@
+"""Casting rays: the memory of the questions and of the answers."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from itertools import chain
+
+import numpy as np
+
+from carom.description.pose import Vector3
+from carom.layouts.queries import Rays
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import rays_kernel
+from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable, numbers_of
+from carom.queries.question import Question
+
+Points = np.ndarray | Sequence[Sequence[float]]
+
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
+_VECTOR = struct.Struct(f"3{_TYPE_CODE}")
+
+
+RayHit = tuple[int, int, float, Vector3, Vector3]
+"""Body and link (-1: the base) that a ray hits, fraction of the ray, position [m] and normal in world axes.
+(-1, -1, 1) and zeros for nothing."""
+
+
+class RayCast:
+    """The rays of a world.
+
+    Args:
+        structs: Warp structs by the name kernels give them, `places` among them.
+    """
+
+    def __init__(self, structs: KernelStructs) -> None:
+        self._cast = Question(
+            rays_kernel,
+            structs,
+            "rays",
+            ArrayTable(Rays),
+            {"mask": -1, "hit_number": 0, "separation": NUMPY_REAL(0.0)},
+            first_world=0,
+            threads=1,
+        )
+        self._view()
+
+    def __call__(
+        self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float
+    ) -> tuple[RayHit, ...]:
+        """Cast rays; the arguments are those of `Queries.cast_rays`."""
+        count = len(starts)
+        if count > self._cast.room:
+            self._cast.reserve(count)
+            self._view()
+        size = count * _VECTOR.size
+        self._starts[:size] = _packed(starts)
+        self._ends[:size] = _packed(ends)
+        self._cast(count, mask, hit_number, separation)
+        bodies = self._bodies[:count]
+        positions, normals = _VECTOR.iter_unpack(self._positions), _VECTOR.iter_unpack(self._normals)
+        return tuple(zip(bodies, self._links, self._fractions, positions, normals, strict=False))
+
+    def one(self, start: Vector3, end: Vector3, mask: int, hit_number: int, separation: float) -> RayHit:
+        """Cast one ray."""
+        _VECTOR.pack_into(self._starts, 0, *start)
+        _VECTOR.pack_into(self._ends, 0, *end)
+        self._cast(1, mask, hit_number, separation)
+        position, normal = _VECTOR.unpack_from(self._positions), _VECTOR.unpack_from(self._normals)
+        return self._bodies[0], self._links[0], self._fractions[0], position, normal
+
+    def _view(self) -> None:
+        """Take the memory of the present arrays."""
+        arrays, memory = self._cast.arrays.numpy, self._cast.arrays.bytes_of
+        self._starts, self._ends = memory("ray_start"), memory("ray_end")
+        self._positions, self._normals = memory("ray_position"), memory("ray_normal")
+        self._bodies: memoryview[int] = arrays["ray_body"].data
+        self._links: memoryview[int] = arrays["ray_link"].data
+        self._fractions = numbers_of(arrays["ray_fraction"])
+
+
+def _packed(points: Points) -> bytes:
+    """Points one after the other in memory."""
+    if isinstance(points, np.ndarray):
+        return points.astype(NUMPY_REAL, copy=False).tobytes()
+    return struct.pack(f"{3 * len(points)}{_TYPE_CODE}", *chain.from_iterable(points))

@@ -1,0 +1,229 @@
+"""A body in a world: a base, its links and the joints between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from math import sqrt
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.description.pose import Pose
+from carom.layouts.codes import (
+    BASE_POSITIONS,
+    BASE_VELOCITIES,
+    DOF_COUNT,
+    JOINT_CODE,
+    POSITION_COUNT,
+    Activity,
+)
+from carom.layouts.types import NUMPY_REAL
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.builder import TreeRows
+from carom.scene.dynamics_changes import change_dynamics, write_link
+from carom.scene.link_dynamics import LinkDynamics
+
+if TYPE_CHECKING:
+    from carom.scene.joint import Joints
+    from carom.scene.link import Links
+    from carom.world.world import World
+
+# Of the squared length of a unit quaternion.
+ROUNDING = 1e-15
+_NUMBER = np.dtype(NUMPY_REAL)
+_POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
+
+
+class Body:
+    """Handle of a body; stays valid until the body is removed.
+
+    Attributes:
+        id: Number of the body in its world.
+        world: The world it lives in.
+        spec: What it was loaded from; keeps the values of the file.
+        joint_count: Number of joints, fixed ones included; also the number of links besides the base.
+        joint_types: Code of each joint: 0 revolute, 1 prismatic, 2 spherical, 3 planar, 4 fixed.
+        position_count: Number of position coordinates of each joint.
+        velocity_count: Number of velocity coordinates of each joint.
+        fixed_base: The base does not move now.
+        derived: What algorithms keep about the body until its masses, inertias or freedom change.
+        first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
+        first_position: Row of the first coordinate in `World.position`.
+        first_velocity: Row of the first coordinate in `World.velocity`.
+        position_index: Row of the first position of each joint, -1 for fixed joints.
+        velocity_index: Row of the first velocity of each joint, -1 for fixed joints.
+    """
+
+    def __init__(self, world: World, body_id: int, spec: BodySpec, rows: TreeRows) -> None:
+        self.id = body_id
+        self.world = world
+        self.spec = spec
+        self.rows = rows
+        codes = [JOINT_CODE[link.joint_type] for link in spec.links]
+        self.joint_count: int = len(codes)
+        self.joint_types: tuple[int, ...] = tuple(int(code) for code in codes)
+        self.position_count: tuple[int, ...] = tuple(POSITION_COUNT[code] for code in codes)
+        self.velocity_count: tuple[int, ...] = tuple(DOF_COUNT[code] for code in codes)
+        self.first_link = 0
+        self.first_position = 0
+        self.first_velocity = 0
+        self.position_index: tuple[int, ...] = ()
+        self.velocity_index: tuple[int, ...] = ()
+        self.fixed_base: bool = spec.fixed_base
+        self.derived: dict[Any, Any] = {}
+        self._dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
+        if spec.fixed_base:
+            self._dynamics[0].mass = 0.0
+        self.relocate()
+
+    def relocate(self) -> None:
+        """Take over the rows the body has in the flat arrays now."""
+        self.first_link: int = self.rows.first["link"]
+        self.first_position: int = self.rows.first["position"]
+        self.first_velocity: int = self.rows.first["dof"]
+        self.position_index = _first_rows(self.first_position + BASE_POSITIONS, self.position_count)
+        self.velocity_index = _first_rows(self.first_velocity + BASE_VELOCITIES, self.velocity_count)
+
+    def _repr_html_(self) -> str:
+        """Its joints and links, for notebooks."""
+        from carom.scene.html_tables import body_table
+
+        return body_table(self)
+
+    @property
+    def name(self) -> str:
+        """Name of the robot."""
+        return self.spec.name
+
+    @cached_property
+    def joints(self) -> Joints:
+        """The joints by index or name."""
+        from carom.scene.joint import Joints
+
+        return Joints(self)
+
+    @cached_property
+    def links(self) -> Links:
+        """The links by index or name; -1 is the base."""
+        from carom.scene.link import Links
+
+        return Links(self)
+
+    def link_spec(self, link: int) -> LinkSpec:
+        """What link `link` was loaded from; -1 is the base."""
+        return self.spec.link(link)
+
+    def link_inertial_frame(self, link: int) -> Pose:
+        """Inertial frame of a link in its link frame; -1 is the base."""
+        return self.link_spec(link).inertial_frame
+
+    def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
+        """Place the inertial frame of the base; its velocity stays.
+
+        Args:
+            position: [m], world axes.
+            orientation: Quaternion (x, y, z, w); normalised here.
+        """
+        x, y, z, w = orientation
+        squared = x * x + y * y + z * z + w * w
+        # A pose that was read and is written back stays the same to the last digit.
+        scale = 1.0 if abs(squared - 1.0) < ROUNDING else 1.0 / sqrt(squared)
+        _POSE.pack_into(
+            self.world.position_memory,
+            self.first_position * _NUMBER.itemsize,
+            *position, x * scale, y * scale, z * scale, w * scale,
+        )  # fmt: skip
+        self.world.touch.distrust_contacts()
+        self.update_link_poses()
+
+    def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
+        """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s]."""
+        first = self.first_velocity * _NUMBER.itemsize
+        _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
+
+    def set_joint_state(
+        self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
+    ) -> None:
+        """Place a joint without simulating the way there; its motor keeps its target.
+
+        Args:
+            joint: Index of the joint; nothing happens for a fixed one.
+            position: As many coordinates as the joint has (a spherical joint: quaternion xyzw,
+                normalised here); None leaves them.
+            velocity: As many rates as the joint has; None leaves them.
+        """
+        if position is not None:
+            first, count = self.position_index[joint], self.position_count[joint]
+            if count == 1:
+                self.world.position_memory[first] = position[0]
+            elif count == 4:
+                length = sum(component * component for component in position) ** 0.5
+                self.world.position[first : first + 4] = [component / length for component in position]
+            elif count:
+                self.world.position[first : first + count] = position
+        if velocity is not None:
+            first, count = self.velocity_index[joint], self.velocity_count[joint]
+            if count == 1:
+                self.world.velocity_memory[first] = velocity[0]
+            elif count:
+                self.world.velocity[first : first + count] = velocity
+        self.update_link_poses()
+
+    def update_link_poses(self) -> None:
+        """Bring this body's rows of `World.link_pose` up to date with its coordinates."""
+        self.world.update_link_poses(self)
+
+    def update_link_velocities(self) -> None:
+        """Fill this body's rows of `World.link_velocity` for its present coordinates."""
+        self.world.update_link_velocities(self)
+
+    def dynamics(self, link: int) -> LinkDynamics:
+        """Present inertia, surface and joint bounds of a link; -1 is the base."""
+        return self._dynamics[link + 1]
+
+    @property
+    def is_asleep(self) -> bool:
+        """Whether the body did not take part in the last step, for it and all near it had been at rest."""
+        return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
+
+    def change_dynamics(self, link: int, **changes: Any) -> None:
+        """Change inertia, surface or joint bounds of a link, or damping of the whole body.
+
+        Args:
+            link: The link; -1 is the base.
+            **changes: Fields of `LinkDynamics` by name (`inertia` after `mass`, which sets the
+                inertia of the collision shapes), `joint_limit_force` [N m or N], and for the whole
+                body `linear_damping`, `angular_damping` [1/s], `max_joint_velocity`
+                [rad/s and m/s], `activation_state` (bits of `model.flags.ActivationChange`) and
+                `sleep_threshold`, the sum of squared velocities below which it is at rest.
+        """
+        change_dynamics(self, link, changes)
+
+    def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
+        """Take over all numbers of a link at once, but for the bounds of its joint; -1 is the base."""
+        self._dynamics[link + 1] = dynamics
+        write_link(self, link)
+
+    def has_sensor(self, joint: int) -> bool:
+        """Whether the force-torque sensor of a joint is on."""
+        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint])
+
+    def set_sensor(self, joint: int, enabled: bool) -> None:
+        """Switch the force-torque sensor of a joint on or off."""
+        model = self.world.arrays.model.numpy
+        row = self.first_link + 1 + joint
+        model["link_sensor"][row] = enabled
+        links = slice(self.first_link, self.first_link + 1 + self.joint_count)
+        model["tree_sensor_count"][self.rows.tree] = int(model["link_sensor"][links].sum())
+        if not enabled:
+            self.world.joint_reaction[row] = 0.0
+
+
+def _first_rows(start: int, counts: Sequence[int]) -> tuple[int, ...]:
+    rows = []
+    for count in counts:
+        rows.append(start if count else -1)
+        start += count
+    return tuple(rows)

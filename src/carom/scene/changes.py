@@ -1,0 +1,155 @@
+"""Changes of what there is in a world: each is made as a whole, or not at all.
+
+An exception may come at any line: from a handler of signals, or for want of memory. What is noted in
+`World.undo` then brings the world back to what it was, or the change to its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Pose
+from carom.description.transform import compose
+from carom.model.body_spec import BodySpec
+from carom.native.undo import Undo
+from carom.scene.body import Body
+from carom.scene.user_constraints import UserConstraint
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+
+
+def begin(world: World) -> Undo:
+    """Begin a change; what may be left of one that was broken off comes to its end before."""
+    world.undo.settle()
+    # Nothing that was made for the world as it was may be used before it is whole again.
+    world.undo.note(world.scene_changed)
+    world.scene_changed()
+    return world.undo
+
+
+def note_additions(world: World, undo: Undo) -> None:
+    """Note what takes away all bodies and constraints that are added from now on."""
+    for part in (
+        world.arrays,
+        world.touch.shapes,
+        world.constraints,
+        world.user_constraints,
+        world.user_data,
+    ):
+        undo.note(part.way_back())
+    count, free_ids, next_id = len(world.bodies), world.free_ids, world.next_id
+
+    def forget() -> None:
+        while len(world.bodies) > count:
+            world.bodies.popitem()
+        world.free_ids, world.next_id = free_ids, next_id
+
+    undo.note(forget)
+
+
+def add_bodies(
+    world: World,
+    bodies: Sequence[tuple[BodySpec, Pose]],
+    also: Callable[[list[Body]], None] | None = None,
+) -> list[Body]:
+    """Add bodies at rest, all or none; see `World.load_all`."""
+    with begin(world) as undo:
+        note_additions(world, undo)
+        added = [append(world, spec, pose) for spec, pose in bodies]
+        world.scene_changed()
+        for body in added:
+            body.update_link_poses()
+        if also is not None:
+            also(added)
+        undo.done()
+    return added
+
+
+def append(world: World, spec: BodySpec, pose: Pose) -> Body:
+    """Add a body within a change; its link poses are not known yet."""
+    rows = world.arrays.append(spec, compose(pose, spec.base.inertial_frame))
+    *free_ids, body_id = world.free_ids or [world.next_id]
+    body = Body(world, body_id, spec, rows)
+    surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
+    world.touch.shapes.append(spec, rows, surfaces)
+    world.free_ids, world.next_id = free_ids, max(world.next_id, body_id + 1)
+    world.bodies[body_id] = body
+    world.constraints.add_body(body)
+    world.user_data.add_stated(body_id, spec)
+    return body
+
+
+def remove_body(world: World, body: Body) -> None:
+    """Take a body out of a world, and all that belongs to it."""
+    with begin(world) as undo:
+        later = [other for other in world.bodies.values() if other.rows.tree > body.rows.tree]
+        free_ids = [*world.free_ids, body.id]
+        steps = (
+            world.constraints.removal(body),
+            world.user_constraints.removal(body),
+            world.user_data.removal(body.id),
+            world.touch.forget_contacts,
+            world.touch.shapes.removal(body.rows),
+            world.arrays.removal(body.rows, [other.rows for other in later]),
+        )
+
+        def remove() -> None:
+            world.bodies.pop(body.id, None)
+            for step in steps:
+                step()
+            for other in later:
+                other.relocate()
+            world.free_ids = free_ids
+            world.scene_changed()
+
+        undo.at_once(remove)
+
+
+def tie(world: World, make: Callable[[], UserConstraint]) -> UserConstraint:
+    """Add the user constraint that a function makes."""
+    with begin(world) as undo:
+        undo.note(world.user_constraints.way_back())
+        undo.note(world.constraints.way_back())
+        constraint = make()
+        world.constraints.add_user(constraint)
+        world.scene_changed()
+        undo.done()
+    return constraint
+
+
+def untie(world: World, constraint: UserConstraint) -> None:
+    """Remove a user constraint."""
+    with begin(world) as undo:
+        remove_constraint = world.constraints.user_removal(constraint)
+
+        def remove() -> None:
+            world.user_constraints.discard(constraint.id)
+            remove_constraint()
+            world.scene_changed()
+
+        undo.at_once(remove)
+
+
+def free_base(world: World, body: Body, *, free: bool) -> None:
+    """Let the base of a body move, or hold it where it is."""
+    with begin(world) as undo:
+        undo.note(world.constraints.way_back())
+        undo.note(partial(_set_base_freedom, world, body, free=not body.fixed_base))
+        change_base_freedom(world, body, free=free)
+        world.scene_changed()
+        undo.done()
+
+
+def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
+    """The same within another change."""
+    _set_base_freedom(world, body, free=free)
+    world.constraints.base_freedom_changed(body)
+
+
+def _set_base_freedom(world: World, body: Body, *, free: bool) -> None:
+    world.arrays.set_base_freedom(body.rows, free=free)
+    body.fixed_base = not free
+    body.derived.clear()

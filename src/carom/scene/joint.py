@@ -1,0 +1,460 @@
+"""Joints of a body: handles by index or name, and all of them at once as arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, finite, one_or_each, vector
+from carom.description import JointType
+from carom.description.pose import Vector3
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.scene import joint_motor
+from carom.scene.handles import world_of
+from carom.scene.named import Named
+
+if TYPE_CHECKING:
+    from carom.model.body_spec import LinkSpec
+    from carom.scene.body import Body
+    from carom.scene.link import Link
+
+
+class Joint:
+    """One joint of a body. Positions are in rad or m, forces in N m or N, whichever its type moves in.
+
+    The scalar attributes and methods are for joints with one degree of freedom (revolute,
+    continuous, prismatic) and raise `ValueError` on others; `coordinates` and `rates` serve all.
+
+    Attributes:
+        body: The body it belongs to.
+        index: Its number in the body, and that of the link it moves.
+    """
+
+    __slots__ = ("body", "index")
+
+    def __init__(self, body: Body, index: int) -> None:
+        self.body: Body = body
+        self.index: int = index
+
+    def __repr__(self) -> str:
+        return f"<Joint {self.index} {self.name!r} of {self.body.name!r}: {self.type.value}>"
+
+    @property
+    def spec(self) -> LinkSpec:
+        """What the file says about the joint and the link it moves."""
+        return self.body.spec.links[self.index]
+
+    @property
+    def name(self) -> str:
+        """Its name in the file."""
+        return self.spec.joint_name
+
+    @property
+    def type(self) -> JointType:
+        """How it moves."""
+        return self.spec.joint_type
+
+    @property
+    def axis(self) -> Vector3:
+        """Unit axis in the frame of the link it moves."""
+        return self.spec.joint_axis
+
+    @property
+    def parent(self) -> Link:
+        """The link that carries it; the base is link -1."""
+        return self.body.links[self.spec.parent]
+
+    @property
+    def child(self) -> Link:
+        """The link it moves."""
+        return self.body.links[self.index]
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """0 for a fixed joint, 3 for a spherical or planar one, 1 for the others."""
+        return self.body.velocity_count[self.index]
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Least and greatest position that are enforced now; -inf and inf where there is no limit."""
+        spec, dynamics = self.spec, self.body.dynamics(self.index)
+        limits = (dynamics.joint_lower_limit, dynamics.joint_upper_limit)
+        # A file can state limits that do not count, those of a continuous joint for example.
+        only_stated = not spec.limited and limits == (spec.lower, spec.upper)
+        return (-np.inf, np.inf) if only_stated or limits[0] > limits[1] else limits
+
+    @property
+    def effort_limit(self) -> float:
+        """Greatest force of the drive according to the file; inf where it states none."""
+        return self.spec.effort or np.inf
+
+    @property
+    def damping(self) -> float:
+        """Viscous damping [N m s/rad or N s/m]."""
+        return self.body.dynamics(self.index).joint_damping
+
+    # State
+
+    @property
+    def position(self) -> float:
+        """Present position."""
+        self._require_one_freedom()
+        return float(world_of(self.body).position[self.body.position_index[self.index]])
+
+    @property
+    def velocity(self) -> float:
+        """Present velocity."""
+        return float(world_of(self.body).velocity[self._dof])
+
+    @property
+    def coordinates(self) -> Array:
+        """All position coordinates, shape (0,), (1,), or (4,) for the quaternion of a spherical joint."""
+        first, count = self.body.position_index[self.index], self.body.position_count[self.index]
+        return world_of(self.body).position[first : first + count].copy()
+
+    @property
+    def rates(self) -> Array:
+        """All velocity coordinates, shape (0,), (1,), or (3,)."""
+        return world_of(self.body).velocity[self._dofs].copy()
+
+    def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
+        """Place the joint without simulating the way there; its motor keeps its target.
+
+        Args:
+            position: As many numbers as `coordinates` has; a quaternion is normalised.
+            velocity: As many numbers as `rates` has, or one for all.
+
+        Raises:
+            ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
+        """
+        world_of(self.body)  # refuses joints of a body that is gone
+        position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
+        if self.type is JointType.SPHERICAL and not position.any():
+            raise ValueError("position must be a quaternion other than 0")
+        velocity = np.broadcast_to(finite(velocity, "velocity"), self.degrees_of_freedom)
+        self.body.set_joint_state(self.index, position.tolist(), velocity.tolist())
+
+    # Drive
+
+    def set_position_target(
+        self,
+        target: float,
+        *,
+        gain: float = 0.1,
+        velocity: float = 0.0,
+        velocity_gain: float = 1.0,
+        max_force: float | None = None,
+        max_velocity: float = np.inf,
+    ) -> None:
+        """Let the motor move the joint to a position and hold it there.
+
+        In every substep it aims for a velocity that takes away the share `gain` of the position error
+        and the share `velocity_gain` of the velocity error, with at most `max_force`.
+
+        Args:
+            target: Where to go, clipped to the limits.
+            gain: Share of the position error per substep, in general within 0 ... 1.
+            velocity: Velocity to arrive with.
+            velocity_gain: Share of the velocity error per substep.
+            max_force: Greatest force; `effort_limit` by default.
+            max_velocity: Greatest velocity the motor asks for.
+        """
+        target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
+        world = world_of(self.body)
+        joint_motor.aim_at_position(
+            world.motor,
+            self._one_dof,
+            world.parameters.substep_time,
+            target,
+            velocity,
+            gain,
+            velocity_gain,
+            self._force(max_force),
+            max_velocity,
+        )
+
+    def set_velocity_target(
+        self, target: float, *, gain: float = 1.0, max_force: float | None = None
+    ) -> None:
+        """Let the motor keep a velocity.
+
+        Args:
+            target: The velocity.
+            gain: Share of the velocity error taken away per substep.
+            max_force: Greatest force; `effort_limit` by default.
+        """
+        world = world_of(self.body)
+        joint_motor.aim_at_velocity(
+            world.motor,
+            self._one_dof,
+            world.parameters.substep_time,
+            target,
+            gain,
+            self._force(max_force),
+        )
+
+    def set_spring(
+        self,
+        target: float,
+        *,
+        stiffness: float,
+        damping: float,
+        velocity: float = 0.0,
+        max_force: float | None = None,
+    ) -> None:
+        """Pull the joint with a spring and a damper, beside its motor, which is not switched off.
+
+        Args:
+            target: Rest position of the spring.
+            stiffness: [N m/rad or N/m].
+            damping: [N m s/rad or N s/m]. The force is explicit: too much for the inertia is unstable.
+            velocity: Velocity at which the damper rests.
+            max_force: Greatest force; `effort_limit` by default.
+        """
+        joint_motor.pull_like_a_spring(
+            world_of(self.body).pd,
+            self._one_dof,
+            target,
+            velocity,
+            stiffness,
+            damping,
+            self._force(max_force),
+        )
+
+    def set_orientation_target(
+        self,
+        target: ArrayLike,
+        *,
+        gain: float = 0.1,
+        damping: float = 1.0,
+        max_force: float | None = None,
+    ) -> None:
+        """Let the motor turn a spherical joint to an orientation of the child in the parent.
+
+        Args:
+            target: Quaternion (x, y, z, w); normalised here.
+            gain: Share of the error per substep.
+            damping: Share of the angular velocity taken away per substep.
+            max_force: Greatest torque about each axis; `effort_limit` by default.
+        """
+        if self.type is not JointType.SPHERICAL:
+            raise ValueError(f"joint {self.name!r} is {self.type.value}, not spherical")
+        quaternion = vector(target, 4, "target")
+        length = np.linalg.norm(quaternion)
+        if length == 0.0:
+            raise ValueError("target must be a quaternion other than 0")
+        world = world_of(self.body)
+        joint_motor.aim_at_orientation(
+            world.motor,
+            self._dofs,
+            world.parameters.substep_time,
+            quaternion / length,
+            gain,
+            damping,
+            self._force(max_force),
+        )
+
+    def set_torque(self, torque: ArrayLike) -> None:
+        """Push with a force or torque during the next step, instead of any set for it before.
+
+        The motor is not switched off; see `disable_motor`.
+        """
+        torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
+        world_of(self.body).joint_torque[self._dofs] = torque
+
+    def disable_motor(self) -> None:
+        """Let go of the joint: its motor, with which every joint starts, and its spring stop acting."""
+        world = world_of(self.body)
+        joint_motor.switch_off(world.motor, world.pd, self._dofs)
+
+    @property
+    def motor_torque(self) -> float:
+        """Force of the motor in the last substep."""
+        world = world_of(self.body)
+        return float(world.motor_impulse[self._dof] / world.parameters.substep_time)
+
+    # Force-torque sensor
+
+    def enable_sensor(self, enabled: bool = True) -> None:
+        """Switch the force-torque sensor on or off; it reads 0 until the step after."""
+        world_of(self.body)  # refuses joints of a body that is gone
+        self.body.set_sensor(self.index, enabled)
+
+    @property
+    def reaction(self) -> Array:
+        """Force [N] and torque [N m] the sensor felt in the last substep, shape (6,).
+
+        In the inertial frame of the child link, unless `EngineParameters.joint_feedback_mode` says
+        otherwise.
+        """
+        return world_of(self.body).joint_reaction[self.body.first_link + 1 + self.index].copy()
+
+    # Rows in the world's arrays
+
+    @property
+    def _dofs(self) -> slice:
+        first, count = self.body.velocity_index[self.index], self.body.velocity_count[self.index]
+        return slice(first, first + count) if count else slice(0, 0)
+
+    @property
+    def _one_dof(self) -> slice:
+        self._require_one_freedom()
+        return self._dofs
+
+    @property
+    def _dof(self) -> int:
+        return self._one_dof.start
+
+    def _require_one_freedom(self) -> None:
+        count = self.degrees_of_freedom
+        if count != 1:
+            raise ValueError(
+                f"joint {self.name!r} is {self.type.value}: it has {count} degrees of freedom, not one"
+            )
+
+    def _force(self, max_force: float | None) -> float:
+        return self.effort_limit if max_force is None else max_force
+
+
+class Joints(Named[Joint]):
+    """All joints of a body: `joints["elbow"]`, `joints[3]`, and arrays over the movable ones.
+
+    Arrays follow the order of the joints and leave out fixed ones. Those of position coordinates
+    have four entries for a spherical joint, those of velocity coordinates three.
+    """
+
+    def __init__(self, body: Body) -> None:
+        super().__init__("joint", [Joint(body, index) for index in range(body.joint_count)])
+        self._body = body
+        self._movable = [joint for joint in self if joint.degrees_of_freedom]
+
+    def _repr_html_(self) -> str:
+        """A table of them, for notebooks."""
+        from carom.scene.html_tables import joints_table
+
+        return joints_table(self, f"Joints of {self._body.name}")
+
+    @property
+    def movable(self) -> list[Joint]:
+        """The joints that are not fixed: what the arrays are about."""
+        return self._movable.copy()
+
+    @property
+    def positions(self) -> Array:
+        """Position coordinates of all movable joints."""
+        first, count = self._body.first_position + BASE_POSITIONS, sum(self._body.position_count)
+        return world_of(self._body).position[first : first + count].copy()
+
+    @property
+    def velocities(self) -> Array:
+        """Velocity coordinates of all movable joints."""
+        return world_of(self._body).velocity[self._dofs].copy()
+
+    @property
+    def motor_torques(self) -> Array:
+        """Forces of the motors in the last substep, one for each velocity coordinate."""
+        world = world_of(self._body)
+        return world.motor_impulse[self._dofs] / world.parameters.substep_time
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Least and greatest positions of the movable joints; -inf and inf where there is no limit."""
+        lower, upper = zip(*(joint.limits for joint in self._movable), strict=True)
+        return np.array(lower), np.array(upper)
+
+    @property
+    def effort_limits(self) -> Array:
+        """Greatest forces of the drives according to the file; inf where it states none."""
+        return np.array([joint.effort_limit for joint in self._movable])
+
+    def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
+        """Place all movable joints without simulating the way there; motors keep their targets.
+
+        Args:
+            positions: As many numbers as `positions` has.
+            velocities: As many numbers as `velocities` has, or one for all.
+        """
+        positions = vector(positions, sum(self._body.position_count), "positions")
+        dof_count = sum(self._body.velocity_count)
+        velocities = np.broadcast_to(finite(velocities, "velocities"), dof_count)
+        q = u = 0
+        for joint in self._movable:
+            q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
+            joint.reset(positions[q:q_end], velocities[u:u_end])
+            q, u = q_end, u_end
+
+    def set_position_targets(
+        self,
+        targets: ArrayLike,
+        *,
+        gains: ArrayLike = 0.1,
+        velocities: ArrayLike = 0.0,
+        velocity_gains: ArrayLike = 1.0,
+        max_forces: ArrayLike | None = None,
+        max_velocities: ArrayLike = np.inf,
+    ) -> None:
+        """`Joint.set_position_target` for all movable joints; scalars are for all of them.
+
+        Raises:
+            ValueError: A joint has more than one degree of freedom, or an argument does not fit.
+        """
+        world = world_of(self._body)
+        joint_motor.aim_at_position(
+            world.motor,
+            self._one_dof_each,
+            world.parameters.substep_time,
+            np.clip(self._each(targets, "targets"), *self.limits),
+            self._each(velocities, "velocities"),
+            self._each(gains, "gains"),
+            self._each(velocity_gains, "velocity_gains"),
+            self._each(self._forces(max_forces), "max_forces"),
+            self._each(max_velocities, "max_velocities"),
+        )
+
+    def set_velocity_targets(
+        self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
+    ) -> None:
+        """`Joint.set_velocity_target` for all movable joints; scalars are for all of them."""
+        world = world_of(self._body)
+        joint_motor.aim_at_velocity(
+            world.motor,
+            self._one_dof_each,
+            world.parameters.substep_time,
+            self._each(targets, "targets"),
+            self._each(gains, "gains"),
+            self._each(self._forces(max_forces), "max_forces"),
+        )
+
+    def set_torques(self, torques: ArrayLike) -> None:
+        """`Joint.set_torque` for all movable joints."""
+        torques = self._each(finite(torques, "torques"), "torques")
+        world_of(self._body).joint_torque[self._dofs] = torques
+
+    def disable_motors(self) -> None:
+        """`Joint.disable_motor` for all joints."""
+        world = world_of(self._body)
+        joint_motor.switch_off(world.motor, world.pd, self._dofs)
+
+    @property
+    def _dofs(self) -> slice:
+        first = self._body.first_velocity + BASE_VELOCITIES
+        return slice(first, first + sum(self._body.velocity_count))
+
+    @property
+    def _one_dof_each(self) -> slice:
+        for joint in self._movable:
+            joint._require_one_freedom()
+        return self._dofs
+
+    def _each(self, value: ArrayLike, name: str) -> Array:
+        """One number for each velocity coordinate; the message of an error names the joints."""
+        try:
+            return one_or_each(value, sum(self._body.velocity_count), name)
+        except ValueError as problem:
+            names = ", ".join(joint.name for joint in self._movable)
+            raise ValueError(f"{problem}; the movable joints of {self._body.name!r} are {names}") from None
+
+    def _forces(self, max_forces: ArrayLike | None) -> ArrayLike:
+        return self.effort_limits if max_forces is None else max_forces

@@ -1,0 +1,237 @@
+"""The joint constraints of a world, in the order in which the solver visits them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.description import JointType
+from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT, ConstraintKind, JointCode
+from carom.model.builder import WorldArrays
+from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
+from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.user_constraints import UserConstraint
+
+
+@dataclass(slots=True, eq=False)
+class JointConstraint:
+    """A motor or a limit on one joint, or a constraint that users created.
+
+    Attributes:
+        body: The body it acts on.
+        joint: Index of the joint.
+        kind: What it does.
+        lower: Lower limit; swing range about x of a spherical joint [rad or m].
+        upper: Upper limit; swing range about y of a spherical joint [rad or m].
+        twist: Twist range of a spherical joint [rad].
+        user: The constraint users created, if it is one.
+        max_impulse: Greatest impulse of a limit per substep.
+    """
+
+    body: Body
+    joint: int
+    kind: ConstraintKind
+    lower: float = 0.0
+    upper: float = 0.0
+    twist: float = 0.0
+    user: UserConstraint | None = None
+    max_impulse: float = DEFAULT_LIMIT_IMPULSE
+
+    @property
+    def moving_body(self) -> Body:
+        """The body, or where that cannot move, the other one of a user constraint."""
+        other = None if self.user is None else self.user.child
+        return other if other is not None and not any(moving_links(self.body)) else self.body
+
+
+class JointConstraints:
+    """All motors and limits of a world.
+
+    Attributes:
+        all: They and the constraints of users, in an order that matters: the solver's follows from it.
+        tags: The links of the bodies, in an order that matters likewise.
+    """
+
+    def __init__(self) -> None:
+        self.all: list[JointConstraint] = []
+        self.tags: IslandTags = IslandTags()
+
+    def add_body(self, body: Body) -> None:
+        """Append the limits, then the motors, of a new body."""
+        self.tags.add(body.id, moving_links(body))
+        for joint, link in enumerate(body.spec.links):
+            if link.joint_type == JointType.SPHERICAL:
+                if link.lower > 0.0 and link.upper > 0.0 and link.twist > 0.0 and link.effort > 0.0:
+                    self.all.append(
+                        JointConstraint(
+                            body,
+                            joint,
+                            ConstraintKind.SPHERICAL_LIMIT,
+                            link.lower,
+                            link.upper,
+                            link.twist,
+                            max_impulse=link.effort,
+                        )
+                    )
+            elif link.limited:
+                self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper))
+        for joint, code in enumerate(body.joint_types):
+            if code in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+                self.all.append(JointConstraint(body, joint, ConstraintKind.MOTOR))
+            elif code == JointCode.SPHERICAL:
+                self.all.append(JointConstraint(body, joint, ConstraintKind.SPHERICAL_MOTOR))
+
+    def way_back(self) -> Callable[[], None]:
+        """What takes away all that is added from now on."""
+        constraints, count = self.all, len(self.all)
+        forget_links = self.tags.way_back()
+
+        def go_back() -> None:
+            del constraints[count:]
+            self.all = constraints
+            forget_links()
+
+        return go_back
+
+    def removal(self, body: Body) -> Callable[[], None]:
+        """Make ready to remove the constraints of a body, the last first.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        kept = self.all.copy()
+        for constraint in reversed(self.all):
+            if constraint.body is body or (constraint.user is not None and constraint.user.child is body):
+                remove_unordered(kept, constraint)
+        forget_links = self.tags.removal(body.id, 1 + body.joint_count)
+
+        def remove() -> None:
+            self.all = kept
+            forget_links()
+
+        return remove
+
+    def set_limit(self, body: Body, joint: int, lower: float, upper: float) -> None:
+        """Set, add or (with lower > upper) remove the limit of a joint."""
+        limit = self.limit_of(body, joint)
+        if lower > upper:
+            if limit is not None:
+                self.all = self._all_but(limit)
+        elif limit is None:
+            self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
+        else:
+            limit.lower, limit.upper = lower, upper
+
+    def add_user(self, user: UserConstraint) -> None:
+        """Append a constraint that a user creates."""
+        self.all.append(JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user))
+
+    def user_removal(self, user: UserConstraint) -> Callable[[], None]:
+        """Make ready to remove a constraint that a user created; what is returned can be called again."""
+        return partial(setattr, self, "all", self._all_but(next(c for c in self.all if c.user is user)))
+
+    def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
+        kept = self.all.copy()
+        remove_unordered(kept, constraint)
+        return kept
+
+    def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
+        """Constraints that can act, and the island of each.
+
+        A constraint between two bodies makes their islands one; one between two fixed bodies does
+        nothing.
+        """
+        tags = self.tags.tags()
+        above = {tag: tag for tag in tags.values()}
+
+        def root(tag: int) -> int:
+            while above[tag] != tag:
+                tag = above[tag]
+            return tag
+
+        for constraint in self.all:
+            user = constraint.user
+            if (
+                user is not None
+                and user.child is not None
+                and user.child.id in tags
+                and user.parent.id in tags
+            ):
+                parent, child = root(tags[user.parent.id]), root(tags[user.child.id])
+                above[parent] = child
+        active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
+        return active, [root(tags[constraint.moving_body.id]) for constraint in active]
+
+    def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
+        """The limit of a revolute or prismatic joint, if it has one."""
+        for constraint in self.all:
+            if (
+                constraint.body is body
+                and constraint.joint == joint
+                and constraint.kind == ConstraintKind.LIMIT
+            ):
+                return constraint
+        return None
+
+    def base_freedom_changed(self, body: Body) -> None:
+        """Number the islands anew after the base of a body was freed or held."""
+        self.tags.move_base_to_end(body.id, moving_links(body))
+
+    def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> None:
+        """Write the sorted constraints, and which trees are solved together, to the model.
+
+        Args:
+            arrays: Where to.
+            user_rows: Row of each user constraint, by number.
+            minimum_island_size: Islands are solved together until they have more constraints.
+        """
+        constraints, keys = self._by_island()
+        order = quicksort_order(keys)
+        islands = batch_islands([keys[i] for i in order], minimum_island_size)
+        ordered = [constraints[i] for i in order]
+        users = [constraint.user for constraint in ordered if constraint.user is not None]
+        arrays.used["constraint"] = arrays.used["row"] = 0
+        count = len(ordered)
+        arrays.reserve(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
+        arrays.used.update(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
+        model = arrays.model.numpy
+        trees = [constraint.moving_body.rows.tree for constraint in ordered]
+        model["constraint_kind"][:count] = [constraint.kind for constraint in ordered]
+        model["constraint_tree"][:count] = trees
+        model["constraint_link"][:count] = [
+            constraint.body.first_link + 1 + constraint.joint
+            if constraint.user is None
+            else user_rows[constraint.user.id]
+            for constraint in ordered
+        ]
+        for name in ("lower", "upper", "twist", "max_impulse"):
+            model[f"constraint_{name}"][:, :count] = [getattr(constraint, name) for constraint in ordered]
+
+        tree_count = arrays.used["tree"]
+        model["tree_constraint_count"][:tree_count] = np.bincount(
+            [*trees, *(user.child.rows.tree for user in users if user.child is not None)],
+            minlength=tree_count,
+        )
+        model["tree_batch"][:tree_count] = np.arange(tree_count)
+        model["tree_batch_constraints"][:tree_count] = 0
+        for first, length in islands:
+            batch = trees[first : first + length]
+            root = min(batch)
+            model["tree_batch"][batch] = root
+            model["tree_first_constraint"][root] = first
+            model["tree_batch_constraints"][root] = length
+
+
+def moving_links(body: Body) -> list[bool]:
+    """Which links, base first, are not rigidly tied to a fixed base."""
+    moving = [not body.fixed_base]
+    for link, code in zip(body.spec.links, body.joint_types, strict=True):
+        moving.append(moving[link.parent + 1] or code != JointCode.FIXED)
+    return moving

@@ -1,0 +1,201 @@
+"""Links of a body: where they are, how they move, what pushes them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, vector
+from carom.description.pose import Pose, Vector3
+from carom.description.transform import compose, inverse, rotate
+from carom.model.body_spec import BASE
+from carom.scene.handles import world_of
+from carom.scene.named import Named
+
+if TYPE_CHECKING:
+    from carom.model.body_spec import LinkSpec
+    from carom.scene.body import Body
+    from carom.scene.joint import Joint
+
+Frame = Literal["world", "link"]
+
+
+class LinkPose(NamedTuple):
+    """Where a frame is in the world.
+
+    Attributes:
+        position: Its origin [m], shape (3,).
+        orientation: Unit quaternion (x, y, z, w), shape (4,).
+    """
+
+    position: Array
+    orientation: Array
+
+
+class LinkVelocity(NamedTuple):
+    """How a link moves, in world axes.
+
+    Attributes:
+        linear: Velocity of its centre of mass [m/s], shape (3,).
+        angular: Angular velocity [rad/s], shape (3,).
+    """
+
+    linear: Array
+    angular: Array
+
+
+class Link:
+    """One rigid part of a body.
+
+    Attributes:
+        body: The body it belongs to.
+        index: Its number, also that of the joint that moves it; the base is -1.
+    """
+
+    __slots__ = ("body", "index")
+
+    def __init__(self, body: Body, index: int) -> None:
+        self.body: Body = body
+        self.index: int = index
+
+    def __repr__(self) -> str:
+        return f"<Link {self.index} {self.name!r} of {self.body.name!r}>"
+
+    @property
+    def spec(self) -> LinkSpec:
+        """What the file says about the link."""
+        return self.body.link_spec(self.index)
+
+    @property
+    def name(self) -> str:
+        """Its name in the file."""
+        return self.spec.name
+
+    @property
+    def joint(self) -> Joint | None:
+        """The joint that moves it; None for the base."""
+        return None if self.index == BASE else self.body.joints[self.index]
+
+    @property
+    def parent(self) -> Link | None:
+        """The link that carries it; None for the base."""
+        return None if self.index == BASE else self.body.links[self.spec.parent]
+
+    @property
+    def mass(self) -> float:
+        """Present mass [kg]; 0 for a fixed base."""
+        return self.body.dynamics(self.index).mass
+
+    @property
+    def inertia(self) -> Array:
+        """Present principal moments of inertia [kg m²] about the axes of the inertial frame, shape (3,)."""
+        return np.array(self.body.dynamics(self.index).inertia)
+
+    @property
+    def inertial_frame(self) -> Pose:
+        """Centre of mass and principal axes in the link frame."""
+        return self.spec.inertial_frame
+
+    # State
+
+    @property
+    def pose(self) -> LinkPose:
+        """World pose of the link frame, the one the file speaks of."""
+        return _as_arrays(self._link_frame())
+
+    @property
+    def inertial_pose(self) -> LinkPose:
+        """World pose of the inertial frame: centre of mass and principal axes."""
+        return _as_arrays(self._inertial_frame())
+
+    @property
+    def velocity(self) -> LinkVelocity:
+        """Velocity of the centre of mass and angular velocity, in world axes."""
+        world = world_of(self.body)
+        self.body.update_link_poses()
+        self.body.update_link_velocities()
+        row = world.link_velocity[self._row]
+        return LinkVelocity(row[:3].copy(), row[3:].copy())
+
+    # Forces
+
+    def apply_force(
+        self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
+    ) -> None:
+        """Push the link during the next step, in addition to what else pushes it.
+
+        Args:
+            force: [N], shape (3,).
+            point: Where it acts [m], shape (3,); the centre of mass by default.
+            frame: Both are given in the world, or both in the link frame.
+
+        Raises:
+            ValueError: A vector is not three finite numbers, or the frame is unknown.
+        """
+        centre = np.array(self._inertial_frame().position)
+        world_force = self._in_world(vector(force, 3, "force"), frame)
+        arm = np.zeros(3)
+        if point is not None:
+            place = vector(point, 3, "point")
+            if frame == "link":
+                place = np.array(compose(self._link_frame(), Pose(_triple(place))).position)
+            arm = place - centre
+        wrench = world_of(self.body).link_force[self._row]
+        wrench[:3] += world_force
+        wrench[3:] += np.cross(arm, world_force)
+
+    def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
+        """Twist the link during the next step, in addition to what else twists it.
+
+        Args:
+            torque: [N m], shape (3,).
+            frame: Axes it is given in: those of the world or of the link frame.
+
+        Raises:
+            ValueError: It is not three finite numbers, or the frame is unknown.
+        """
+        world_of(self.body).link_force[self._row, 3:] += self._in_world(vector(torque, 3, "torque"), frame)
+
+    @property
+    def _row(self) -> int:
+        return self.body.first_link + 1 + self.index
+
+    def _inertial_frame(self) -> Pose:
+        world = world_of(self.body)
+        # After a step the rows of the poses are those of its start.
+        self.body.update_link_poses()
+        x, y, z, qx, qy, qz, qw = world.link_pose[self._row].tolist()
+        return Pose((x, y, z), (qx, qy, qz, qw))
+
+    def _link_frame(self) -> Pose:
+        return compose(self._inertial_frame(), inverse(self.inertial_frame))
+
+    def _in_world(self, direction: Array, frame: Frame) -> Array:
+        if frame == "world":
+            return direction
+        if frame == "link":
+            return np.array(rotate(self._link_frame().orientation, _triple(direction)))
+        raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
+
+
+class Links(Named[Link]):
+    """All links of a body: `links["hand"]`, `links[3]`; the base is `links[-1]`."""
+
+    def __init__(self, body: Body) -> None:
+        super().__init__("link", [Link(body, index) for index in range(BASE, body.joint_count)], first=BASE)
+
+    @property
+    def base(self) -> Link:
+        """The root link."""
+        return self[BASE]
+
+
+def _as_arrays(pose: Pose) -> LinkPose:
+    return LinkPose(np.array(pose.position), np.array(pose.orientation))
+
+
+def _triple(array: Array) -> Vector3:
+    x, y, z = array.tolist()
+    return (x, y, z)

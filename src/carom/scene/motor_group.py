@@ -1,0 +1,133 @@
+"""Setting the motors of several joints at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from struct import Struct
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.motor_commands import (
+    FORCES,
+    KDS,
+    KPS,
+    POSITION,
+    POSITIONS,
+    TORQUE,
+    VELOCITIES,
+    VELOCITY,
+    MotorCommands,
+)
+from carom.layouts.types import NUMPY_REAL
+from carom.native.kernels import command_motors_kernel
+from carom.native.launch import Launch
+from carom.native.tables import ArrayTable
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+
+_TYPE_CODE = np.dtype(NUMPY_REAL).char
+_MODES = (VELOCITY, TORQUE, POSITION)
+
+
+class MotorGroup:
+    """Revolute and prismatic joints of a world, in any order.
+
+    It is of use until bodies come or go.
+
+    Args:
+        world: The world.
+        dofs: Rows of their velocities.
+        bounds: Least and greatest target position of each.
+        force: Of motors for which none is stated [N or N m].
+        kp: Gain likewise.
+        kd: Gain likewise.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        dofs: Sequence[int],
+        bounds: Sequence[tuple[float, float]],
+        force: float,
+        kp: float,
+        kd: float,
+    ) -> None:
+        count = len(dofs)
+        commands = ArrayTable(MotorCommands)
+        commands.reserve({"joint": count})
+        arrays = commands.numpy
+        arrays["joint_dof"][:count] = dofs
+        arrays["joint_lower"][:count], arrays["joint_upper"][:count] = np.array(bounds).T
+        pack = Struct(f"{count}{_TYPE_CODE}").pack_into
+        self._put_positions, self._put_velocities, self._put_forces, self._put_kps, self._put_kds = (
+            partial(pack, commands.bytes_of(f"joint_{name}"), 0)
+            for name in ("position", "velocity", "force", "kp", "kd")
+        )
+        self._refused: memoryview[int] = arrays["joint_refused"].data
+        defaults = (NUMPY_REAL(force), NUMPY_REAL(kp), NUMPY_REAL(kd))
+        state = world.arrays.state.struct()
+        asked = (VELOCITY, 0, NUMPY_REAL(0.0))
+        self._launch = Launch(
+            command_motors_kernel,
+            1,
+            [state, commands.struct(), 0, count, *defaults, *asked],
+        )
+        self._run: Callable[[], None] = self._launch.brief_function
+        indices = command_motors_kernel.indices
+        self._places = [indices[name] for name in ("mode", "given", "time_step")]
+        self._asked: tuple[float, ...] = ()
+
+    def command(
+        self,
+        mode: int,
+        time_step: float,
+        positions: Iterable[float] | None = None,
+        velocities: Iterable[float] | None = None,
+        forces: Iterable[float] | None = None,
+        kps: Iterable[float] | None = None,
+        kds: Iterable[float] | None = None,
+    ) -> None:
+        """Set the motors by one number for each joint, or by the default numbers where there is None.
+
+        Args:
+            mode: `VELOCITY`, `TORQUE` or `POSITION` of `carom.layouts.motor_commands`.
+            time_step: Of a step [s].
+            positions: Targets [rad or m], taken to the nearest bound when they are beyond; 0 by default.
+            velocities: Targets [rad/s or m/s]; 0 by default.
+            forces: Greatest forces of the motors, or torques [N m or N].
+            kps: Gains.
+            kds: Gains.
+
+        Raises:
+            ValueError: The mode is none of these, or something given is not finite; nothing is set.
+            struct.error: Something given is not a number for each joint; nothing is set.
+        """
+        if mode not in _MODES:
+            raise ValueError("there is no such mode")
+        given = 0
+        if positions is not None:
+            self._put_positions(*positions)
+            given = POSITIONS
+        if velocities is not None:
+            self._put_velocities(*velocities)
+            given |= VELOCITIES
+        if forces is not None:
+            self._put_forces(*forces)
+            given |= FORCES
+        if kps is not None:
+            self._put_kps(*kps)
+            given |= KPS
+        if kds is not None:
+            self._put_kds(*kds)
+            given |= KDS
+        asked = (mode, given, time_step)
+        if asked != self._asked:
+            for place, value in zip(self._places, asked, strict=True):
+                self._launch.replace(place, value)
+            self._asked = asked
+        self._run()
+        if self._refused[0]:
+            raise ValueError("a number is not finite")

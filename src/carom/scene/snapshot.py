@@ -1,0 +1,233 @@
+"""The state of a world at one moment, to go back to.
+
+What a step starts from is all here, contacts and the impulses they remember included, so a world that
+goes back to a snapshot then moves exactly, to the last bit, as it did after the snapshot was taken. What
+bodies are made of, constraints, gravity and the other parameters are not state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.errors import StateError
+from carom.layouts.codes import BASE_VELOCITIES
+from carom.layouts.contacts import THERE
+
+if TYPE_CHECKING:
+    from carom.native.tables import ArrayTable
+    from carom.world.world import World
+
+# Axes of what is not the state of bodies: what became of the last step, impulses of user constraints.
+_NOT_OF_BODIES = ("status", "user")
+# Axis of the contacts themselves.
+_CONTACT = "contact"
+# Drives of joints; the rows of bases mean nothing.
+_DRIVES = ("dof_motor", "dof_pd")
+
+
+@dataclass(frozen=True, slots=True)
+class BodyLayout:
+    """What has to be the same of a body so that a state fits it.
+
+    Attributes:
+        id: Its number.
+        links: Number of links, the base included.
+        positions: Number of position coordinates.
+        dofs: Number of velocity coordinates.
+        shapes: Number of shapes it collides with.
+    """
+
+    id: int
+    links: int
+    positions: int
+    dofs: int
+    shapes: int
+
+    def __str__(self) -> str:
+        joints, freedoms = self.links - 1, self.dofs - BASE_VELOCITIES
+        return f"{joints} joints with {freedoms} freedoms"
+
+    def moves_like(self, other: BodyLayout) -> bool:
+        """Both have equally many links and coordinates."""
+        return (self.links, self.positions, self.dofs) == (other.links, other.positions, other.dofs)
+
+
+@dataclass(slots=True)
+class Snapshot:
+    """A state; get one from `World.snapshot`.
+
+    Attributes:
+        layout: The bodies it is the state of.
+        time: Simulated time [s].
+        unspent_time: Part of it that no substep has covered yet [s].
+        state: Fields of `State` by name, without the world axis: the rows in use; of drives, those of
+            joints only.
+        contacts: Fields of `Contacts`, likewise.
+        user_impulses: Impulses of the user constraints, (constraints, 6).
+    """
+
+    layout: Layout
+    time: float
+    unspent_time: float
+    state: dict[str, np.ndarray] = field(default_factory=dict)
+    contacts: dict[str, np.ndarray] = field(default_factory=dict)
+    user_impulses: np.ndarray = field(default_factory=lambda: np.zeros((0, 6)))
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Which bodies a world has, in the order of their rows.
+
+    Attributes:
+        bodies: What each is like.
+        joint_dofs: Rows of the velocity coordinates that are not those of bases.
+    """
+
+    bodies: tuple[BodyLayout, ...]
+    joint_dofs: np.ndarray = field(compare=False)
+
+    @classmethod
+    def of(cls, bodies: tuple[BodyLayout, ...]) -> Layout:
+        """The layout of some bodies."""
+        counts = np.array([body.dofs for body in bodies], dtype=int)
+        rows = np.arange(counts.sum())
+        last = np.repeat(np.cumsum(counts), counts)
+        within = rows - last + np.repeat(counts, counts)
+        return cls(bodies, rows[within >= BASE_VELOCITIES])
+
+
+def layout(world: World) -> Layout:
+    """The layout of a world as it is."""
+    shape_count = world.touch.shapes.table.numpy["link_shape_count"]
+    bodies = []
+    for body in world.bodies.values():
+        rows = body.rows
+        first, links = rows.first["link"], rows.count["link"]
+        shapes = int(shape_count[first : first + links].sum())
+        bodies.append(BodyLayout(body.id, links, rows.count["position"], rows.count["dof"], shapes))
+    return Layout.of(tuple(bodies))
+
+
+def take(world: World, layout: Layout) -> Snapshot:
+    """The state of a world of that layout."""
+    snapshot = Snapshot(layout, world.time, world.unspent_time)
+    snapshot.state = {
+        name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy()
+        for name, rows in _rows(world.arrays.state, world.arrays.used)
+    }
+    islands = snapshot.state["tree_island"]
+    if islands.size and islands.max() >= len(islands):
+        # Those of the last step, since which a body has gone. The next step makes others.
+        islands[:] = np.arange(len(islands))
+    snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, world.touch.contact_count)}
+    snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][0, : world.touch.user_count].copy()
+    return snapshot
+
+
+def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], None]:
+    """Make ready to give a world the state of a snapshot.
+
+    Contacts are forgotten, and found again at the next step, where bodies have other shapes now or have
+    been removed and loaded in another order.
+
+    Args:
+        world: The world.
+        layout: Its layout.
+        snapshot: The state.
+
+    Returns:
+        What does it. It can be called again, after it was broken off.
+
+    Raises:
+        StateError: The world has other bodies.
+    """
+    same = layout == snapshot.layout
+    if not same:
+        snapshot = _reordered(snapshot, layout)
+    elif world.touch.contacts.reserve({_CONTACT: int(snapshot.contacts["count_contacts"][THERE])}):
+        world.scene_changed()
+
+    def put_back() -> None:
+        _write(world, snapshot)
+        if same:
+            _write_contacts(world, snapshot)
+        else:
+            world.touch.forget_contacts()
+        impulses = world.arrays.state.numpy["user_impulse"][0]
+        if len(snapshot.user_impulses) == world.touch.user_count:
+            impulses[: world.touch.user_count] = snapshot.user_impulses
+        world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
+        if snapshot.state["tree_activity"].any():
+            world.scene_changed()
+
+    return put_back
+
+
+def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
+    """Fields of the state and their rows in use, of the one world there is."""
+    for name, array in table.numpy.items():
+        axis = name.partition("_")[0]
+        if axis not in _NOT_OF_BODIES:
+            yield name, array[0, : used[axis]]
+
+
+def _contact_rows(world: World, count: int) -> Iterator[tuple[str, np.ndarray]]:
+    for name, array in world.touch.contacts.numpy.items():
+        yield name, array[0, :count] if name.startswith(_CONTACT) else array[0]
+
+
+def _write(world: World, snapshot: Snapshot) -> None:
+    for name, rows in _rows(world.arrays.state, world.arrays.used):
+        rows[snapshot.layout.joint_dofs if name in _DRIVES else slice(None)] = snapshot.state[name]
+
+
+def _write_contacts(world: World, snapshot: Snapshot) -> None:
+    count = int(snapshot.contacts["count_contacts"][THERE])
+    for name, rows in _contact_rows(world, count):
+        rows[:] = snapshot.contacts[name]
+
+
+def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
+    """The snapshot with its rows in the order of another layout."""
+    check_same(snapshot.layout, layout)
+    was, bodies = snapshot.layout.bodies, layout.bodies
+    place = {body.id: index for index, body in enumerate(was)}
+    counts = {
+        "tree": [1] * len(was),
+        "link": [body.links for body in was],
+        "position": [body.positions for body in was],
+        "dof": [body.dofs for body in was],
+        _DRIVES: [body.dofs - BASE_VELOCITIES for body in was],
+    }
+    order: dict[Any, np.ndarray] = {}
+    for axis, lengths in counts.items():
+        runs = np.split(np.arange(sum(lengths)), np.cumsum(lengths)[:-1])
+        order[axis] = np.concatenate([runs[place[body.id]] for body in bodies])
+    state = {
+        name: rows[order[_DRIVES if name in _DRIVES else name.partition("_")[0]]]
+        for name, rows in snapshot.state.items()
+    }
+    # An island has the number of a tree's row, and those have changed.
+    state["tree_island"] = np.arange(len(bodies), dtype=np.int32)
+    return Snapshot(layout, snapshot.time, snapshot.unspent_time, state)
+
+
+def check_same(saved: Layout, present: Layout) -> None:
+    """See that bodies are those of a saved state.
+
+    Raises:
+        StateError: They are not.
+    """
+    before = {body.id: body for body in saved.bodies}
+    now = {body.id: body for body in present.bodies}
+    for number in sorted(before.keys() | now.keys()):
+        if number not in now:
+            raise StateError(f"body {number} has been removed since the state was saved")
+        if number not in before:
+            raise StateError(f"body {number} was not there when the state was saved")
+        if not before[number].moves_like(now[number]):
+            raise StateError(f"body {number} has {now[number]}; it had {before[number]}")

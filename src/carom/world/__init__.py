@@ -1,0 +1,1 @@
+"""The world: loading, steps, states, logs."""

@@ -1,0 +1,44 @@
+"""A second world that is like a first."""
+
+from __future__ import annotations
+
+from copy import copy, deepcopy
+from typing import TYPE_CHECKING, Any
+
+from carom.render.appearance import copy_appearance
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+# What a body computes when it is asked for, for the world it is in.
+_COMPUTED = ("joints", "links")
+
+
+def copy_world(world: World) -> World:
+    """See `World.copy`."""
+    other = type(world)()
+    # What bodies were loaded from is never changed, and shared.
+    memo: dict[int, Any] = {id(world): other}
+    memo.update((id(body.spec), body.spec) for body in world.bodies.values())
+    other.parameters = deepcopy(world.parameters)
+    other.bodies = {number: _copy_body(body, other, memo) for number, body in world.bodies.items()}
+    other._take_arrays(deepcopy(world.arrays, memo), deepcopy(world.touch, memo))
+    other.constraints = deepcopy(world.constraints, memo)
+    other.user_constraints = deepcopy(world.user_constraints, memo)
+    other.user_data = deepcopy(world.user_data, memo)
+    other.free_ids, other.next_id = world.free_ids.copy(), world.next_id
+    other.time, other.unspent_time = world.time, world.unspent_time
+    copy_appearance(world, other)
+    return other
+
+
+def _copy_body(body: Body, world: World, memo: dict[int, Any]) -> Body:
+    other = memo[id(body)] = copy(body)
+    for name in _COMPUTED:
+        other.__dict__.pop(name, None)
+    other.world = world
+    other.rows = deepcopy(body.rows, memo)
+    other.derived = {}
+    other._dynamics = deepcopy(body._dynamics, memo)
+    return other

@@ -1,0 +1,116 @@
+"""Bodies of a world from the files that describe robots: URDF, SDF and MJCF."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Pose
+from carom.model.body_spec import BodySpec
+from carom.scene.body import Body
+
+if TYPE_CHECKING:
+    from carom.formats.search import AssetSearch
+
+
+class DescriptionLoading(ABC):
+    """What a world that can add a body can load; readers of files are imported when they are needed."""
+
+    @abstractmethod
+    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
+        """Add a body at rest."""
+
+    @abstractmethod
+    def _add_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+    ) -> list[Body]:
+        """Add bodies at rest, all or none."""
+
+    def load_urdf(
+        self,
+        path: str | Path,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+        *,
+        fixed_base: bool = False,
+        scale: float = 1.0,
+        flags: int = 0,
+    ) -> Body:
+        """Add the robot a URDF file describes.
+
+        Args:
+            path: The file; one that comes with `pybullet_data` is found by its name.
+            position: Of the base's link frame [m].
+            orientation: Of the base's link frame, quaternion (x, y, z, w).
+            fixed_base: Hold the base where it is.
+            scale: Factor on all lengths.
+            flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.model.from_files import urdf_body
+
+        spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
+        return self._add(spec, position, orientation)
+
+    def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
+        """Add the models an SDF file describes, where it puts them.
+
+        Args:
+            path: The file; one that comes with `pybullet_data` is found by its name.
+            scale: Factor on lengths.
+
+        Returns:
+            Their bodies, in the order of the file.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.model.from_files import sdf_bodies
+
+        return self.load_all(sdf_bodies(Path(path), _search(), scale=scale))
+
+    def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
+        """Add the bodies an MJCF file describes, where it puts them.
+
+        Args:
+            path: The file; one that comes with `pybullet_data` is found by its name.
+            flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
+
+        Returns:
+            The bodies, in the order of the file.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.model.from_files import mjcf_bodies
+
+        return self.load_all(mjcf_bodies(Path(path), _search(), flags=flags))
+
+    def load_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None
+    ) -> list[Body]:
+        """Add bodies at rest, all or none.
+
+        Args:
+            bodies: What they are, and the world pose of the link frame of their base.
+            also: Is told of the new bodies; if it raises an exception they are taken out again.
+
+        Raises:
+            carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
+        """
+        from carom.model.from_files import make_shapes
+
+        make_shapes(bodies)
+        return self._add_all(bodies, also)
+
+
+def _search() -> AssetSearch:
+    """Files are looked for as named, and then among those that come with `pybullet_data`."""
+    from carom.formats.search import AssetSearch
+    from carom.formats.shipped import shipped_folder
+
+    return AssetSearch(shipped_folder())

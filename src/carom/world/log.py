@@ -1,0 +1,114 @@
+"""Logs of the state: what a world was like after each step, as NumPy arrays."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+import numpy as np
+
+from carom.errors import StateError
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+
+_FIRST_ROOM = 256
+
+
+class Observer(Protocol):
+    """What `World.observers` holds: something that is told of every step."""
+
+    def before_step(self) -> None:
+        """A step is about to be made."""
+        ...
+
+    def after_step(self) -> None:
+        """It has been made."""
+        ...
+
+
+@runtime_checkable
+class SubstepObserver(Protocol):
+    """What `World.watch_substeps` takes: something that is told of every substep."""
+
+    def after_substep(self) -> None:
+        """A substep has been made, or a step that has no substeps."""
+        ...
+
+    def step_repeated(self) -> None:
+        """The step is made again from its beginning, since something did not fit into its arrays."""
+        ...
+
+
+class Log:
+    """What a world was like after each step; get one from `World.log`.
+
+    It is a context manager, and stops when the context is left. `log["position"]` is an array with a
+    row for each recorded step, `log["time"]` the times [s].
+
+    Args:
+        world: The world.
+        names: State arrays of the world, such as `position`.
+        every: Record every so many steps.
+    """
+
+    def __init__(self, world: World, names: tuple[str, ...], every: int) -> None:
+        self._world = world
+        self._every = every
+        self._steps = 0
+        self._count = 0
+        self._rows = {name: self._room(getattr(world, name), _FIRST_ROOM) for name in names}
+        self._rows["time"] = np.empty(_FIRST_ROOM)
+        world.observers.append(self)
+
+    @staticmethod
+    def _room(like: np.ndarray, length: int) -> np.ndarray:
+        return np.empty((length, *like.shape), dtype=like.dtype)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The recorded rows of an array, the first step first; a copy.
+
+        Raises:
+            KeyError: It is not recorded.
+        """
+        return self._rows[name][: self._count].copy()
+
+    def __enter__(self) -> Log:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def stop(self) -> None:
+        """Record no more; what has been recorded stays."""
+        if self in self._world.observers:
+            self._world.observers.remove(self)
+
+    def before_step(self) -> None:
+        """Nothing: a log is of what came out."""
+
+    def after_step(self) -> None:
+        """Record the state.
+
+        Raises:
+            StateError: Bodies have come or gone, so the arrays mean something else now.
+        """
+        self._steps += 1
+        if self._steps % self._every:
+            return
+        if self._count == len(self._rows["time"]):
+            self._rows = {
+                name: np.concatenate((rows, np.empty_like(rows))) for name, rows in self._rows.items()
+            }
+        for name, rows in self._rows.items():
+            value = self._world.time if name == "time" else getattr(self._world, name)
+            if np.shape(value) != rows.shape[1:]:
+                self.stop()
+                raise StateError("bodies have come or gone while the log was kept; it has been stopped")
+            rows[self._count] = value
+        self._count += 1

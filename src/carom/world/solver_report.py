@@ -1,0 +1,30 @@
+"""What the solver did."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from carom.scene.joint_constraints import moving_links
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+
+def solver_report(world: World) -> list[dict[str, float]]:
+    """The last substep as `World.analytics` reports it."""
+    state = world.arrays.state.numpy
+    bodies: dict[int, list[Body]] = {}
+    for body in world.bodies.values():
+        if body.rows.tree < world.arrays.used["tree"]:
+            bodies.setdefault(int(state["tree_island"][0, body.rows.tree]), []).append(body)
+    return [
+        {
+            "islandId": root,
+            "numBodies": sum(sum(moving_links(body)) for body in members if not body.is_asleep),
+            "numIterationsUsed": int(state["tree_iterations"][0, root]),
+            "remainingResidual": float(state["tree_residual"][0, root]),
+        }
+        for root, members in sorted(bodies.items())
+        if state["tree_iterations"][0, root]
+    ]

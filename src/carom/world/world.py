@@ -1,0 +1,554 @@
+"""A world: bodies, gravity and time, and the flat arrays that hold their state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import overload
+
+import numpy as np
+
+from carom.checks import vector
+from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.engine.engine import Engine
+from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.engine.touch_arrays import TouchArrays
+from carom.errors import SimulationError
+from carom.layouts.codes import UserConstraintKind
+from carom.layouts.status import STATUS, WELL
+from carom.model.body_spec import BodySpec
+from carom.model.builder import WorldArrays
+from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
+from carom.native.launch import KernelStructs, TreeLaunch
+from carom.native.tables import ArrayTable
+from carom.native.undo import Undo
+from carom.queries.present_poses import PresentPoses
+from carom.queries.queries import Queries
+from carom.scene.body import Body
+from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
+from carom.scene.faults import cause_in
+from carom.scene.joint_constraints import JointConstraints
+from carom.scene.snapshot import Layout, Snapshot, layout, return_to, take
+from carom.scene.state_views import VIEWS, StateViews
+from carom.scene.user_constraints import UserConstraint, UserConstraints
+from carom.scene.user_data import UserData
+from carom.world.loading import DescriptionLoading
+from carom.world.log import Log, Observer, SubstepObserver
+from carom.world.recordable import Recordable
+from carom.world.solver_report import solver_report
+
+
+@dataclass(slots=True)
+class Derived:
+    """What follows from the bodies, constraints and arrays of a world, once somebody has asked for it."""
+
+    step: Callable[[], None] | None = None
+    queries: Queries | None = None
+    present_poses: PresentPoses | None = None
+    pose_launch: TreeLaunch | None = None
+    twist_launch: TreeLaunch | None = None
+    layout: Layout | None = None
+    link_places: list[tuple[int, int]] | None = None
+    link_columns: tuple[list[int], list[int]] | None = None
+
+
+class World(DescriptionLoading, Recordable, StateViews):
+    """Bodies that move under gravity, motors and limits.
+
+    The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
+    of the state, and `position_memory` and so on the same memory as flat `memoryview` of doubles.
+    They may be replaced when bodies are added or removed.
+
+    Attributes:
+        parameters: Parameters of the engine; call `apply_parameters` after a change.
+        bodies: The bodies by their numbers, in the order they were added.
+        time: Simulated time [s].
+        user_data: Texts attached to bodies.
+        undo: What makes the world whole again, should a change of it be broken off.
+        observers: What is told of every step, such as logs.
+
+    Args:
+        time_step: Duration of one step [s].
+    """
+
+    def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
+        self.parameters: EngineParameters = EngineParameters(time_step=time_step)
+        self.bodies: dict[int, Body] = {}
+        self.time: float = 0.0
+        self.observers: list[Observer] = []
+        self._substep_observers: list[SubstepObserver] = []
+        self.unspent_time: float = 0.0
+        self._viewed: ArrayTable | None = None
+        self._replacements = 0
+        self.undo: Undo = Undo()
+        self._start_empty()
+
+    def _start_empty(self) -> None:
+        arrays = WorldArrays()
+        self._take_arrays(arrays, TouchArrays(arrays))
+        self.bodies.clear()
+        self.constraints: JointConstraints = JointConstraints()
+        self.user_constraints: UserConstraints = UserConstraints()
+        self.user_data: UserData = UserData()
+        self.free_ids: list[int] = []
+        self.next_id: int = 0
+        self.unspent_time = 0.0
+
+    def _take_arrays(self, arrays: WorldArrays, touch: TouchArrays) -> None:
+        self.arrays: WorldArrays = arrays
+        self.touch: TouchArrays = touch
+        self.engine: Engine = Engine(arrays, touch)
+        self._status: memoryview[int] = memoryview(self.engine.status[0])
+        self._growths = 0
+        self.scene_changed()
+
+    def __enter__(self) -> World:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.undo.at_once(self._start_empty)
+
+    # Bodies
+
+    @overload
+    def load(
+        self, what: BodySpec, position: Sequence[float] = ..., orientation: Sequence[float] = ...
+    ) -> Body: ...
+    @overload
+    def load(self, what: str | Path) -> list[Body]: ...
+    def load(
+        self,
+        what: BodySpec | str | Path,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+    ) -> Body | list[Body]:
+        """Add a body at rest, or all bodies of a world that was saved by `save`.
+
+        A world without bodies becomes the one that was saved, parameters and time included, and goes on
+        exactly as that one did. To any other the bodies are added as they were, with what ties them.
+
+        Args:
+            what: The body, or the file.
+            position: Of the base's link frame [m]; bodies of a file are where they were.
+            orientation: Of the base's link frame, quaternion (x, y, z, w).
+
+        Returns:
+            The body's handle, or those of the file's bodies. The number a body gets is that of the body
+            removed last, if any.
+
+        Raises:
+            carom.errors.DescriptionError: The file, or that of a mesh, cannot be used; the world is as
+                before.
+        """
+        if not isinstance(what, BodySpec):
+            from carom.world.file_parts import PARTS
+            from carom.world_files.world_file import load_world
+
+            return load_world(self, Path(what), PARTS)
+        return self._add(what, position, orientation)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything there is to a file: bodies, meshes, constraints, parameters, looks, state.
+
+        Raises:
+            OSError: The file cannot be written; one that was there is as it was.
+        """
+        from carom.world.file_parts import PARTS
+        from carom.world_files.world_file import save_world
+
+        save_world(self, Path(path), PARTS)
+
+    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
+        """Add a body at rest."""
+        px, py, pz = vector(position, 3, "position").tolist()
+        qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
+        return add_bodies(self, [(spec, Pose((px, py, pz), (qx, qy, qz, qw)))])[0]
+
+    def _add_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+    ) -> list[Body]:
+        return add_bodies(self, bodies, also)
+
+    def remove(self, body_id: int) -> None:
+        """Take a body out of the world.
+
+        Raises:
+            KeyError: There is no such body.
+        """
+        remove_body(self, self.bodies[body_id])
+
+    def reset(self, also: Callable[[], None] | None = None) -> None:
+        """Remove all bodies and set all parameters back, but for the time step and the substeps.
+
+        Args:
+            also: What else belongs to it, and is done even if it is broken off; it may be called again.
+        """
+        kept = self.parameters
+        parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
+
+        def start() -> None:
+            self.parameters = parameters
+            self._start_empty()
+            if also is not None:
+                also()
+
+        self.undo.settle()
+        self.undo.at_once(start)
+
+    def copy(self) -> World:
+        """A world of its own with the same bodies, that goes on exactly as this one does.
+
+        Handles of bodies are found in `bodies` under their numbers. Observers and logs are not copied.
+        """
+        from carom.world.copying import copy_world
+
+        return copy_world(self)
+
+    def tie(
+        self,
+        kind: UserConstraintKind,
+        parent: Body,
+        parent_link: int,
+        child: Body | None,
+        child_link: int,
+        *,
+        axis: Vector3 = (0.0, 0.0, 0.0),
+        parent_frame: Pose = IDENTITY,
+        child_frame: Pose = IDENTITY,
+        hidden: bool = False,
+    ) -> UserConstraint:
+        """Tie a link to another, or to the world; see `UserConstraint` for the arguments.
+
+        A hidden constraint is not among `user_constraints.all`.
+        """
+        places = (parent, parent_link, child, child_link)
+        frames = (axis, parent_frame, child_frame)
+        return tie(self, lambda: self.user_constraints.add(kind, *places, *frames, hidden=hidden))
+
+    def untie(self, constraint: UserConstraint) -> None:
+        """Remove a constraint made by `tie`."""
+        untie(self, constraint)
+
+    def set_base_freedom(self, body: Body, *, free: bool) -> None:
+        """Let the base of a body move, or hold it where it is."""
+        free_base(self, body, free=free)
+
+    # State
+
+    @property
+    def link_places(self) -> list[tuple[int, int]]:
+        """Body and link, -1 for the base, that each row of the link arrays stands for."""
+        if self._derived.link_places is None:
+            bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
+            self._derived.link_places = [
+                (body.id, link) for body in bodies for link in range(-1, body.joint_count)
+            ]
+        return self._derived.link_places
+
+    @property
+    def link_columns(self) -> tuple[list[int], list[int]]:
+        """The bodies and the links of `link_places`, and -1 for row -1, which stands for none."""
+        if self._derived.link_columns is None:
+            places = [*self.link_places, (-1, -1)]
+            self._derived.link_columns = [body for body, _ in places], [link for _, link in places]
+        return self._derived.link_columns
+
+    @property
+    def _layout(self) -> Layout:
+        if self._derived.layout is None:
+            self._derived.layout = layout(self)
+        return self._derived.layout
+
+    def snapshot(self) -> Snapshot:
+        """The present state, to come back to by `restore` as often as needed.
+
+        It holds positions and velocities, motors, applied forces, contacts and time; not what bodies
+        are made of, constraints, gravity and the other parameters.
+        """
+        return take(self, self._layout)
+
+    def restore(self, state: Snapshot | str | Path) -> None:
+        """Go back to a state. What follows is then the same, to the last bit, as it was the first time.
+
+        Args:
+            state: The state, or a file of `save`, of which only the state is read.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as it was.
+            carom.errors.StateError: Bodies have come or gone, or one has other joints than it had; the
+                world is as it was. A body that was removed and loaded again under its number is no
+                hindrance, but contacts are then found anew.
+        """
+        if not isinstance(state, Snapshot):
+            from carom.world_files.world_file import restore_world
+
+            restore_world(self, Path(state))
+            return
+        self.undo.settle()
+        with self.undo:
+            self.undo.note(self.scene_changed)
+            self.undo.at_once(return_to(self, self._layout, state))
+
+    def log(self, *names: str, every: int = 1) -> Log:
+        """Record state arrays after each step, until the log is stopped.
+
+        Args:
+            *names: Which ones: `position`, `velocity`, `link_pose`, `motor_impulse`... All rows of the
+                world are recorded; those of a body start at its `first_position` and so on.
+            every: Record every so many steps.
+
+        Raises:
+            ValueError: There is no such array, or `every` is less than 1.
+        """
+        unknown = [name for name in names if name not in VIEWS]
+        if unknown or every < 1:
+            raise ValueError(f"there is no array {unknown[0]!r}" if unknown else f"every is {every}")
+        return Log(self, names, every)
+
+    # Parameters
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """Gravity in world axes [m/s²], shape (3,)."""
+        return np.array(self.parameters.gravity)
+
+    @gravity.setter
+    def gravity(self, value: Sequence[float]) -> None:
+        x, y, z = vector(value, 3, "gravity").tolist()
+        self.parameters.gravity = (x, y, z)
+        self.apply_parameters()
+
+    def apply_parameters(self) -> None:
+        """Make changes of `parameters` take effect."""
+        shapes, breaking = self.touch.shapes, self.parameters.contact_breaking_threshold
+        if breaking != shapes.breaking_fraction or self._structure() != self._made_for:
+            shapes.set_breaking_fraction(breaking)
+            self.scene_changed()
+        elif self._derived.step is not None:
+            self.engine.update_settings(self.parameters)
+
+    def scene_changed(self) -> None:
+        """Bring everything up to date before it is used again: bodies, constraints or arrays have changed."""
+        self._derived = Derived()
+        self._made_for: tuple[int, int] | None = None
+        self.engine.changed()
+        if self.arrays.state is not self._viewed or self.arrays.state.replacements != self._replacements:
+            self.view(self.arrays.state)
+            self._viewed, self._replacements = self.arrays.state, self.arrays.state.replacements
+
+    # Time
+
+    def step(self, count: int = 1) -> None:
+        """Advance the world by `count` time steps.
+
+        Raises:
+            carom.errors.SimulationError: A velocity came out as NaN or infinite; all coordinates are as
+                they were before that step. The forces applied for it, motor impulses, sensor readings
+                and contacts are gone.
+        """
+        try:
+            for _ in range(count):
+                self._step()
+        except BaseException:
+            # Ctrl-C may come when arrays have grown and launches do not know yet.
+            self.scene_changed()
+            raise
+
+    def _step(self) -> None:
+        if self.observers:
+            for observer in self.observers:
+                observer.before_step()
+        (self._derived.step or self._prepare_step())()
+        if self._status[STATUS]:
+            self._look_into_status()
+        if self._substep_observers:
+            self._tell_of_substep()
+        self.time += self.parameters.time_step
+        if self.observers:
+            for observer in self.observers.copy():
+                observer.after_step()
+
+    def watch_substeps(self, observer: SubstepObserver) -> None:
+        """From now on tell an observer of every substep."""
+        self._substep_observers.append(observer)
+        self.scene_changed()
+
+    def unwatch_substeps(self, observer: SubstepObserver) -> None:
+        """Tell an observer no more, if it is told of substeps."""
+        if observer in self._substep_observers:
+            self._substep_observers.remove(observer)
+            self.scene_changed()
+
+    def profile(self, count: int = 100) -> dict[str, float]:
+        """Advance the world by `count` time steps, as `step` does, and say where the time goes.
+
+        The step is cut into more launches than usual for it, so the sum is a little more than a step
+        takes otherwise. The first call compiles these.
+
+        Returns:
+            Seconds per step by stage: "link poses", "broad phase" (pairs of shapes whose bounds meet),
+            "narrow phase" (their contacts), "islands" (groups of bodies that touch or are tied
+            together), "free motion" (kinematics, mass matrices, velocities without constraints),
+            "constraints" (rows of motors, limits, constraints and contacts, and their solution) and
+            "integration".
+
+        Raises:
+            carom.errors.SimulationError: As from `step`.
+        """
+        from carom.world.profile import Profile
+
+        self.prepare()
+        try:
+            with Profile(self.engine) as profile:
+                self._derived.step = self._step_staged
+                self.step(count)
+        finally:
+            self.scene_changed()
+        return {stage: seconds / count for stage, seconds in profile.seconds.items()}
+
+    def _step_staged(self) -> None:
+        self.engine.step([self._substeps_due()])
+
+    def _look_into_status(self) -> None:
+        """Step again with more room, if there was not enough; complain of what is not finite."""
+        self.engine.recover()
+        self._renew_after_growth()
+        if self._status[STATUS]:
+            self._raise_fault()
+
+    def _renew_after_growth(self) -> None:
+        if self.engine.growths != self._growths:
+            self._growths = self.engine.growths
+            self.scene_changed()
+
+    def _raise_fault(self) -> None:
+        """Throw away what the failed step left besides the coordinates, and say which body it was."""
+        tree = self._status[STATUS] - 1
+        body = next(body for body in self.bodies.values() if body.rows.tree == tree)
+        cause = cause_in(body)
+        self.joint_reaction[:] = 0.0
+        self.motor_impulse[:] = 0.0
+        self.touch.forget_contacts()
+        for other in self.bodies.values():
+            other.update_link_poses()
+        raise SimulationError(
+            f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
+            f"the world is as it was before the step{cause and f': {cause}'}"
+        )
+
+    def prepare(self) -> None:
+        """Bring the arrays of the engine up to date with the bodies, constraints and parameters there are.
+
+        Steps do it by themselves; whoever copies the arrays wants it done before.
+        """
+        if self._derived.step is None:
+            self._prepare_step()
+
+    def _prepare_step(self) -> Callable[[], None]:
+        """Write constraints and settings to the arrays; returns what performs a step."""
+        self.undo.settle()
+        self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
+        self.user_constraints.write(self.touch)
+        self._derived.queries = None
+        self._made_for = self._structure()
+        self.engine.update_settings(self.parameters)
+        in_substeps = self.parameters.substeps > 1
+        self.engine.prepare(watched=in_substeps and bool(self._substep_observers))
+        if in_substeps:
+            step = self._step_in_substeps
+        else:
+            self.unspent_time = 0.0
+            step = self.engine.run_prepared
+        self._derived.step = step
+        return step
+
+    def _step_in_substeps(self) -> None:
+        """One step in substeps, of each of which observers are told."""
+        due = self._substeps_due()
+        if not self._substep_observers:
+            self.engine.step([due])
+            return
+        rounds = max(1, due)
+        substep = 0
+        while substep < rounds and self._status[STATUS] <= WELL:
+            if self.engine.substep(due, substep):
+                substep += 1
+                if substep < rounds and self._status[STATUS] == WELL:
+                    self._tell_of_substep()
+                continue
+            for observer in self._substep_observers:
+                observer.step_repeated()
+            substep = 0
+
+    def _tell_of_substep(self) -> None:
+        for observer in self._substep_observers:
+            observer.after_substep()
+
+    def _substeps_due(self) -> int:
+        """Substeps of the next step."""
+        due, self.unspent_time = self.parameters.substeps_due(self.unspent_time)
+        return due
+
+    def detect_collisions(self) -> None:
+        """Find all contacts for the present coordinates, without a step."""
+        self.prepare()
+        if self.engine.can_touch:
+            self.engine.detect()
+            self._renew_after_growth()
+
+    def queries(self) -> Queries:
+        """Rays, nearest points and overlaps for the present coordinates."""
+        if self._derived.queries is None:
+            self._derived.queries = Queries(
+                self._kernel_structs(),
+                self.position_memory,
+                self.link_places,
+                self.present_poses,
+                self.touch,
+                self.engine.workspace.pairs,
+            )
+        return self._derived.queries
+
+    def _structure(self) -> tuple[int, int]:
+        """The parameters that decide which launches a step consists of."""
+        return self.parameters.substeps, self.parameters.minimum_island_size
+
+    def _kernel_structs(self) -> KernelStructs:
+        """Structs over the present arrays, by the name kernels give them."""
+        self.undo.settle()
+        self.engine.update_settings(self.parameters)
+        return self.engine.structs()
+
+    def analytics(self) -> list[dict[str, float]]:
+        """What the solver did in the last substep, for each group of bodies solved together.
+
+        Returns:
+            Dictionaries with `islandId`, `numBodies` (links), `numIterationsUsed` and
+            `remainingResidual` (greatest squared change of a row's velocity in the last sweep).
+        """
+        return solver_report(self)
+
+    # Poses
+
+    def present_poses(self) -> PresentPoses:
+        """A context in which `link_pose` is up to date with the coordinates of all bodies."""
+        if self._derived.present_poses is None:
+            poses = self.arrays.state.bytes_of("link_pose")
+            self._derived.present_poses = PresentPoses(poses, self._kernel_structs())
+        return self._derived.present_poses
+
+    def update_link_poses(self, body: Body) -> None:
+        """Bring `link_pose` up to date with the coordinates of a body."""
+        if self._derived.pose_launch is None:
+            self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
+        self._derived.pose_launch(body.rows.tree)
+
+    def update_link_velocities(self, body: Body) -> None:
+        """Fill `link_velocity` for the present coordinates of a body."""
+        if self._derived.twist_launch is None:
+            self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
+        self._derived.twist_launch(body.rows.tree)

@@ -1,0 +1,254 @@
+"""Values of the document of a saved world: numbers, texts, arrays, files, and dataclasses of them.
+
+What is written is told by its type, and what is read by the type that is expected, field by field; nothing
+in a file names code. A dataclass is an object of its fields with the name of the class under `is`, an
+enumeration its value, an array `{"array": type, "shape": [...], "at": offset}` and a path the number of an
+embedded file (`carom.world_files.files`).
+"""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable
+from dataclasses import MISSING, fields, is_dataclass
+from enum import Enum
+from functools import cache
+from math import isnan
+from pathlib import Path
+from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import DescriptionError
+from carom.world_files.container import Blocks
+from carom.world_files.files import FileTable
+
+T = TypeVar("T")
+
+_CLASS = "is"
+_ARRAY_TYPES = ("<f8", "<f4", "<i4", "|u1", "|b1")
+_LARGEST = 2**63
+
+
+class Writer:
+    """Turns values into parts of a document.
+
+    Attributes:
+        blocks: The bytes it refers to.
+        files: The files it refers to.
+    """
+
+    def __init__(self) -> None:
+        self.blocks: Blocks = Blocks()
+        self.files: FileTable = FileTable(self.blocks)
+        self._arrays: dict[int, tuple[np.ndarray, dict[str, Any]]] = {}
+
+    def write(self, value: Any) -> Any:
+        """What stands for a value in the document."""
+        if isinstance(value, Enum):
+            return value.value
+        if value is None or isinstance(value, (bool, int, float, str)):
+            return value
+        if isinstance(value, np.ndarray):
+            return self._array(value)
+        if isinstance(value, Path):
+            return self.files.add(value)
+        if isinstance(value, (list, tuple)):
+            return [self.write(item) for item in value]
+        if isinstance(value, dict):
+            return {str(key): self.write(item) for key, item in value.items()}
+        assert is_dataclass(value), f"{type(value)} cannot be saved"
+        record = {field.name: self.write(getattr(value, field.name)) for field in fields(value)}
+        return {_CLASS: type(value).__name__, **record}
+
+    def _array(self, array: np.ndarray) -> dict[str, Any]:
+        # The array is kept so that no other one gets its identity.
+        known = self._arrays.get(id(array))
+        if known is None:
+            data = np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<"), copy=False)
+            record = {
+                "array": data.dtype.str,
+                "shape": list(data.shape),
+                "at": self.blocks.add(data.tobytes()),
+            }
+            known = self._arrays[id(array)] = (array, record)
+        return known[1]
+
+
+class Reader:
+    """Turns parts of a document into values of the types that are expected.
+
+    Args:
+        file: Where the document is from.
+        blocks: The bytes it refers to.
+        files: Paths of the embedded files by their numbers.
+    """
+
+    def __init__(self, file: Path, blocks: memoryview, files: list[Path]) -> None:
+        self._file = file
+        self._blocks = blocks
+        self._files = files
+
+    def fail(self, where: str, reason: str) -> DescriptionError:
+        """The error that a part of the document is wrong."""
+        return DescriptionError(f"{where} {reason}", file=self._file)
+
+    def read(self, hint: Any, data: Any, where: str) -> Any:
+        """A value.
+
+        Args:
+            hint: Its type.
+            data: What stands for it.
+            where: Its place in the document, for errors.
+
+        Raises:
+            DescriptionError: It is not of that type.
+        """
+        if get_origin(hint) in (Union, types.UnionType):
+            return self._one_of(get_args(hint), data, where)
+        if get_origin(hint) is np.ndarray:
+            return self.array(data, np.dtype(get_args(get_args(hint)[1])[0]), None, where)
+        if get_origin(hint) in _CONTAINERS:
+            return _CONTAINERS[get_origin(hint)](self, get_args(hint), data, where)
+        if hint in _SCALARS:
+            return _SCALARS[hint](self, data, where)
+        if issubclass(hint, Enum):
+            try:
+                return hint(data)
+            except (ValueError, TypeError):
+                raise self.fail(where, f"is no {hint.__name__}") from None
+        return self.record(hint, data, where)
+
+    def record(self, cls: type[T], data: Any, where: str) -> T:
+        """A dataclass; a field that has a default may be missing, as in files of earlier versions."""
+        if not isinstance(data, dict) or data.get(_CLASS) != cls.__name__:
+            raise self.fail(where, f"is no {cls.__name__}")
+        hints = _hints(cls)
+        given = data.keys() - {_CLASS}
+        if not _required(cls) <= given <= hints.keys():
+            raise self.fail(where, f"does not have the fields of a {cls.__name__}")
+        return cls(**{name: self.read(hints[name], data[name], f"{where}.{name}") for name in given})
+
+    def array(
+        self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
+    ) -> np.ndarray:
+        """An array.
+
+        Args:
+            data: What stands for it.
+            dtype: Type of its entries.
+            shape: Its shape; None for lengths that do not matter, or for all of them.
+            where: Its place in the document.
+
+        Raises:
+            DescriptionError: It has another type or shape, or holds NaN.
+        """
+        if not isinstance(data, dict) or data.keys() != {"array", "shape", "at"}:
+            raise self.fail(where, "is no array")
+        sizes = self.read(list[int], data["shape"], f"{where}.shape")
+        at = self.read(int, data["at"], f"{where}.at")
+        if data["array"] not in _ARRAY_TYPES or np.dtype(data["array"]) != dtype:
+            raise self.fail(where, f"has entries of type {data['array']!r} instead of {dtype.str!r}")
+        wanted = [None] * len(sizes) if shape is None else list(shape)
+        if len(wanted) != len(sizes) or any(w not in (None, s) for w, s in zip(wanted, sizes, strict=True)):
+            raise self.fail(where, f"has shape {sizes}, which does not fit")
+        count = 1
+        for size in sizes:
+            count *= size
+        if min(sizes, default=0) < 0 or at < 0 or at + count * dtype.itemsize > len(self._blocks):
+            raise self.fail(where, "lies outside the file")
+        array = np.frombuffer(self._blocks, dtype, count, at).reshape(sizes).copy()
+        if dtype.kind == "f" and np.isnan(array).any():
+            raise self.fail(where, "holds NaN")
+        return array
+
+    def _one_of(self, hints: tuple[Any, ...], data: Any, where: str) -> Any:
+        if data is None and type(None) in hints:
+            return None
+        hints = tuple(hint for hint in hints if hint is not type(None))
+        if len(hints) == 1:
+            return self.read(hints[0], data, where)
+        name = data.get(_CLASS) if isinstance(data, dict) else None
+        for hint in hints:
+            if hint.__name__ == name:
+                return self.record(hint, data, where)
+        raise self.fail(where, f"is none of {', '.join(hint.__name__ for hint in hints)}")
+
+    def _number(self, data: Any, where: str) -> float:
+        if isinstance(data, bool) or not isinstance(data, (int, float)) or isnan(data):
+            raise self.fail(where, "is no number")
+        try:
+            return float(data)
+        except OverflowError:
+            raise self.fail(where, "is too large") from None
+
+    def _integer(self, data: Any, where: str) -> int:
+        if isinstance(data, bool) or not isinstance(data, int) or not -_LARGEST <= data < _LARGEST:
+            raise self.fail(where, "is no integer")
+        return data
+
+    def _flag(self, data: Any, where: str) -> bool:
+        if not isinstance(data, (bool, int)):
+            raise self.fail(where, "is neither true nor false")
+        return bool(data)
+
+    def _text(self, data: Any, where: str) -> str:
+        if not isinstance(data, str):
+            raise self.fail(where, "is no text")
+        return data
+
+    def _path(self, data: Any, where: str) -> Path:
+        number = self._integer(data, where)
+        if not 0 <= number < len(self._files):
+            raise self.fail(where, "is no file of this file")
+        return self._files[number]
+
+    def items(self, data: Any, where: str) -> list[tuple[str, Any]]:
+        """The items of a list, each with its place in the document."""
+        if not isinstance(data, list):
+            raise self.fail(where, "is no list")
+        return [(f"{where}[{place}]", item) for place, item in enumerate(data)]
+
+    def _list(self, hints: tuple[Any, ...], data: Any, where: str) -> list[Any]:
+        return [self.read(hints[0], item, place) for place, item in self.items(data, where)]
+
+    def _tuple(self, hints: tuple[Any, ...], data: Any, where: str) -> tuple[Any, ...]:
+        items = self.items(data, where)
+        if hints[-1] is Ellipsis:
+            hints = (hints[0],) * len(items)
+        if len(hints) != len(items):
+            raise self.fail(where, f"has {len(items)} items instead of {len(hints)}")
+        return tuple(self.read(hint, item, place) for hint, (place, item) in zip(hints, items, strict=True))
+
+    def _dict(self, hints: tuple[Any, ...], data: Any, where: str) -> dict[str, Any]:
+        if not isinstance(data, dict):
+            raise self.fail(where, "is no object")
+        return {key: self.read(hints[1], item, f"{where}[{key!r}]") for key, item in data.items()}
+
+
+_SCALARS: dict[Any, Callable[[Reader, Any, str], Any]] = {
+    float: Reader._number,
+    int: Reader._integer,
+    bool: Reader._flag,
+    str: Reader._text,
+    Path: Reader._path,
+}
+_CONTAINERS: dict[Any, Callable[[Reader, tuple[Any, ...], Any, str], Any]] = {
+    list: Reader._list,
+    tuple: Reader._tuple,
+    dict: Reader._dict,
+}
+
+
+@cache
+def _required(cls: Any) -> frozenset[str]:
+    """Fields of a dataclass without a default."""
+    return frozenset(field.name for field in fields(cls) if field.default is MISSING)
+
+
+@cache
+def _hints(cls: Any) -> dict[str, Any]:
+    """Types of the fields of a dataclass; those its module imports for the type checker only included."""
+    hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray})
+    return {field.name: hints[field.name] for field in fields(cls)}

@@ -1,0 +1,173 @@
+"""The state of a world in a file: its arrays, and the checks that let the engine trust them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.layouts.contacts import THERE
+from carom.scene.snapshot import BodyLayout, Layout, Snapshot, layout, return_to, take
+from carom.world_files.records import Reader
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+_ARRAYS = ("state", "contacts")
+_USER_IMPULSES = 6
+
+
+@dataclass(slots=True)
+class SavedState:
+    """A snapshot as a file has it: the numbers of its bodies are those they were saved under."""
+
+    bodies: list[BodyLayout]
+    time: float
+    unspent_time: float
+    state: dict[str, np.ndarray]
+    contacts: dict[str, np.ndarray]
+    user_impulses: np.ndarray
+
+    def snapshot(self) -> Snapshot:
+        """The same as `World.restore` takes it."""
+        return Snapshot(
+            Layout.of(tuple(self.bodies)),
+            self.time,
+            self.unspent_time,
+            self.state,
+            self.contacts,
+            self.user_impulses,
+        )
+
+
+def state_of(world: World) -> dict[str, Any]:
+    """What to write."""
+    snapshot = take(world, layout(world))
+    return {
+        "bodies": list(snapshot.layout.bodies),
+        "time": snapshot.time,
+        "unspent_time": snapshot.unspent_time,
+        "state": snapshot.state,
+        "contacts": snapshot.contacts,
+        "user_impulses": snapshot.user_impulses,
+    }
+
+
+def read_state(reader: Reader, data: Any) -> SavedState:
+    """The state in a document.
+
+    Raises:
+        carom.errors.DescriptionError: It has no state, or the arrays are not those of its bodies.
+    """
+    if not isinstance(data, dict) or data.keys() != set(SavedState.__dataclass_fields__):
+        raise reader.fail("state", "is no state")
+    bodies = reader.read(list[BodyLayout], data["bodies"], "state.bodies")
+    arrays = {part: _arrays(reader, part, data[part]) for part in _ARRAYS}
+    _check_counts(reader, bodies, arrays["state"])
+    impulses = reader.array(
+        data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
+    )
+    return SavedState(
+        bodies,
+        reader.read(float, data["time"], "state.time"),
+        reader.read(float, data["unspent_time"], "state.unspent_time"),
+        arrays["state"],
+        arrays["contacts"],
+        impulses,
+    )
+
+
+def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
+    """See that bodies have no more rows than the file has, so that counts cannot ask for any memory."""
+    for axis, counts in (
+        ("link_pose", [body.links for body in bodies]),
+        ("position", [body.positions for body in bodies]),
+        ("dof_velocity", [body.dofs for body in bodies]),
+    ):
+        if axis not in state or min(counts, default=0) < 0 or sum(counts) != len(state[axis]):
+            raise reader.fail("state.bodies", f"does not have the rows of {axis}")
+
+
+def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
+    if not isinstance(data, dict):
+        raise reader.fail(f"state.{part}", "is no object")
+    arrays = {}
+    for name, record in data.items():
+        where = f"state.{part}[{name!r}]"
+        kind = record.get("array") if isinstance(record, dict) else None
+        arrays[name] = reader.array(record, np.dtype(np.int32 if kind == "<i4" else np.float64), None, where)
+    return arrays
+
+
+def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: bool) -> None:
+    """Gives bodies that were just loaded the state they were saved with.
+
+    Args:
+        world: Their world.
+        bodies: The last of its bodies, in the order they were saved.
+        saved: The state.
+        whole: There are no others, so contacts, time and what constraints last did are theirs, too.
+
+    Raises:
+        ValueError: It is not the state of such bodies.
+    """
+    present = layout(world)
+    ours = present.bodies[len(present.bodies) - len(bodies) :]
+    if [body.id for body in bodies] != [body.id for body in ours] or len(ours) != len(saved.bodies):
+        raise ValueError("the state is that of other bodies")
+    if any(a != b if whole else not a.moves_like(b) for a, b in zip(ours, saved.bodies, strict=True)):
+        raise ValueError("the state is that of other bodies")
+    snapshot = saved.snapshot()
+    check_arrays(world, snapshot)
+    if whole:
+        return_to(world, present, snapshot)()
+        return
+    others = take(world, present)
+    for name, rows in others.state.items():
+        if not name.startswith("tree"):
+            rows[len(rows) - len(snapshot.state[name]) :] = snapshot.state[name]
+    world.touch.forget_contacts()
+    return_to(world, present, others)()
+
+
+def check_arrays(world: World, snapshot: Snapshot) -> None:
+    """See that the arrays of a snapshot from a file can be those of its bodies in this world.
+
+    Raises:
+        ValueError: They cannot.
+    """
+    bodies = snapshot.layout.bodies
+    lengths = {
+        "tree": len(bodies),
+        "link": sum(body.links for body in bodies),
+        "position": sum(body.positions for body in bodies),
+        "dof": sum(body.dofs for body in bodies),
+        "drive": len(snapshot.layout.joint_dofs),
+        "contact": int(snapshot.contacts["count_contacts"][THERE]),
+    }
+    example = take(world, layout(world))
+    for given, wanted in ((snapshot.state, example.state), (snapshot.contacts, example.contacts)):
+        if given.keys() != wanted.keys():
+            raise ValueError("an array of the state is missing or unknown")
+        for name, array in given.items():
+            axis = "drive" if name in ("dof_motor", "dof_pd") else name.partition("_")[0]
+            length = lengths.get(axis, len(wanted[name]))
+            if array.shape != (length, *wanted[name].shape[1:]) or array.dtype != wanted[name].dtype:
+                raise ValueError(f"array {name!r} has the wrong shape")
+    islands = snapshot.state["tree_island"]
+    if islands.size and not 0 <= islands.min() <= islands.max() < len(bodies):
+        raise ValueError("there is no such island")
+    _check_contacts(world, snapshot)
+
+
+def _check_contacts(world: World, snapshot: Snapshot) -> None:
+    """Contacts name two shapes and their links."""
+    shapes, links = np.hsplit(snapshot.contacts["contact_shapes"], 2)
+    if not shapes.size:
+        return
+    if shapes.min() < 0 or shapes.max() >= world.touch.shapes.shape_count:
+        raise ValueError("a contact is one of shapes that do not exist")
+    if (world.touch.shapes.table.numpy["shape_link"][shapes] != links).any():
+        raise ValueError("a contact is one of other links")

@@ -1,0 +1,441 @@
+"""Worlds as files: everything there is, from meshes to the impulses that contacts remember.
+
+`docs/world-files.md` describes the format; `carom.world_files` knows its outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.engine.parameters import EngineParameters
+from carom.errors import DescriptionError
+from carom.formats.files import read_bounded
+from carom.layouts.codes import ConstraintKind, JointCode, UserConstraintKind
+from carom.model.body_spec import BASE, BodySpec
+from carom.scene.changes import append, begin, change_base_freedom, note_additions
+from carom.scene.joint_constraints import JointConstraint
+from carom.scene.link_dynamics import LinkDynamics
+from carom.scene.snapshot import check_same, layout, return_to
+from carom.scene.user_constraints import UserConstraint
+from carom.scene.user_data import UserDatum
+from carom.version import __version__
+from carom.world_files.check import check_body, check_finite
+from carom.world_files.container import MOST_BYTES, packed, unpacked
+from carom.world_files.files import restored
+from carom.world_files.records import Reader, Writer
+from carom.world_files.saved_state import check_arrays, read_state, state_of, write_state
+from carom.world_files.writing import write_whole
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+_NONE = -1
+# Which joints a constraint can be of.
+_ONE_FREEDOM, _BALL = (JointCode.REVOLUTE, JointCode.PRISMATIC), (JointCode.SPHERICAL,)
+_JOINTS = {
+    ConstraintKind.MOTOR: _ONE_FREEDOM,
+    ConstraintKind.LIMIT: _ONE_FREEDOM,
+    ConstraintKind.SPHERICAL_MOTOR: _BALL,
+    ConstraintKind.SPHERICAL_LIMIT: _BALL,
+}
+# What reading a document that means nothing may raise on its way through the engine.
+_MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionError)
+
+
+class Part(Protocol):
+    """What a layer above the engine adds to a file."""
+
+    def save(self, world: World, writer: Writer) -> Any:
+        """What to write."""
+        ...
+
+    def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
+        """Take over what was written for these bodies."""
+        ...
+
+
+Parts = Mapping[str, Part]
+"""What is in a file beside the world itself, by name; modules with `save` and `load` will do."""
+
+
+@dataclass(slots=True)
+class SavedBody:
+    """One body; `spec` counts those of the file. Its lists have an entry for each link, the base first."""
+
+    id: int
+    spec: int
+    fixed_base: bool
+    linear_damping: float
+    angular_damping: float
+    max_velocity: float
+    can_sleep: bool
+    can_wake: bool
+    sleep_threshold: float
+    links: list[LinkDynamics]
+    groups: list[int]
+    masks: list[int]
+    sensors: list[bool]
+
+
+@dataclass(slots=True)
+class SavedConstraint:
+    """One motor, limit or user constraint, in the order of the solver's list; `user` is -1 for none."""
+
+    body: int
+    joint: int
+    kind: ConstraintKind
+    lower: float
+    upper: float
+    twist: float
+    max_impulse: float
+    user: int
+
+
+@dataclass(slots=True)
+class SavedTie:
+    """One user constraint; bodies by number, `child` -1 for the world. See `UserConstraint`."""
+
+    id: int
+    kind: UserConstraintKind
+    parent: int
+    parent_link: int
+    child: int
+    child_link: int
+    axis: Vector3
+    parent_frame: Pose
+    child_frame: Pose
+    max_impulse: float
+    max_force: float
+    gear_ratio: float
+    gear_auxiliary_link: int
+    relative_position_target: float
+    erp: float
+    enabled: bool = True
+
+
+@dataclass(slots=True)
+class SavedFilter:
+    """Two links that a user lets collide or not."""
+
+    body_a: int
+    link_a: int
+    body_b: int
+    link_b: int
+    enabled: bool
+
+
+@dataclass(slots=True)
+class SavedWorld:
+    """Everything but the state and what layers above the engine add.
+
+    Attributes:
+        carom: Version that wrote it.
+        parameters: Parameters of the engine.
+        specs: What bodies are made of; several may share one.
+        bodies: The bodies in the order of their rows.
+        free_ids: Numbers that removed bodies left, the next one last.
+        next_id: The next number that no body has had.
+        objects: Body and link, the base being 0, in the order of Bullet's list of objects.
+        constraints: All constraints in the order of the solver's list.
+        ties: The user constraints.
+        next_tie: The next number of those.
+        filters: Pairs of links with a rule.
+        user_data: Texts attached to bodies.
+    """
+
+    carom: str
+    parameters: EngineParameters
+    specs: list[BodySpec]
+    bodies: list[SavedBody]
+    free_ids: list[int]
+    next_id: int
+    objects: list[tuple[int, int]]
+    constraints: list[SavedConstraint]
+    ties: list[SavedTie]
+    next_tie: int
+    filters: list[SavedFilter]
+    user_data: list[UserDatum]
+
+
+def save_world(world: World, path: Path, parts: Parts) -> None:
+    """Write a world to a file, as `World.save` does."""
+    writer = Writer()
+    document = {
+        "world": writer.write(_saved(world)),
+        "state": writer.write(state_of(world)),
+        "parts": {name: part.save(world, writer) for name, part in parts.items()},
+    }
+    document["files"] = writer.files.records
+    write_whole(path, packed(document, writer.blocks))
+
+
+def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
+    """Add the bodies of a file to a world, as `World.load` does."""
+    return _guarded(path, lambda: _load(world, path, parts))
+
+
+def restore_world(world: World, path: Path) -> None:
+    """Give a world the state in a file, as `World.restore` does.
+
+    Raises:
+        DescriptionError: The file cannot be used; the world is as it was.
+        StateError: The world has other bodies; it is as it was.
+    """
+
+    def restore() -> None:
+        document, reader, _ = _read(path)
+        snapshot = read_state(reader, document.get("state")).snapshot()
+        check_same(snapshot.layout, layout(world))
+        check_arrays(world, snapshot)
+        world.restore(snapshot)
+
+    _guarded(path, restore)
+
+
+def _guarded(path: Path, load: Callable[[], Any]) -> Any:
+    try:
+        return load()
+    except _MEANINGLESS as problem:
+        raise DescriptionError(f"what it says makes no sense: {problem}", file=path) from problem
+
+
+def _read(path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:
+    data, _ = read_bounded(path, MOST_BYTES)
+    document, blocks = unpacked(data, path)
+    reader = Reader(path, blocks, restored(document.get("files"), blocks, path))
+    saved = reader.record(SavedWorld, document.get("world"), "world")
+    for spec in saved.specs:
+        check_body(spec)
+    for part in (saved.parameters, *saved.bodies, *saved.constraints, *saved.ties):
+        check_finite(part)
+    return document, reader, saved
+
+
+def _saved(world: World) -> SavedWorld:
+    bodies = list(world.bodies.values())
+    specs = list({id(body.spec): body.spec for body in bodies}.values())
+    places = {id(spec): place for place, spec in enumerate(specs)}
+    owners = {
+        body.first_link + link: (body.id, link - 1) for body in bodies for link in range(1 + body.joint_count)
+    }
+    return SavedWorld(
+        carom=__version__,
+        parameters=world.parameters,
+        specs=specs,
+        bodies=[_saved_body(body, places[id(body.spec)]) for body in bodies],
+        free_ids=world.free_ids,
+        next_id=world.next_id,
+        objects=cast("list[tuple[int, int]]", world.constraints.tags.links),
+        constraints=[_saved_constraint(constraint) for constraint in world.constraints.all],
+        ties=[_saved_tie(tie) for tie in world.user_constraints.all],
+        next_tie=world.user_constraints.next_id,
+        filters=[
+            SavedFilter(*owners[a], *owners[b], enabled) for a, b, enabled in world.touch.shapes.filters.all
+        ],
+        user_data=[datum for body in bodies for datum in world.user_data.of_body(body.id)],
+    )
+
+
+def _saved_body(body: Body, spec: int) -> SavedBody:
+    model = body.world.arrays.model.numpy
+    shapes = body.world.touch.shapes.table.numpy
+    tree, links = body.rows.tree, slice(body.first_link, body.first_link + 1 + body.joint_count)
+    return SavedBody(
+        body.id,
+        spec,
+        body.fixed_base,
+        float(model["tree_linear_damping"][0, tree]),
+        float(model["tree_angular_damping"][0, tree]),
+        float(model["tree_max_velocity"][0, tree]),
+        bool(model["tree_can_sleep"][tree]),
+        bool(model["tree_can_wake"][tree]),
+        float(model["tree_sleep_threshold"][tree]),
+        [body.dynamics(link) for link in range(BASE, body.joint_count)],
+        shapes["link_group"][links].tolist(),
+        shapes["link_mask"][links].tolist(),
+        [body.has_sensor(joint) for joint in range(body.joint_count)],
+    )
+
+
+def _saved_constraint(it: JointConstraint) -> SavedConstraint:
+    user = _NONE if it.user is None else it.user.id
+    return SavedConstraint(it.body.id, it.joint, it.kind, it.lower, it.upper, it.twist, it.max_impulse, user)
+
+
+def _saved_tie(tie: UserConstraint) -> SavedTie:
+    values = {field.name: getattr(tie, field.name) for field in fields(SavedTie)}
+    values["parent"] = tie.parent.id
+    values["child"] = _NONE if tie.child is None else tie.child.id
+    return SavedTie(**values)
+
+
+def _load(world: World, path: Path, parts: Parts) -> list[Body]:
+    document, reader, saved = _read(path)
+    state = read_state(reader, document.get("state"))
+    with begin(world) as undo:
+        undo.note(return_to(world, layout(world), world.snapshot()))
+        undo.note(partial(_set_parameters, world, world.parameters))
+        note_additions(world, undo)
+        alone = not world.bodies
+        bodies = _append(world, saved, alone)
+        for name, part in parts.items():
+            part.load(bodies, reader, document["parts"][name])
+        write_state(world, bodies, state, whole=alone)
+        if alone:
+            world.free_ids, world.next_id = saved.free_ids, saved.next_id
+            world.user_constraints.next_id = saved.next_tie
+            _set_parameters(world, saved.parameters)
+        world.scene_changed()
+        undo.done()
+    return bodies
+
+
+def _set_parameters(world: World, parameters: EngineParameters) -> None:
+    world.parameters = parameters
+    world.apply_parameters()
+
+
+def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
+    """Adds everything but looks and the state."""
+    bodies: dict[int, Body] = {}
+    for record in saved.bodies:
+        if record.id in bodies or not 0 <= record.id < saved.next_id:
+            raise ValueError(f"there cannot be a body {record.id}")
+        if alone:
+            world.free_ids = [*world.free_ids, record.id]
+        bodies[record.id] = append(world, saved.specs[_index(record.spec, saved.specs)], IDENTITY)
+        _give_dynamics(bodies[record.id], record)
+    ties = _make_ties(world, saved, bodies, alone)
+    _order_constraints(world, saved, bodies, ties)
+    _set_filters(world, saved, bodies)
+    for body in bodies.values():
+        for datum in world.user_data.of_body(body.id).copy():
+            world.user_data.remove(datum)
+    for datum in saved.user_data:
+        body = bodies[datum.body]
+        world.user_data.add(body.id, datum.link, datum.shape, datum.key, datum.value)
+    return list(bodies.values())
+
+
+def _index(number: int, items: list[Any]) -> int:
+    if not 0 <= number < len(items):
+        raise ValueError(f"there is no item {number} of {len(items)}")
+    return number
+
+
+def _give_dynamics(body: Body, record: SavedBody) -> None:
+    count = 1 + body.joint_count
+    if not len(record.links) == len(record.groups) == len(record.masks) == len(record.sensors) + 1 == count:
+        raise ValueError(f"body {record.id} has {count} links")
+    if record.fixed_base != body.fixed_base:
+        change_base_freedom(body.world, body, free=not record.fixed_base)
+    for place in range(count):
+        body.set_dynamics(place - 1, record.links[place])
+        body.world.touch.shapes.set_group_and_mask(
+            body.first_link + place, record.groups[place], record.masks[place]
+        )
+    for joint, enabled in enumerate(record.sensors):
+        if enabled:
+            body.set_sensor(joint, True)
+    body.change_dynamics(
+        BASE,
+        linear_damping=record.linear_damping,
+        angular_damping=record.angular_damping,
+        max_joint_velocity=record.max_velocity,
+        sleep_threshold=record.sleep_threshold,
+    )
+    model = body.world.arrays.model.numpy
+    model["tree_can_sleep"][body.rows.tree] = record.can_sleep
+    model["tree_can_wake"][body.rows.tree] = record.can_wake
+
+
+def _make_ties(
+    world: World, saved: SavedWorld, bodies: dict[int, Body], alone: bool
+) -> dict[int, UserConstraint]:
+    ties = {}
+    for record in saved.ties:
+        parent = bodies[record.parent]
+        child = None if record.child == _NONE else bodies[record.child]
+        for body, link in (
+            (parent, record.parent_link),
+            (parent, record.gear_auxiliary_link),
+            (child, record.child_link),
+        ):
+            if body is not None and not BASE <= link < body.joint_count:
+                raise ValueError(f"body {body.id} has no link {link}")
+        values = {field.name: getattr(record, field.name) for field in fields(SavedTie)}
+        values |= {"parent": parent, "child": child}
+        if not alone:
+            values["id"] = world.user_constraints.next_id
+        elif record.id in ties or record.id < 1:
+            raise ValueError(f"there cannot be a constraint {record.id}")
+        ties[record.id] = UserConstraint(**values)
+        world.user_constraints.put(ties[record.id])
+    return ties
+
+
+def _order_constraints(
+    world: World, saved: SavedWorld, bodies: dict[int, Body], ties: dict[int, UserConstraint]
+) -> None:
+    """Puts the lists whose order the solver's follows from into the order they had."""
+    ours = {id(body) for body in bodies.values()}
+    own = [constraint for constraint in world.constraints.all if id(constraint.body) not in ours]
+    used = set()
+    for record in saved.constraints:
+        body = bodies[record.body]
+        tie = None if record.user == _NONE else ties[record.user]
+        if not _fits(record, body, tie):
+            raise ValueError("a constraint does not fit its joint")
+        if tie is not None:
+            used.add(record.user)
+        own.append(
+            JointConstraint(
+                body,
+                record.joint,
+                record.kind,
+                record.lower,
+                record.upper,
+                record.twist,
+                tie,
+                record.max_impulse,
+            )
+        )
+    if used != ties.keys():
+        raise ValueError("a constraint is missing")
+    world.constraints.all = own
+    others = [
+        link
+        for link in world.constraints.tags.links
+        if world.bodies[cast(int, link[0])] not in bodies.values()
+    ]
+    objects = [(bodies[body].id, link) for body, link in saved.objects]
+    if len(set(objects)) != len(objects) or len(objects) != sum(
+        1 + body.joint_count for body in bodies.values()
+    ):
+        raise ValueError("the list of objects does not name every link once")
+    world.constraints.tags.reorder([*others, *objects])
+
+
+def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bool:
+    """Whether a constraint is of a kind that its joint, or what ties it, can have."""
+    if tie is not None:
+        kind_and_place = (ConstraintKind.USER, tie.parent, tie.parent_link)
+        return (record.kind, body, record.joint) == kind_and_place
+    joint = body.joint_types[_index(record.joint, body.spec.links)]
+    return joint in _JOINTS.get(record.kind, ())
+
+
+def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> None:
+    for it in saved.filters:
+        rows = []
+        for body, link in ((bodies[it.body_a], it.link_a), (bodies[it.body_b], it.link_b)):
+            if not BASE <= link < body.joint_count:
+                raise ValueError(f"body {body.id} has no link {link}")
+            rows.append(body.first_link + 1 + link)
+        world.touch.shapes.filters.set(*rows, enabled=it.enabled)

@@ -1,0 +1,323 @@
+"""Inverse dynamics, Jacobians and mass matrices of articulated bodies."""
+
+from __future__ import annotations
+
+from math import inf
+from struct import error as StructError
+from typing import TYPE_CHECKING, Any, overload
+
+from pybullet._calls.arguments import Vector, check_rotation, integer, numbers, one_body, required
+from pybullet._calls.builtin import exported, exported_as
+from pybullet._calls.constants import JOINT_PLANAR, JOINT_SPHERICAL
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import client_of, clients
+from pybullet._clients.lookup import body_of
+from pybullet._maths.maths import getQuaternionFromEuler
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+__all__ = [
+    "calculateInverseDynamics",
+    "calculateJacobian",
+    "calculateMassMatrix",
+]
+
+Matrix = tuple[tuple[float, ...], ...]
+
+_FULL_MODEL = 1
+_BASE_POSITIONS, _BASE_VELOCITIES = 7, 6
+_INVERSE_DYNAMICS = "Error in calculateInverseDynamics, please check arguments."
+_INVERSE_DYNAMICS_SIZES = (
+    "calculateInverseDynamics numDofs needs to be positive and [joint velocities] and[joint accelerations] "
+    "need to be equal and match the number of degrees of freedom."
+)
+_JACOBIAN_SIZES = (
+    "calculateJacobian [numDof] needs to be positive, [local position] needs to be of size 3 and "
+    "[joint positions], [joint velocities], [joint accelerations] need to match the number of DoF."
+)
+_MASS_MATRIX_SIZES = (
+    "calculateMassMatrix [numJoints] needs to be positive and [joint positions] need to match the number of "
+    "joints."
+)
+
+
+@overload
+def calculateInverseDynamics(
+    bodyUniqueId: int,
+    objPositions: Vector,
+    objVelocities: Vector,
+    objAccelerations: Vector,
+    flags: int = 0,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@overload
+def calculateInverseDynamics(
+    *,
+    bodyIndex: int,
+    objPositions: Vector,
+    objVelocities: Vector,
+    objAccelerations: Vector,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@exported_as("(bodyUniqueId, objPositions, objVelocities, objAccelerations, flags=0, physicsClientId=0)")
+def calculateInverseDynamics(
+    bodyUniqueId: Any = None,
+    objPositions: Any = None,
+    objVelocities: Any = None,
+    objAccelerations: Any = None,
+    flags: int = 0,
+    physicsClientId: int = 0,
+    *,
+    bodyIndex: Any = None,
+) -> tuple[float, ...]:
+    """Joint forces that give accelerations, under gravity and without damping or motors.
+
+    The state of the body does not matter and does not change. The coordinates are those of the joints
+    that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw for its
+    position. With a floating base the base comes first: in positions as position (3) and quaternion (4),
+    in velocities, accelerations and forces as six numbers.
+
+    Gravity is PyBullet's: the base's inertial frame counts as parallel to the world when the base is
+    fixed, and turns by yaw, pitch and roll in the wrong order when it floats. So for a base that is turned
+    the forces that bear the weight are wrong; those of `carom.algorithms.inverse_dynamics` are right.
+
+    Args:
+        bodyUniqueId: The body.
+        objPositions: Positions [rad or m].
+        objVelocities: Velocities [rad/s or m/s].
+        objAccelerations: Accelerations [rad/s² or m/s²].
+        flags: 1 for another model that counts the base of every body and four coordinates for a spherical
+            joint; it takes accelerations to be 0.
+        physicsClientId: The connection.
+        bodyIndex: Another name of `bodyUniqueId`.
+
+    Returns:
+        Forces [N m or N], one for each velocity. Those on a floating base are linear, then angular.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, or the lists do not fit it.
+
+    Examples:
+        >>> torques = p.calculateInverseDynamics(arm, [0, 1, 0, 0, 0, 0, 0], [0] * 7, [0] * 7)
+        >>> round(torques[1], 1)
+        -45.1
+    """
+    try:
+        client = clients[physicsClientId]
+        if not flags:
+            return client.bodies.forces_of_motion[bodyUniqueId](
+                client.world.parameters.gravity, objPositions, objVelocities, objAccelerations
+            )
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
+    body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
+    required(
+        "calculateInverseDynamics",
+        objPositions=objPositions,
+        objVelocities=objVelocities,
+        objAccelerations=objAccelerations,
+    )
+    client = client_of(physicsClientId)
+    body = body_of(client, body_id, _INVERSE_DYNAMICS)
+    q = numbers(objPositions, _INVERSE_DYNAMICS, "objPositions")
+    qd = numbers(objVelocities, _INVERSE_DYNAMICS, "objVelocities")
+    qdd = numbers(objAccelerations, _INVERSE_DYNAMICS, "objAccelerations")
+    full = integer(flags, "flags") & _FULL_MODEL != 0
+    if len(qd) != len(qdd):
+        fail(_INVERSE_DYNAMICS_SIZES, f"There are {len(qd)} velocities and {len(qdd)} accelerations.")
+    floating = not body.fixed_base
+    if full:
+        positions = velocities = sum(body.position_count) + (_BASE_POSITIONS if floating else 0)
+        # PyBullet takes longer lists here.
+        q, qd = q[:positions], qd[:velocities]
+    else:
+        positions = sum(body.velocity_count) + (_BASE_POSITIONS if floating else 0)
+        velocities = sum(body.velocity_count) + (_BASE_VELOCITIES if floating else 0)
+    if len(q) != positions or len(qd) != velocities or velocities == 0:
+        fail(
+            _INVERSE_DYNAMICS,
+            f"Body {body.id} ({body.name}) takes {positions} positions and {velocities} velocities, "
+            f"not {len(q)} and {len(qd)}.",
+        )
+
+    if full:
+        from carom.algorithms.extended_model import extended_bias_forces
+
+        _check_extended(body, q, _INVERSE_DYNAMICS)
+        return tuple(extended_bias_forces(body, q, qd).tolist())
+
+    from carom.algorithms.moving_tree import moving_tree
+
+    if floating:
+        _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
+    forces = client.bodies.forces_of_motion[body.id] = moving_tree(body).forces_in_pybullet
+    try:
+        return forces(client.world.parameters.gravity, q, qd, qdd)
+    except ValueError as problem:
+        fail(_INVERSE_DYNAMICS, f"{problem}.")
+
+
+@exported
+def calculateJacobian(
+    bodyUniqueId: int,
+    linkIndex: int,
+    localPosition: Vector,
+    objPositions: Vector,
+    objVelocities: Vector,
+    objAccelerations: Vector,
+    physicsClientId: int = 0,
+) -> tuple[Matrix, Matrix]:
+    """How the velocity of a point on a link depends on the velocities of the joints.
+
+    The state of the body does not matter and does not change. The coordinates are those of the joints
+    that are not fixed, in the order of `getJointInfo`.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        localPosition: The point, from the origin of the link frame, in the axes of its inertial frame [m].
+        objPositions: Positions [rad or m].
+        objVelocities: Velocities; they do not matter.
+        objAccelerations: Accelerations; they do not matter.
+        physicsClientId: The connection.
+
+    Returns:
+        (linear, angular): two matrices of three rows and a column for each joint. With a floating base
+        six columns for its angular and linear velocity come first.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, or
+            the lists do not fit the body.
+
+    Examples:
+        >>> linear, angular = p.calculateJacobian(arm, 6, [0, 0, 0], [0] * 7, [0] * 7, [0] * 7)
+        >>> len(linear), len(linear[0])
+        (3, 7)
+    """
+    try:
+        tree = clients[physicsClientId].bodies[bodyUniqueId].tree
+        if tree is not None and len(objVelocities) == len(objAccelerations) == tree.joint_dofs > 0:  # type: ignore[arg-type]
+            check = sum(localPosition) + sum(objPositions) + sum(objVelocities) + sum(objAccelerations)
+            if -inf < check < inf:
+                return tree.jacobian(linkIndex, localPosition, objPositions)  # type: ignore[arg-type]
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
+    body = body_of(client_of(physicsClientId), bodyUniqueId, _JACOBIAN_SIZES)
+    link = integer(linkIndex, "linkIndex")
+    if JOINT_SPHERICAL in body.joint_types:
+        fail("Spherirical joints are not supported in the pybullet binding")
+    if JOINT_PLANAR in body.joint_types:
+        fail("Planar joints are not supported in the pybullet binding")
+    freedoms = sum(body.velocity_count)
+    lists = {
+        "localPosition": (localPosition, 3),
+        "objPositions": (objPositions, freedoms),
+        "objVelocities": (objVelocities, freedoms),
+        "objAccelerations": (objAccelerations, freedoms),
+    }
+    values = {name: numbers(given, _JACOBIAN_SIZES, name) for name, (given, _) in lists.items()}
+    for name, (_, size) in lists.items():
+        if len(values[name]) != size:
+            fail(_JACOBIAN_SIZES, f"{name} has {len(values[name])} values instead of {size}.")
+    if freedoms == 0:
+        fail(_JACOBIAN_SIZES, f"Body {body.id} ({body.name}) has no joint that moves.")
+    if not -1 <= link < body.joint_count:
+        fail("Internal error in calculateJacobian", f"Body {body.id} ({body.name}) has no link {link}.")
+
+    from carom.algorithms import jacobian
+
+    linear, angular = jacobian(body, link, values["localPosition"], values["objPositions"])
+    return _rows(linear), _rows(angular)
+
+
+@exported
+def calculateMassMatrix(
+    bodyUniqueId: int, objPositions: Vector, flags: int = 0, physicsClientId: int = 0
+) -> Matrix:
+    """The matrix that turns accelerations of the coordinates into forces.
+
+    The state of the body does not matter and does not change. The coordinates are those of the joints
+    that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw.
+
+    Args:
+        bodyUniqueId: The body.
+        objPositions: Positions [rad or m]; more than there are coordinates do no harm.
+        flags: 1 for another model that counts the base of every body, and four coordinates for a
+            spherical joint; a floating base's position (3) and quaternion (4) then come first.
+        physicsClientId: The connection.
+
+    Returns:
+        Its rows. With a floating base six rows and columns for its angular and linear velocity come
+        first.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, or there are too few positions.
+
+    Examples:
+        >>> matrix = p.calculateMassMatrix(arm, [0] * 7)
+        >>> len(matrix), len(matrix[0])
+        (7, 7)
+    """
+    try:
+        tree = clients[physicsClientId].bodies[bodyUniqueId].tree
+        if tree is not None and not flags and -inf < sum(objPositions) < inf:
+            return tree.mass_matrix(objPositions)  # type: ignore[arg-type]
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
+    problem = "Internal error in calculateMassMatrix"
+    body = body_of(client_of(physicsClientId), bodyUniqueId, problem)
+    q = numbers(objPositions, _MASS_MATRIX_SIZES, "objPositions")
+    full = integer(flags, "flags") & _FULL_MODEL != 0
+    needed = sum(body.position_count if full else body.velocity_count)
+    if full and not body.fixed_base:
+        needed += _BASE_POSITIONS
+    if len(q) < needed:
+        fail(_MASS_MATRIX_SIZES, f"Body {body.id} ({body.name}) takes {needed} positions, not {len(q)}.")
+
+    if full:
+        from carom.algorithms.extended_model import extended_mass_matrix
+
+        _check_extended(body, q, problem)
+        return _rows(extended_mass_matrix(body, q[:needed]))
+
+    from carom.algorithms import mass_matrix
+
+    return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
+
+
+def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
+    """Positions as the engine has them: quaternions of spherical joints instead of three angles."""
+    if JOINT_SPHERICAL not in body.joint_types:
+        return values
+    result: list[float] = []
+    first = 0
+    for kind, freedoms in zip(body.joint_types, body.velocity_count, strict=True):
+        own = values[first : first + freedoms]
+        result += getQuaternionFromEuler(own) if kind == JOINT_SPHERICAL else own
+        first += freedoms
+    return tuple(result)
+
+
+def _check_extended(body: Body, positions: tuple[float, ...], problem: str) -> None:
+    """Checks that a body has extended coordinates, and that their quaternions are rotations."""
+    if JOINT_PLANAR in body.joint_types:
+        fail(
+            problem, f"Body {body.id} ({body.name}) has a planar joint, for which flags=1 has no coordinates."
+        )
+    first = 0 if body.fixed_base else _BASE_POSITIONS
+    if first:
+        _check_rotation(positions[3:7], problem)
+    for count in body.position_count:
+        if count == 4:
+            _check_rotation(positions[first : first + 4], problem)
+        first += count
+
+
+def _check_rotation(quaternion: tuple[float, ...], problem: str) -> None:
+    if quaternion:
+        check_rotation(quaternion, problem, "A part of objPositions")
+
+
+def _rows(matrix: Any) -> Matrix:
+    return tuple(tuple(row) for row in matrix.tolist())

@@ -1,0 +1,363 @@
+"""Joint positions that bring links to given places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from math import isnan
+from typing import TYPE_CHECKING, Any, overload
+
+from pybullet._algorithms.algebra import joint_coordinates
+from pybullet._calls.arguments import (
+    Indices,
+    Vector,
+    Vectors,
+    indices,
+    integer,
+    numbers,
+    one_body,
+    real,
+    rotation,
+    sequence,
+    vector3,
+)
+from pybullet._calls.builtin import exported, exported_as
+from pybullet._calls.constants import IK_DLS, IK_SDLS, JOINT_SPHERICAL
+from pybullet._calls.errors import fail, warn_once
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import body_of
+from pybullet._maths.maths import getEulerFromQuaternion
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+__all__ = [
+    "calculateInverseKinematics",
+    "calculateInverseKinematics2",
+]
+
+_PROBLEM = "Error in calculateInverseKinematics"
+_NO_POSITION = "calculateInverseKinematics couldn't extract position vector3"
+_CURRENT_POSITIONS = (
+    "calculateInverseKinematics the size of input current positions needs to be equal to the number of "
+    "degrees of freedom."
+)
+_LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
+_MISSING = object()
+_UNSTATED = -1
+_SOLVERS = (IK_DLS, IK_SDLS)
+# PyBullet is stuck where its steps leave more than this share of the distance.
+_STUCK = 0.5
+_STEPS_WHERE_STUCK = 200
+
+
+@overload
+def calculateInverseKinematics(
+    bodyUniqueId: int,
+    endEffectorLinkIndex: int,
+    targetPosition: Vector,
+    targetOrientation: Vector | None = None,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
+    solver: int = 0,
+    currentPositions: Vector | None = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@overload
+def calculateInverseKinematics(
+    *,
+    bodyIndex: int,
+    endEffectorLinkIndex: int,
+    targetPosition: Vector,
+    targetOrientation: Vector | None = None,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]: ...
+@exported_as(
+    "(bodyUniqueId, endEffectorLinkIndex, targetPosition, targetOrientation=None, lowerLimits=None, "
+    "upperLimits=None, jointRanges=None, restPoses=None, jointDamping=None, solver=0, currentPositions=None, "
+    "maxNumIterations=-1, residualThreshold=-1, physicsClientId=0)"
+)
+def calculateInverseKinematics(
+    bodyUniqueId: Any = None,
+    endEffectorLinkIndex: Any = _MISSING,
+    targetPosition: Any = _MISSING,
+    targetOrientation: Any = None,
+    lowerLimits: Any = None,
+    upperLimits: Any = None,
+    jointRanges: Any = None,
+    restPoses: Any = None,
+    jointDamping: Any = None,
+    solver: int = 0,
+    currentPositions: Any = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
+    physicsClientId: int = 0,
+    *,
+    bodyIndex: Any = None,
+) -> tuple[float, ...]:
+    """Joint positions at which a link is where it ought to be; nothing moves.
+
+    The search starts at the present pose, or at `currentPositions`. Where PyBullet's own iteration comes
+    close enough, this is its result. Where it does not, the search goes on from there, and the result is
+    the nearest that was found; save for a position with an orientation and neither
+    `maxNumIterations` nor `residualThreshold`: that is PyBullet's result, unless it violates limits, or
+    leaves more than half of the distance, and more than 2 cm.
+
+    With limits the result keeps them, in any case. With `lowerLimits`, `upperLimits`, `jointRanges` and
+    `restPoses` joints are also drawn to their rest poses, a little with each call, as far as the link
+    does not mind. Lists that do not have a value for each freedom of the joints are ignored, as in
+    PyBullet.
+
+    Args:
+        bodyUniqueId: The body.
+        endEffectorLinkIndex: The link, from 0.
+        targetPosition: Where the origin of its link frame ought to be [m], in world axes; with
+            `currentPositions` in the inertial frame of the base, as in PyBullet.
+        targetOrientation: What the axes of its inertial frame ought to be, a quaternion (x, y, z, w).
+        lowerLimits: Of every freedom of the joints [rad or m]. None where above the upper one.
+        upperLimits: The same, from above.
+        jointRanges: How far apart the limits are.
+        restPoses: Positions to which the joints are drawn.
+        jointDamping: How unwilling every joint is to move; 0.5 where not given.
+        solver: `IK_DLS`, damped least squares, or `IK_SDLS`, selectively damped ones. With rest poses
+            always the former.
+        currentPositions: Joint positions to start from.
+        maxNumIterations: Most steps of PyBullet's iteration; 20 if not given. As many for going on, and with
+            limits at least 300.
+        residualThreshold: Distance [m], and angle [rad], that are close enough; 1e-4 at first.
+        physicsClientId: The connection.
+        bodyIndex: Another name of `bodyUniqueId`.
+
+    Returns:
+        A position for each freedom of the joints, in the order of `getJointInfo`; fixed joints have
+        none, spherical ones roll, pitch and yaw.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
+
+    Examples:
+        >>> angles = p.calculateInverseKinematics(arm, 6, [0.5, 0, 0.5], maxNumIterations=100)
+        >>> for joint, angle in enumerate(angles):
+        ...     p.resetJointState(arm, joint, angle)
+        >>> [round(x, 2) + 0.0 for x in p.getLinkState(arm, 6, computeForwardKinematics=1)[4]]
+        [0.5, 0.0, 0.5]
+    """
+    body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseKinematics")
+    if endEffectorLinkIndex is _MISSING or targetPosition is _MISSING:
+        name = "endEffectorLinkIndex" if endEffectorLinkIndex is _MISSING else "targetPosition"
+        raise TypeError(f"calculateInverseKinematics() missing required argument {name!r}")
+    link = integer(endEffectorLinkIndex, "endEffectorLinkIndex")
+    client = client_of(physicsClientId)
+    position = vector3(targetPosition, _NO_POSITION, "targetPosition")
+    orientation = _orientation(targetOrientation)
+    body = body_of(client, body_id, _PROBLEM)
+    options = _options(
+        body,
+        (lowerLimits, upperLimits, jointRanges, restPoses),
+        jointDamping,
+        solver,
+        currentPositions,
+        maxNumIterations,
+        residualThreshold,
+    )
+    _check_link(body, link)
+    if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
+        # Who says nothing of accuracy has learnt to live with PyBullet's, in trained policies for one, and
+        # comes nearer with each call; but not where PyBullet is stuck.
+        options["further"], options["patience"] = _STEPS_WHERE_STUCK, _STUCK
+
+    with client.lock:
+        found = _algorithm()(
+            body, (link,), (position,), None if orientation is None else (orientation,), **options
+        )
+    return _result(body, found)
+
+
+@exported
+def calculateInverseKinematics2(
+    bodyUniqueId: int,
+    endEffectorLinkIndices: Indices,
+    targetPositions: Vectors,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
+    solver: int = 0,
+    currentPositions: Vector | None = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
+    physicsClientId: int = 0,
+) -> tuple[float, ...]:
+    """Joint positions at which several links are where they ought to be; nothing moves.
+
+    Args:
+        bodyUniqueId: The body.
+        endEffectorLinkIndices: The links, from 0. More than there are positions do not count.
+        targetPositions: Where the origin of each link frame ought to be, as in
+            `calculateInverseKinematics`.
+        lowerLimits: This and what follows as in `calculateInverseKinematics`. (PyBullet forgets the
+            targets when it is given all four lists of limits and rest poses; here they count.)
+        upperLimits: Of every freedom of the joints [rad or m].
+        jointRanges: How far apart the limits are.
+        restPoses: Positions to which the joints are drawn.
+        jointDamping: How unwilling every joint is to move.
+        solver: `IK_DLS` or `IK_SDLS`.
+        currentPositions: Joint positions to start from.
+        maxNumIterations: Most steps.
+        residualThreshold: Distance that is close enough [m].
+        physicsClientId: The connection.
+
+    Returns:
+        A position for each freedom of the joints, in the order of `getJointInfo`.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
+
+    Examples:
+        >>> angles = p.calculateInverseKinematics2(arm, [6], [[0.5, 0, 0.5]], maxNumIterations=100)
+        >>> len(angles)
+        7
+    """
+    client = client_of(physicsClientId)
+    links = indices(endEffectorLinkIndices, _NO_POSITION, "endEffectorLinkIndices")
+    positions = [
+        vector3(position, _NO_POSITION, "targetPositions")
+        for position in sequence(targetPositions, _NO_POSITION, "targetPositions")
+    ]
+    if not positions:
+        fail(_NO_POSITION, "targetPositions is empty.")
+    if len(links) < len(positions):
+        fail(_PROBLEM, f"There are {len(links)} links and {len(positions)} positions for them.")
+    links = links[: len(positions)]
+    body = body_of(client, bodyUniqueId, _PROBLEM)
+    options = _options(
+        body,
+        (lowerLimits, upperLimits, jointRanges, restPoses),
+        jointDamping,
+        solver,
+        currentPositions,
+        maxNumIterations,
+        residualThreshold,
+    )
+    for link in links:
+        _check_link(body, link)
+
+    with client.lock:
+        return _result(body, _algorithm()(body, links, positions, **options))
+
+
+@cache
+def _algorithm() -> Callable[..., tuple[float, ...]]:
+    """Imported when it is first needed: it brings Warp along."""
+    from carom.algorithms import inverse_kinematics
+
+    return inverse_kinematics
+
+
+def _orientation(values: Any) -> tuple[float, ...] | None:
+    """The orientation asked for. As in PyBullet, anything that has not four numbers is none."""
+    if values is None:
+        return None
+    try:
+        x, y, z, w = values
+        if 0.5 < x * x + y * y + z * z + w * w < 2.0:
+            return x, y, z, w
+    except (TypeError, ValueError):
+        pass
+    name = "targetOrientation"
+    given = numbers(values, _PROBLEM, name)
+    if len(given) != 4:
+        warn_once("calculateInverseKinematics: targetOrientation has not 4 values and is ignored")
+        return None
+    return rotation(given, _PROBLEM, name)
+
+
+def _options(
+    body: Body,
+    limits: tuple[Any, Any, Any, Any],
+    damping: Any,
+    solver: int,
+    current_positions: Any,
+    iterations: int,
+    threshold: float,
+) -> dict[str, Any]:
+    """The options of `carom.algorithms.inverse_kinematics`."""
+    freedoms = sum(body.velocity_count)
+    if freedoms == 0:
+        fail(_PROBLEM, f"Body {body.id} ({body.name}) has no joint that moves.")
+    if integer(solver, "solver") not in _SOLVERS:
+        fail(_PROBLEM, f"solver is {solver!r}, neither IK_DLS ({IK_DLS}) nor IK_SDLS ({IK_SDLS}).")
+    options: dict[str, Any] = {}
+    if solver == IK_SDLS:
+        options["selective"] = True
+    if iterations is not _UNSTATED and integer(iterations, "maxNumIterations") > 0:
+        options["iterations"] = iterations
+    if threshold is not _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
+        options["threshold"] = threshold
+    if not limits[0] is limits[1] is limits[2] is limits[3] is None:
+        lower, upper, ranges, rest = [
+            _for_each_freedom(values, name, freedoms) for values, name in zip(limits, _LIMITS, strict=True)
+        ]
+        if lower is not None and upper is not None:
+            options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
+    if damping is not None:
+        values = numbers(damping, _PROBLEM, "jointDamping")
+        if len(values) >= freedoms:
+            options["damping"] = values[:freedoms]
+        elif values:
+            warn_once(
+                "calculateInverseKinematics: the size of input joint damping values should be equal to the "
+                "number of degrees of freedom, not using joint damping."
+            )
+    if current_positions is not None:
+        start = numbers(current_positions, _CURRENT_POSITIONS, "currentPositions")
+        if start:
+            if len(start) != freedoms:
+                fail(_CURRENT_POSITIONS, f"They are {len(start)} and {freedoms}.")
+            options["start"] = joint_coordinates(body, start)
+            options["in_base_frame"] = True
+    return options
+
+
+def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...] | None:
+    """A list that has one number, perhaps infinite, for each freedom; None where its length is another."""
+    if values is None:
+        return None
+    try:
+        result = tuple(map(float, values))
+    except (TypeError, ValueError):
+        fail(_PROBLEM, f"{name} is {values!r}, not a list of numbers.")
+    if len(result) != freedoms:
+        return None
+    if any(map(isnan, result)):
+        fail(_PROBLEM, f"{name} is {values!r}, with a value that is not a number.")
+    return result
+
+
+def _check_link(body: Body, link: int) -> None:
+    if not -1 <= link < body.joint_count:
+        fail(_PROBLEM, f"Body {body.id} ({body.name}) has no link {link}.")
+
+
+def _result(body: Body, coordinates: tuple[float, ...]) -> tuple[float, ...]:
+    """Positions as scripts have them: roll, pitch and yaw of spherical joints instead of a quaternion."""
+    if JOINT_SPHERICAL not in body.joint_types:
+        return coordinates
+    result: list[float] = []
+    first = 0
+    for kind, count in zip(body.joint_types, body.position_count, strict=True):
+        own = coordinates[first : first + count]
+        result += getEulerFromQuaternion(own) if kind == JOINT_SPHERICAL else own
+        first += count
+    return tuple(result)

@@ -1,0 +1,1 @@
+"""Bodies and links: poses, velocities, masses, forces, user data."""

@@ -1,0 +1,149 @@
+"""Bodies as scripts see them: direct access to the state of the base, the joints and the links."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from struct import Struct
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Quaternion, Vector3
+from pybullet._bodies.link_access import LinkAccess
+from pybullet._calls.constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE
+from pybullet._joints.joint_access import JointAccess, joint_access
+from pybullet._joints.joint_groups import JointGroups
+from pybullet._joints.joint_info import JointInfo, joint_info
+from pybullet._maths.rotations import canonical
+
+if TYPE_CHECKING:
+    from carom.algorithms.ask import Ask
+    from carom.algorithms.moving_tree import MovingTree
+    from carom.scene.body import Body
+    from pybullet._bodies.link_box import LinkBox
+    from pybullet._clients.clients import Client
+
+_POSE, _SPATIAL = Struct("7d"), Struct("6d")
+_read_pose = _POSE.unpack_from
+_read_spatial, _write_spatial = _SPATIAL.unpack_from, _SPATIAL.pack_into
+_AT_REST = (0.0,) * 6
+
+
+class BodyAccess:
+    """One body.
+
+    Attributes:
+        body: The body itself.
+        joints: Access to its joints, by index.
+        groups: Access to several of its joints, by their indices.
+    """
+
+    def __init__(self, client: Client, body: Body) -> None:
+        self.body = body
+        self._client = client
+        self._positions = client.world.position_memory
+        self._velocities = client.world.velocity_memory
+        self._position_at = body.first_position * 8
+        self._velocity_at = body.first_velocity * 8
+        self.joints: dict[int, JointAccess] = {
+            index: joint_access(client, body, index) for index in range(body.joint_count)
+        }
+        self.groups = JointGroups(client, self.joints)
+
+    @cached_property
+    def links(self) -> dict[int, LinkAccess]:
+        """Access to the links other than the base, by index."""
+        return {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
+
+    @cached_property
+    def boxes(self) -> dict[int, LinkBox]:
+        """The boxes around the links, by index, -1 for the base."""
+        # Made late: most scripts never ask, and what it is made with takes long to import.
+        from pybullet._bodies.link_box import LinkBox
+
+        return {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
+
+    @cached_property
+    def tree(self) -> MovingTree | None:
+        """Its equations of motion, if none of its joints has more than one freedom."""
+        if not {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_FIXED}.issuperset(self.body.joint_types):
+            return None
+        from carom.algorithms.moving_tree import moving_tree
+
+        return moving_tree(self.body)
+
+    @cached_property
+    def joint_infos(self) -> dict[int, JointInfo]:
+        """What `getJointInfo` returns, by joint index."""
+        return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
+
+    def forget_inertia(self) -> None:
+        """Drop what depends on masses and inertias. Some scripts burn fuel, changing a mass at every step."""
+        self.__dict__.pop("tree", None)
+
+    def base_pose(self) -> tuple[Vector3, Quaternion]:
+        """World pose of the base's inertial frame."""
+        x, y, z, qx, qy, qz, qw = _read_pose(self._positions, self._position_at)
+        return ((x, y, z), canonical((qx, qy, qz, qw)))
+
+    def base_velocity(self) -> tuple[Vector3, Vector3]:
+        """Velocity of the base's centre of mass and its angular velocity, in world axes."""
+        wx, wy, wz, vx, vy, vz = _read_spatial(self._velocities, self._velocity_at)
+        return ((vx, vy, vz), (wx, wy, wz))
+
+    def inertial_frame(self, link: int) -> tuple[Vector3, Quaternion]:
+        """World pose of the inertial frame of a link, -1 for the base."""
+        return self.base_pose() if link < 0 else self.links[link].pose()
+
+    def place_base(self, position: Vector3, orientation: Quaternion) -> None:
+        """Puts the base at rest somewhere, as `resetBasePositionAndOrientation` does."""
+        with self._client.lock:
+            _write_spatial(self._velocities, self._velocity_at, *_AT_REST)
+            self.body.set_base_pose(position, orientation)
+
+    def push(self, link: int, force: Vector3, torque: Vector3) -> None:
+        """Adds to the force and the torque on a link, -1 for the base, about its centre of mass [N, N m]."""
+        wrenches = self._client.world.link_force_memory
+        at = (self.body.first_link + 1 + link) * _SPATIAL.size
+        fx, fy, fz, tx, ty, tz = _read_spatial(wrenches, at)
+        (x, y, z), (rx, ry, rz) = force, torque
+        _write_spatial(wrenches, at, fx + x, fy + y, fz + z, tx + rx, ty + ry, tz + rz)
+
+
+class BodyTable(dict[int, BodyAccess]):
+    """Access to the bodies of one client by id; an entry is made when it is first asked for.
+
+    Asking for a body that does not exist raises `KeyError`.
+
+    Attributes:
+        client: The client; set once.
+        forces_of_motion: What `calculateInverseDynamics` asks, by the ids of bodies it was called for: a
+            plain dictionary, because Python finds an item of that in no time.
+    """
+
+    __slots__ = ("client", "forces_of_motion")
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.client: Client
+        self.forces_of_motion: dict[int, Ask] = {}
+
+    def forget(self, body_id: int) -> None:
+        """Drop the access to a body, which is about to be another one."""
+        self.pop(body_id, None)
+        self.forces_of_motion.pop(body_id, None)
+
+    def forget_inertia(self, body_id: int) -> None:
+        """Drop what depends on the masses and inertias of a body."""
+        access = self.get(body_id)
+        if access is not None:
+            access.forget_inertia()
+        self.forces_of_motion.pop(body_id, None)
+
+    def forget_all(self) -> None:
+        """Drop the access to all bodies."""
+        self.clear()
+        self.forces_of_motion.clear()
+
+    def __missing__(self, body_id: int) -> BodyAccess:
+        access = BodyAccess(self.client, self.client.world.bodies[body_id])
+        self[body_id] = access
+        return access

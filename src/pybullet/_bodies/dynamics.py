@@ -1,0 +1,321 @@
+"""Masses, friction, damping, limits and sensors of links."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn
+
+from carom.description.pose import Quaternion, Vector3
+from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import BASE, body_access, link_or_warning, no_joint
+
+__all__ = [
+    "changeDynamics",
+    "enableJointForceTorqueSensor",
+    "getDynamicsInfo",
+]
+
+DynamicsInfo = tuple[
+    float, float, Vector3, Vector3, Quaternion, float, float, float, float, float, int, float
+]
+
+_MULTI_BODY = 2
+
+# Defaults. They are told by identity, as an array, which is no number either, cannot be compared.
+_UNCHANGED, _NO_LIMIT = -1, 1
+# Bounds and thresholds, which may be as great as one likes.
+_ANY_SIZE = frozenset(
+    {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
+)
+# What a `BodyAccess` is made with, and what only its equations of motion are.
+_LIMITS = {"joint_lower_limit", "joint_upper_limit"}
+_INERTIA = {"mass", "inertia"}
+
+
+@exported
+def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0) -> DynamicsInfo:
+    """Mass, inertia and contact parameters of a link.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        physicsClientId: The connection.
+
+    Returns:
+        12 fields: 0 mass [kg], 0 for a fixed base; 1 lateral friction; 2 principal moments of inertia
+        [kg m²]; 3 position [m] and 4 quaternion (x, y, z, w) of the inertial frame in the link frame;
+        5 restitution; 6 rolling and 7 spinning friction; 8 contact damping and 9 contact stiffness,
+        -1 when not set; 10 type of the body, 2 for articulated ones; 11 collision margin [m].
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> mass, friction = p.getDynamicsInfo(cube, -1)[:2]
+        >>> mass, friction
+        (0.1, 1.0)
+    """
+    problem = "getDynamicsInfo failed; invalid return status"
+    access = body_access(
+        bodyUniqueId, physicsClientId, problem, "getDynamicsInfo failed; invalid bodyUniqueId"
+    )
+    body, link = access.body, integer(linkIndex, "linkIndex")
+    if link < BASE:
+        fail("getDynamicsInfo failed; invalid linkIndex", f"{link} is less than -1, the base.")
+    if link >= body.joint_count:
+        fail(problem, no_joint(body, link))
+    dynamics = body.dynamics(link)
+    frame = body.link_inertial_frame(link)
+    return (
+        dynamics.mass,
+        dynamics.lateral_friction,
+        dynamics.inertia,
+        frame.position,
+        frame.orientation,
+        dynamics.restitution,
+        dynamics.rolling_friction,
+        dynamics.spinning_friction,
+        dynamics.contact_damping,
+        dynamics.contact_stiffness,
+        _MULTI_BODY,
+        dynamics.collision_margin,
+    )
+
+
+@exported
+def changeDynamics(
+    bodyUniqueId: int,
+    linkIndex: int,
+    mass: float = -1,
+    lateralFriction: float = -1,
+    spinningFriction: float = -1,
+    rollingFriction: float = -1,
+    restitution: float = -1,
+    linearDamping: float = -1,
+    angularDamping: float = -1,
+    contactStiffness: float = -1,
+    contactDamping: float = -1,
+    frictionAnchor: int = -1,
+    localInertiaDiagonal: Vector | None = None,
+    ccdSweptSphereRadius: float = -1,
+    contactProcessingThreshold: float = -1,
+    activationState: int = -1,
+    jointDamping: float = -1,
+    anisotropicFriction: Vector | None = None,
+    maxJointVelocity: float = -1,
+    collisionMargin: float = -1,
+    jointLowerLimit: float = 1,
+    jointUpperLimit: float = -1,
+    jointLimitForce: float = -1,
+    sleepThreshold: float = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """Changes a link, the joint that carries it, or the whole body. Negative numbers change nothing.
+
+    PyBullet has a trap here, which is kept: damping, activation state, greatest velocity and collision
+    margin belong to the body, and when one of them is what it looks at last, in the order written below,
+    then everything else in the same call goes to the base as well. Use one call for the body and another
+    for the link; a warning is logged when it happens. A body or link that does not exist is no error.
+
+    The order: jointLimitForce, joint limits, mass, anisotropicFriction, localInertiaDiagonal,
+    lateralFriction, spinningFriction, rollingFriction, linearDamping*, angularDamping*, jointDamping,
+    restitution, contactStiffness, frictionAnchor, ccdSweptSphereRadius, activationState*,
+    contactProcessingThreshold, maxJointVelocity*, collisionMargin* (* for the base).
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        mass: [kg]; sets the inertia to that of the collision shapes. 0 fixes the base.
+        lateralFriction: Coulomb coefficient.
+        spinningFriction: Torque about the contact normal per normal force [m].
+        rollingFriction: Torque about the tangents per normal force [m].
+        restitution: Fraction of the normal speed that comes back.
+        linearDamping: Of the whole body [1/s]; 0.04 at first.
+        angularDamping: Of the whole body [1/s]; 0.04 at first.
+        contactStiffness: Spring of contacts [N/m]; together with `contactDamping`.
+        contactDamping: Damper of contacts [N s/m]; together with `contactStiffness`.
+        frictionAnchor: 1: friction draws back to where it started.
+        localInertiaDiagonal: Principal moments of inertia [kg m²].
+        ccdSweptSphereRadius: Of continuous collision detection [m].
+        contactProcessingThreshold: Distance beyond which contacts are not solved [m].
+        activationState: `ACTIVATION_STATE_*`, added up. A body with `ENABLE_SLEEPING` that hardly moves for
+            2 s, and all near it likewise, takes no part until one of them moves: it feels neither forces nor
+            motors nor gravity, and velocities given to it are lost.
+        jointDamping: [N m s/rad or N s/m].
+        anisotropicFriction: Factor on friction along the axes of the link.
+        maxJointVelocity: Greatest velocity of every coordinate of the body [rad/s, m/s]; 100 at first.
+        collisionMargin: Of the base's shapes [m].
+        jointLowerLimit: [rad or m]; the limits change when it is not greater than the upper one.
+        jointUpperLimit: [rad or m].
+        jointLimitForce: Greatest force of the limits [N m or N].
+        sleepThreshold: Sum of all its squared velocities below which a body may sleep; 0.05 at first.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, only one of stiffness and damping is given, or an argument is not
+            finite or not three numbers.
+
+    Examples:
+        >>> p.changeDynamics(cube, -1, mass=0.2, lateralFriction=0.9)
+        >>> p.getDynamicsInfo(cube, -1)[:2]
+        (0.2, 0.9)
+    """
+    client = client_of(physicsClientId)
+    named_link = integer(linkIndex, "linkIndex")
+    changes = _Changes(named_link)
+    # In the order in which PyBullet looks at them, see the docstring.
+    if jointLimitForce is not _UNCHANGED:
+        changes.take("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
+    if sleepThreshold is not _UNCHANGED:
+        changes.take_for_body("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
+    if jointLowerLimit is not _NO_LIMIT or jointUpperLimit is not _UNCHANGED:
+        lower = real(jointLowerLimit, "jointLowerLimit")
+        changes.take_limits(lower, real(jointUpperLimit, "jointUpperLimit"))
+    if anisotropicFriction is not None:
+        changes.take_vector("anisotropic_friction", anisotropicFriction, "anisotropicFriction")
+    if localInertiaDiagonal is not None:
+        changes.take_vector("inertia", localInertiaDiagonal, "localInertiaDiagonal")
+    if mass is not _UNCHANGED:
+        changes.take("mass", real(mass, "mass"))
+    if lateralFriction is not _UNCHANGED:
+        changes.take("lateral_friction", real(lateralFriction, "lateralFriction"))
+    if spinningFriction is not _UNCHANGED:
+        changes.take("spinning_friction", real(spinningFriction, "spinningFriction"))
+    if rollingFriction is not _UNCHANGED:
+        changes.take("rolling_friction", real(rollingFriction, "rollingFriction"))
+    if linearDamping is not _UNCHANGED:
+        changes.take_for_body("linear_damping", real(linearDamping, "linearDamping"))
+    if angularDamping is not _UNCHANGED:
+        changes.take_for_body("angular_damping", real(angularDamping, "angularDamping"))
+    if jointDamping is not _UNCHANGED:
+        changes.take("joint_damping", real(jointDamping, "jointDamping"))
+    if restitution is not _UNCHANGED:
+        changes.take("restitution", real(restitution, "restitution"))
+    if contactStiffness is not _UNCHANGED:
+        changes.take("contact_stiffness", real(contactStiffness, "contactStiffness"))
+    if contactDamping is not _UNCHANGED:
+        changes.take("contact_damping", real(contactDamping, "contactDamping"))
+    if frictionAnchor is not _UNCHANGED:
+        changes.take("friction_anchor", integer(frictionAnchor, "frictionAnchor"))
+    if ccdSweptSphereRadius is not _UNCHANGED:
+        changes.take("ccd_swept_sphere_radius", real(ccdSweptSphereRadius, "ccdSweptSphereRadius"))
+    if activationState is not _UNCHANGED:
+        changes.take_for_body("activation_state", integer(activationState, "activationState"))
+    if contactProcessingThreshold is not _UNCHANGED:
+        threshold = real(contactProcessingThreshold, "contactProcessingThreshold")
+        changes.take("contact_processing_threshold", threshold)
+    if maxJointVelocity is not _UNCHANGED:
+        changes.take_for_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
+    if collisionMargin is not _UNCHANGED:
+        changes.take_for_body("collision_margin", real(collisionMargin, "collisionMargin"))
+
+    if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
+        fail("Both contactStiffness and contactDamping needs to be set together.")
+
+    found = link_or_warning(client, bodyUniqueId, changes.link, "changeDynamics")
+    if found is None:
+        return
+    body, link = found
+    if link != named_link and changes.misdirected:
+        logger.warning(
+            "changeDynamics: %s go to the base, not to link %d, because the call also changes the whole "
+            "body. Make two calls.",
+            ", ".join(changes.misdirected),
+            named_link,
+        )
+    with client.lock:
+        body.change_dynamics(link, **changes.values)
+        if not _LIMITS.isdisjoint(changes.values):
+            client.bodies.forget(body.id)
+        elif not _INERTIA.isdisjoint(changes.values):
+            client.bodies.forget_inertia(body.id)
+
+
+@exported
+def enableJointForceTorqueSensor(
+    bodyUniqueId: int, jointIndex: int, enableSensor: int = 1, physicsClientId: int = 0
+) -> None:
+    """Switches the sensor of a joint on or off that `getJointState` reads.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        enableSensor: 1 to switch it on, 0 to switch it off.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> p.enableJointForceTorqueSensor(arm, 6)
+        >>> _ = p.stepSimulation()
+        >>> len(p.getJointState(arm, 6)[2])
+        6
+    """
+    problem = "Error: invalid jointIndex."
+    access = body_access(bodyUniqueId, physicsClientId, problem, "Error: invalid bodyUniqueId")
+    index, enabled = integer(jointIndex, "jointIndex"), integer(enableSensor, "enableSensor") != 0
+    if index not in access.joints:
+        fail(problem, no_joint(access.body, index))
+    client = client_of(physicsClientId)
+    with client.lock:
+        access.body.set_sensor(index, enabled)
+        client.bodies.forget(access.body.id)
+
+
+def _refuse_size(name: str, value: float) -> NoReturn:
+    fail(f"{name} is {value:g}; it may be at most {MAX_MAGNITUDE:g}, as products of it have to be numbers.")
+
+
+class _Changes:
+    """What a call of `changeDynamics` changes, and the link it goes to.
+
+    Attributes:
+        link: The link that was addressed last.
+        values: New values by name.
+        misdirected: Names of those that were meant for a link.
+    """
+
+    __slots__ = ("_named_link", "link", "misdirected", "values")
+
+    def __init__(self, link: int) -> None:
+        self._named_link = link
+        self.link = link
+        self.values: dict[str, Any] = {}
+        self.misdirected: list[str] = []
+
+    def take(self, name: str, value: float) -> None:
+        """Takes a value for the named link, unless it is negative."""
+        if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
+            _refuse_size(name, value)
+        if value >= 0:
+            self.values[name] = value
+            self.link = self._named_link
+            self.misdirected.append(name)
+
+    def take_for_body(self, name: str, value: float) -> None:
+        """Takes a value for the whole body, unless it is negative."""
+        if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
+            _refuse_size(name, value)
+        if value >= 0:
+            self.values[name] = value
+            self.link = BASE
+
+    def take_limits(self, lower: float, upper: float) -> None:
+        """Takes the limits of the named link's joint, unless the lower one is greater."""
+        if lower <= upper:
+            self.values |= {"joint_lower_limit": lower, "joint_upper_limit": upper}
+            self.link = self._named_link
+            self.misdirected += "joint_lower_limit", "joint_upper_limit"
+
+    def take_vector(self, name: str, value: Vector, argument: str) -> None:
+        """Takes three numbers for the named link."""
+        vector = vector3(value, f"{argument} needs 3 numbers.", argument)
+        for number in vector:
+            if abs(number) > MAX_MAGNITUDE:
+                _refuse_size(name, number)
+        self.values[name] = vector
+        self.link = self._named_link
+        self.misdirected.append(name)

@@ -1,0 +1,128 @@
+"""Forces and torques from outside, for the next step."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pybullet._calls.arguments import Vector, integer, vector3
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import no_body
+from pybullet._maths.camera_maths import cross, subtracted
+from pybullet._maths.rotations import turned
+
+if TYPE_CHECKING:
+    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._clients.clients import Client
+
+__all__ = [
+    "applyExternalForce",
+    "applyExternalTorque",
+]
+
+_BASE = -1
+_FRAMES = (WORLD_FRAME, LINK_FRAME)
+_WRONG_FRAME = "flag has to be either WORLD_FRAME or LINK_FRAME"
+_WRONG_LINK = "Invalid link index, has to be -1 or larger"
+
+
+@exported
+def applyExternalForce(
+    objectUniqueId: int,
+    linkIndex: int,
+    forceObj: Vector,
+    posObj: Vector,
+    flags: int,
+    physicsClientId: int = 0,
+) -> None:
+    """Pushes a link during the next step. Forces add up. A body that does not exist is no error.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        forceObj: Force [N].
+        posObj: Where it acts [m].
+        flags: `WORLD_FRAME`: both are in the world frame. `LINK_FRAME`: both are in the inertial frame of
+            the link, so that a position of zeros is its centre of mass.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such link or frame, or an argument is not three finite
+            numbers.
+
+    Examples:
+        >>> p.applyExternalForce(cube, -1, [1, 0, 0], [0, 0, 0], p.LINK_FRAME)
+        >>> _ = p.stepSimulation()
+        >>> p.getBaseVelocity(cube)[0][0] > 0
+        True
+    """
+    client = client_of(physicsClientId)
+    force = vector3(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
+    point = vector3(posObj, "position needs a 3 coordinates [x,y,z].", "posObj")
+    frame = _frame(flags)
+    access = _body(client, objectUniqueId, linkIndex, "applyExternalForce")
+    if access is None:
+        return
+    position, orientation = access.inertial_frame(linkIndex)
+    if frame == LINK_FRAME:
+        force, arm = turned(orientation, force), turned(orientation, point)
+    else:
+        arm = subtracted(point, position)
+    access.push(linkIndex, force, cross(arm, force))
+
+
+@exported
+def applyExternalTorque(
+    objectUniqueId: int, linkIndex: int, torqueObj: Vector, flags: int, physicsClientId: int = 0
+) -> None:
+    """Turns a link during the next step. Torques add up. A body that does not exist is no error.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        torqueObj: Torque [N m].
+        flags: `WORLD_FRAME`: in world axes. `LINK_FRAME`: in the axes of the link's inertial frame.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such link or frame, or the torque is not three finite
+            numbers.
+
+    Examples:
+        >>> p.applyExternalTorque(cube, -1, [0, 0, 1], p.WORLD_FRAME)
+        >>> _ = p.stepSimulation()
+        >>> p.getBaseVelocity(cube)[1][2] > 0
+        True
+    """
+    client = client_of(physicsClientId)
+    torque = vector3(torqueObj, "torque needs a 3 coordinates [x,y,z].", "torqueObj")
+    if integer(linkIndex, "linkIndex") < _BASE:
+        fail(_WRONG_LINK, f"It is {linkIndex}.")
+    frame = _frame(flags)
+    access = _body(client, objectUniqueId, linkIndex, "applyExternalTorque")
+    if access is None:
+        return
+    if frame == LINK_FRAME:
+        torque = turned(access.inertial_frame(linkIndex)[1], torque)
+    access.push(linkIndex, (0.0, 0.0, 0.0), torque)
+
+
+def _frame(flags: int) -> int:
+    frame = integer(flags, "flags")
+    if frame not in _FRAMES:
+        fail(_WRONG_FRAME, f"It is {frame}.")
+    return frame
+
+
+def _body(client: Client, body_id: int, link_index: int, function: str) -> BodyAccess | None:
+    """Access to a body that has a link, None when there is no such body."""
+    body = client.body(body_id)
+    link = integer(link_index, "linkIndex")
+    if body is None:
+        logger.warning("%s: %s", function, no_body(body_id))
+        return None
+    if not _BASE <= link < body.joint_count:
+        fail(_WRONG_LINK, f"It is {link}, and body {body.id} ({body.name}) has {body.joint_count} links.")
+    return client.bodies[body.id]

@@ -1,0 +1,46 @@
+"""The boxes around the shapes of links, for `getAABB`."""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import TYPE_CHECKING
+
+from carom.description import Plane, Sphere
+from carom.description.pose import Vector3
+from carom.description.transform import NO_ROTATION, rotation_matrix
+from carom.model.body_spec import BASE
+from carom.model.bounds import turned_box
+from carom.model.inertia import is_in_place
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from pybullet._clients.clients import Client
+
+_POSE = Struct("7d")
+_read_pose = _POSE.unpack_from
+_DOUBLE = 8
+
+
+class LinkBox:
+    """The box around one link, wherever it is when it is asked for."""
+
+    __slots__ = ("_at", "_bounds", "_lone", "_poses")
+
+    def __init__(self, client: Client, body: Body, link: int) -> None:
+        row, world, spec = body.first_link + 1 + link, client.world, body.link_spec(link)
+        alone = is_in_place(spec.collisions, spec.inertial_frame)
+        self._lone = type(spec.collisions[0].geometry) if alone else None
+        self._bounds = world.touch.shapes.bounds(row)
+        # The base is where its coordinates say, also after a step.
+        self._poses = world.position_memory if link == BASE else world.link_pose_memory
+        self._at = body.first_position * _DOUBLE if link == BASE else row * _POSE.size
+
+    def corners(self) -> tuple[Vector3, Vector3]:
+        """The lowest and the highest corner, in the world frame [m]."""
+        center, half = self._bounds.center, self._bounds.half
+        if self._lone is not Plane:
+            x, y, z, qx, qy, qz, qw = _read_pose(self._poses, self._at)
+            rotation = NO_ROTATION if self._lone is Sphere else rotation_matrix((qx, qy, qz, qw))
+            center, half = turned_box(center, half, rotation, (x, y, z))
+        (cx, cy, cz), (hx, hy, hz) = center, half
+        return (cx - hx, cy - hy, cz - hz), (cx + hx, cy + hy, cz + hz)

@@ -1,0 +1,144 @@
+"""Where links are and how they move."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pybullet._calls.arguments import Indices, indices, integer
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import clients
+from pybullet._clients.lookup import body_access
+
+if TYPE_CHECKING:
+    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._bodies.link_access import LinkState, LinkStateWithVelocity
+
+__all__ = [
+    "getLinkState",
+    "getLinkStates",
+]
+
+_NO_STATE = "getLinkState failed."
+_NEGATIVE_BODY = "getLinkState failed; invalid bodyUniqueId"
+
+
+@exported
+def getLinkState(
+    bodyUniqueId: int,
+    linkIndex: int,
+    computeLinkVelocity: int = 0,
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> LinkState | LinkStateWithVelocity | None:
+    """Pose of a link and, if asked for, its velocity.
+
+    After `stepSimulation` the poses are those at the beginning of its last substep, as in PyBullet;
+    `computeForwardKinematics=1` brings them up to date.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; it has the index of the joint that carries it.
+        computeLinkVelocity: 1 for the velocities too.
+        computeForwardKinematics: 1 to bring the poses up to date first.
+        physicsClientId: The connection.
+
+    Returns:
+        6 fields: 0 position [m] and 1 quaternion (x, y, z, w) of the inertial frame in the world, its
+        origin being the centre of mass; 2 position and 3 quaternion of the inertial frame in the link
+        frame; 4 position and 5 quaternion of the link frame in the world. With `computeLinkVelocity`
+        also 6 velocity of the centre of mass [m/s] and 7 angular velocity [rad/s], world axes. None
+        when the body has fewer links.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, or the index is negative.
+
+    Examples:
+        >>> state = p.getLinkState(arm, 6, computeForwardKinematics=1)
+        >>> [round(x, 3) for x in state[4]]
+        [0.0, 0.0, 1.261]
+    """
+    try:
+        access = clients[physicsClientId].bodies[bodyUniqueId]
+        link = access.links[linkIndex]
+        if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
+            if computeForwardKinematics:
+                access.body.update_link_poses()
+            if not computeLinkVelocity:
+                return link.state()
+            access.body.update_link_velocities()
+            return link.state() + link.velocity()
+    except (KeyError, TypeError, ValueError):
+        pass
+    access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+    index = integer(linkIndex, "linkIndex")
+    if index < 0:
+        fail(
+            "getLinkState failed; invalid linkIndex",
+            f"{index} is no link; for the base see getBasePositionAndOrientation.",
+        )
+    with_velocity = _prepare(access, computeLinkVelocity, computeForwardKinematics)
+    return _state(access, index, with_velocity)
+
+
+@exported
+def getLinkStates(
+    bodyUniqueId: int,
+    linkIndices: Indices,
+    computeLinkVelocity: int = 0,
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> tuple[LinkState | LinkStateWithVelocity | None, ...]:
+    """Poses of several links and, if asked for, their velocities.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndices: The links, in any order.
+        computeLinkVelocity: 1 for the velocities too.
+        computeForwardKinematics: 1 to bring the poses up to date first.
+        physicsClientId: The connection.
+
+    Returns:
+        What `getLinkState` returns, for each link; None for an index that the body does not have.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, or the indices are not a sequence.
+
+    Examples:
+        >>> [round(state[4][2], 3) for state in p.getLinkStates(arm, [5, 6])]
+        [1.18, 1.261]
+    """
+    try:
+        access = clients[physicsClientId].bodies[bodyUniqueId]
+        links = [access.links[index] for index in linkIndices]
+        if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
+            if computeForwardKinematics:
+                access.body.update_link_poses()
+            if not computeLinkVelocity:
+                return tuple([link.state() for link in links])
+            access.body.update_link_velocities()
+            return tuple([link.state() + link.velocity() for link in links])
+    except (KeyError, TypeError, ValueError):
+        pass
+    access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+    requested = indices(linkIndices, "expected a sequence of joint indices", "linkIndices")
+    with_velocity = _prepare(access, computeLinkVelocity, computeForwardKinematics)
+    return tuple(_state(access, index, with_velocity) for index in requested)
+
+
+def _prepare(access: BodyAccess, compute_velocity: Any, compute_kinematics: Any) -> bool:
+    """Brings up to date what was asked for; tells whether velocities were."""
+    with_velocity = integer(compute_velocity, "computeLinkVelocity") != 0
+    with_kinematics = integer(compute_kinematics, "computeForwardKinematics") != 0
+    if with_kinematics:
+        access.body.update_link_poses()
+    if with_velocity:
+        access.body.update_link_velocities()
+    return with_velocity
+
+
+def _state(access: BodyAccess, index: int, with_velocity: bool) -> LinkState | LinkStateWithVelocity | None:
+    link = access.links.get(index)
+    if link is None:
+        return None
+    return (*link.state(), *link.velocity()) if with_velocity else link.state()

@@ -1,0 +1,71 @@
+"""Making the shapes of a body larger or smaller."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+from pybullet._calls.arguments import Vector, vector3
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import BASE
+
+if TYPE_CHECKING:
+    from carom.description import Collision
+    from carom.scene.body import Body
+
+__all__ = ["unsupportedChangeScaling"]
+
+_WRONG = "scaling needs a 3 coordinates [x,y,z]."
+# What the shapes of a base were before they were scaled first.
+_unscaled: WeakKeyDictionary[Body, tuple[Collision, ...]] = WeakKeyDictionary()
+
+
+@exported
+def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId: int = 0) -> None:
+    """Scales the collision shapes of a body's base, against the size they were loaded with.
+
+    Mass, inertia, joints, other links and looks stay as they are. Balls take the factor of x, capsules
+    those of y and z. A body that does not exist is no error.
+
+    Args:
+        bodyUniqueId: The body.
+        scaling: Factors along x, y and z, greater than 0.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, the factors are not three finite numbers greater than 0, or a shape
+            cannot be scaled by them: cylinders have to stay round, and heightfields as they are.
+
+    Examples:
+        >>> p.unsupportedChangeScaling(cube, [2, 2, 2])
+        >>> p.unsupportedChangeScaling(cube, [1, 1, 1])
+    """
+    client = client_of(physicsClientId)
+    body = client.body(bodyUniqueId)
+    factors = vector3(scaling, _WRONG, "scaling")
+    if min(factors) <= 0.0:
+        fail(_WRONG, f"The factors have to be greater than 0, not {factors}.")
+    if body is None:
+        return
+
+    from carom.layouts.flags import LoadFlags
+    from carom.model.scaled_shapes import scaled_collisions
+    from carom.scene.link_dynamics import LinkDynamics
+
+    spec = body.spec.base
+    before = spec.collisions
+    shapes = client.world.touch.shapes
+    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    with client.lock:
+        unscaled = _unscaled.setdefault(body, before)
+        try:
+            spec.collisions = scaled_collisions(unscaled, spec.inertial_frame, factors)
+            shapes.replace_pieces(body.first_link, spec, implicit_cylinder=implicit)
+        except ValueError as reason:
+            spec.collisions = before
+            fail("unsupportedChangeScaling failed.", f"Body {body.id} ({body.name}): {reason}.")
+        body.dynamics(BASE).collision_margin = LinkDynamics.of(spec).collision_margin
+        body.derived.clear()
+        client.bodies.forget(body.id)

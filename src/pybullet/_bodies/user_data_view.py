@@ -1,0 +1,109 @@
+"""What a client knows of the texts of a world that others change too.
+
+In PyBullet every client has a copy of all texts: that of the moment when it connected, with its own changes
+since. What others change appears in it after `syncUserData`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from inspect import BoundArguments, signature
+from typing import TYPE_CHECKING, Any
+
+from carom.scene.user_data import UserData, UserDatum
+from pybullet._bodies.user_data import READERS
+
+if TYPE_CHECKING:
+    from pybullet._calls.detours import Function
+
+_CHANGING = frozenset({"addUserData", "removeUserData", "syncUserData", "removeBody", "resetSimulation"})
+_LOADING = frozenset({"loadURDF", "loadSDF", "loadMJCF", "loadBullet"})
+_ALL = -1
+
+Ask = Callable[..., Any]
+"""Calls a function of the world by name, with positional arguments."""
+
+
+class UserDataView:
+    """The copy of one client.
+
+    Args:
+        ask: Calls functions where the world is.
+    """
+
+    def __init__(self, ask: Ask) -> None:
+        self._ask = ask
+        self._known = UserData()
+        self._read_all()
+
+    def call(
+        self, function: Function, arguments: Any, keywords: dict[str, Any], go_on: Callable[[], Any]
+    ) -> Any:
+        """Answers a call out of the copy, or lets it go on to the world and takes over what it changes.
+
+        Args:
+            function: What is called.
+            arguments: Its positional arguments.
+            keywords: Its keyword arguments.
+            go_on: Calls it where the world is.
+        """
+        reader = READERS.get(function.name)
+        if function.name in _LOADING:
+            return self._loaded(go_on())
+        if reader is None and function.name not in _CHANGING:
+            return go_on()
+        bound = signature(function.plain).bind(*arguments, **keywords)
+        bound.apply_defaults()
+        if reader is not None:
+            bound.arguments.pop("physicsClientId")
+            return reader(self._known, *bound.arguments.values())
+        result = go_on()
+        self._take_over(function.name, bound, result)
+        return result
+
+    def _take_over(self, name: str, bound: BoundArguments, result: Any) -> None:
+        """Does to the copy what a call has done to the world."""
+        given = bound.arguments
+        match name:
+            case "addUserData":
+                place = given["bodyUniqueId"], given["linkIndex"], given["visualShapeIndex"]
+                self._known.put(UserDatum(result, *place, given["key"], given["value"]))
+            case "removeUserData":
+                datum = self._known.get(given["userDataId"])
+                if datum is not None:
+                    self._known.remove(datum)
+            case "removeBody":
+                self._known.removal(given["bodyUniqueId"])()
+            case "resetSimulation":
+                self._known = UserData()
+            case _:
+                self._synchronise(given["bodyUniqueId"], given["bodyUniqueIds"])
+
+    def _loaded(self, result: Any) -> Any:
+        """Copies what the file of new bodies states, which PyBullet does only when it is asked to."""
+        self._read_anew(result if isinstance(result, tuple) else (result,))
+        return result
+
+    def _synchronise(self, one: Any, several: Any) -> None:
+        asked = several if several is not None else one
+        if isinstance(asked, Iterable):
+            self._read_anew(tuple(asked))
+        elif asked == _ALL:
+            self._read_all()
+        else:
+            self._read_anew((asked,))
+
+    def _read_all(self) -> None:
+        """Copies all texts there are."""
+        self._known = UserData()
+        count = self._ask("getNumBodies")
+        self._read_anew(tuple(self._ask("getBodyUniqueId", place) for place in range(count)))
+
+    def _read_anew(self, bodies: tuple[int, ...]) -> None:
+        """Copies the texts of some bodies."""
+        for body in bodies:
+            self._known.removal(body)()
+            for place in range(self._ask("getNumUserData", body)):
+                number, key, _, link, shape = self._ask("getUserDataInfo", body, place)
+                value = self._ask("getUserData", number)
+                self._known.put(UserDatum(number, body, link, shape, key.decode(), value.decode()))

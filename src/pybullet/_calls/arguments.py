@@ -1,0 +1,288 @@
+"""Checking of arguments: scripts get a clear error, never a corrupt world.
+
+Getters and setters that are called every step first try the arguments as they are; only when that does
+not work do they come here, to find out what is wrong or to convert what is merely unusual.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from math import hypot, inf, isfinite, nan
+from operator import index
+from typing import Any, NoReturn, SupportsFloat
+
+from pybullet._calls.errors import fail
+
+_LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
+# Squared lengths of quaternions that have a direction: their products are still ordinary numbers.
+_LEAST_SQUARE, _GREATEST_SQUARE = 1e-60, 1e60
+MAX_MAGNITUDE = 1e30
+"""Positions, velocities, masses and the like may be so great; readers of files have the same bound."""
+
+# Lists, tuples, ranges and NumPy arrays are all iterables to a type checker, but not all sequences.
+Vector = Iterable[float]
+Indices = Iterable[int]
+Vectors = Iterable[Vector]
+
+
+def integer(value: Any, name: str) -> int:
+    """An integer of 32 bits.
+
+    Raises:
+        TypeError: It is not an integer.
+        OverflowError: It does not fit.
+    """
+    if type(value) is int and _LEAST_INT <= value <= _GREATEST_INT:
+        return value
+    try:
+        number = index(value)
+    except TypeError as problem:
+        raise TypeError(f"{problem} ({name})") from None
+    if number > _GREATEST_INT:
+        raise OverflowError(f"signed integer is greater than maximum ({name})")
+    if number < _LEAST_INT:
+        raise OverflowError(f"signed integer is less than minimum ({name})")
+    return number
+
+
+def real(value: Any, name: str, problem: str = "") -> float:
+    """A finite number; `problem` is PyBullet's text if it is not.
+
+    Raises:
+        TypeError: It is not a number.
+        pybullet.error: It is infinite or not a number (NaN).
+    """
+    kind = type(value)
+    if kind is float and isfinite(value):
+        return value
+    if kind is int and -_GREATEST_INT <= value <= _GREATEST_INT:
+        return float(value)
+    number = _as_float(value, name)
+    if not isfinite(number):
+        particulars = f"{name} has to be a finite number, not {number}."
+        fail(problem or particulars, particulars if problem else "")
+    return number
+
+
+def bound(value: Any, name: str) -> float:
+    """A number that may be infinite: a limit that is not there.
+
+    Raises:
+        TypeError: It is not a number.
+        pybullet.error: It is not a number (NaN) or minus infinity.
+    """
+    if type(value) is float and value > -inf:
+        return value
+    number = _as_float(value, name)
+    if number == inf:
+        return number
+    return real(number, name)
+
+
+def text(value: Any, name: str) -> str:
+    """A string.
+
+    Raises:
+        TypeError: It is not a string.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"argument must be str, not {type(value).__name__} ({name})")
+    return value
+
+
+def _as_float(value: Any, name: str) -> float:
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"must be real number, not {type(value).__name__} ({name})")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"must be real number, not {type(value).__name__} ({name})") from None
+
+
+def by_name(
+    function: str, names: Sequence[str], arguments: tuple[Any, ...], keywords: dict[str, Any]
+) -> dict[str, Any]:
+    """The arguments of a call that follow its first one, by name.
+
+    For functions whose arguments mean different things in different calls.
+
+    Args:
+        function: Name of the function.
+        names: Of the arguments, in order.
+        arguments: Those given by position.
+        keywords: Those given by name.
+
+    Raises:
+        TypeError: There are too many, an unknown one, or one is given twice.
+    """
+    if len(arguments) > len(names):
+        raise TypeError(f"{function}() takes at most {len(names) + 1} arguments ({len(arguments) + 1} given)")
+    given = dict(zip(names, arguments, strict=False))
+    for name, value in keywords.items():
+        if name not in names:
+            raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+        if name in given:
+            raise TypeError(f"{function}() got multiple values for argument {name!r}")
+        given[name] = value
+    return given
+
+
+def one_body(body_unique_id: Any, body_index: Any, function: str) -> Any:
+    """The body of a call, by whichever of its two names it was given.
+
+    Raises:
+        TypeError: By neither, or by both.
+    """
+    if body_unique_id is None and body_index is None:
+        raise TypeError(f"{function}() missing required argument 'bodyUniqueId' (pos 1)")
+    if body_unique_id is not None and body_index is not None:
+        raise TypeError(f"{function}() got both 'bodyUniqueId' and 'bodyIndex'")
+    return body_index if body_unique_id is None else body_unique_id
+
+
+def required(function: str, **arguments: Any) -> None:
+    """Raises `TypeError` for the first of the arguments that is None."""
+    for name, value in arguments.items():
+        if value is None:
+            raise TypeError(f"{function}() missing required argument {name!r}")
+
+
+def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
+    """Finite numbers from any sequence: a list, a tuple, a range or an array of one dimension.
+
+    Args:
+        values: The sequence.
+        problem: PyBullet's text for one that is not fit.
+        name: Of the argument.
+
+    Raises:
+        pybullet.error: It is not a sequence, or an item is not a finite number.
+    """
+    if isinstance(values, (list, tuple)):
+        try:
+            if -inf < sum(values) < inf:
+                return tuple(map(float, values))
+        except (TypeError, ValueError):
+            pass
+    result = array("d")
+    try:
+        result.extend(values)
+    except TypeError:
+        for position, item in enumerate(sequence(values, problem, name)):
+            if not isinstance(item, SupportsFloat):
+                fail(problem, f"{name}[{position}] is {item!r}, not a number.")
+        fail(problem, f"{name} is {values!r}.")
+    if not -inf < sum(result) < inf:
+        for position, item in enumerate(result):
+            if not isfinite(item):
+                fail(problem, f"{name}[{position}] is {item}.")
+    return tuple(result)
+
+
+def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
+    """Three quantities; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    try:
+        x, y, z = values
+        if abs(x) + abs(y) + abs(z) <= MAX_MAGNITUDE:
+            return float(x), float(y), float(z)
+    except (TypeError, ValueError):
+        pass
+    x, y, z = _counted(values, 3, problem, name)
+    return x, y, z
+
+
+def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
+    """Four quantities; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    try:
+        x, y, z, w = values
+        if abs(x) + abs(y) + abs(z) + abs(w) <= MAX_MAGNITUDE:
+            return float(x), float(y), float(z), float(w)
+    except (TypeError, ValueError):
+        pass
+    x, y, z, w = _counted(values, 4, problem, name)
+    return x, y, z, w
+
+
+def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
+    """A quaternion (x, y, z, w) that has a direction; raises `pybullet.error`."""
+    x, y, z, w = vector4(values, problem, name)
+    squared = x * x + y * y + z * z + w * w
+    if not _LEAST_SQUARE < squared < _GREATEST_SQUARE:
+        _refuse_rotation((x, y, z, w), problem, name)
+    return x, y, z, w
+
+
+def check_rotation(values: Sequence[float], problem: str, name: str) -> None:
+    """Raises `pybullet.error` for a quaternion that has no direction."""
+    if not _LEAST_SQUARE < sum(value * value for value in values) < _GREATEST_SQUARE:
+        _refuse_rotation(values, problem, name)
+
+
+def _refuse_rotation(values: Sequence[float], problem: str, name: str) -> NoReturn:
+    length = hypot(*values)
+    about = "is no rotation" if length < 1.0 else "is too long for a rotation"
+    fail(problem, f"{name} is a quaternion of length {length:g}, which {about}.")
+
+
+def moderate(value: float, problem: str, name: str) -> float:
+    """A number whose products with a few others are numbers, too; raises `pybullet.error` for any other."""
+    if not abs(value) <= MAX_MAGNITUDE:
+        particulars = f"{name} is {value:g}; it has to be from {-MAX_MAGNITUDE:g} to {MAX_MAGNITUDE:g}."
+        fail(problem or particulars, particulars if problem else "")
+    return value
+
+
+def quantity(value: Any, name: str) -> float:
+    """A position, velocity, gain or the like: a number that kernels can reckon with.
+
+    Raises:
+        TypeError: It is not a number.
+        pybullet.error: It is not finite, or greater than `MAX_MAGNITUDE`.
+    """
+    return moderate(real(value, name), "", name)
+
+
+def quantities(values: Any, problem: str, name: str) -> tuple[float, ...]:
+    """As `numbers`; each is a `quantity`."""
+    result = numbers(values, problem, name)
+    for item in result:
+        moderate(item, problem, f"An item of {name}")
+    return result
+
+
+def _counted(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
+    result = quantities(values, problem, name)
+    if len(result) != count:
+        fail(problem, f"{name} has {len(result)} values instead of {count}.")
+    return result
+
+
+def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:
+    """The items of any sequence; raises `pybullet.error` when it is none."""
+    try:
+        return tuple(values)
+    except TypeError:
+        fail(problem, f"{name} is {values!r}.")
+
+
+def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:
+    """Indices from any sequence of integers or of floats that stand for integers.
+
+    Raises:
+        pybullet.error: It is not a sequence, or an item is no index.
+    """
+    return tuple([_as_index(item, name) for item in sequence(values, problem, name)])
+
+
+def _as_index(item: Any, name: str) -> int:
+    try:
+        return index(item)
+    except TypeError:
+        number = nan
+        with suppress(TypeError, ValueError):
+            number = float(item) if isinstance(item, SupportsFloat) else nan
+        if number.is_integer():
+            return int(number)
+    fail("Joint index out-of-range.", f"{name} contains {item!r}, which is no index.")

@@ -1,0 +1,195 @@
+"""Camera images."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from pybullet._calls.arguments import Vector, integer, numbers, real, vector3
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import (
+    ER_NO_SEGMENTATION_MASK,
+    ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX,
+    ER_USE_PROJECTIVE_TEXTURE,
+)
+from pybullet._calls.errors import fail
+from pybullet._calls.optional_vectors import has_length
+from pybullet._clients.clients import Client, client_of
+from pybullet._maths.camera_maths import Z_UP, Matrix16, frustum, look_at, orbit
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from carom.render.lights import Light
+
+__all__ = ["getCameraImage"]
+
+_FAILED = "getCameraImage failed."
+_BODY_BITS = (1 << 24) - 1
+
+
+@exported
+def getCameraImage(
+    width: int,
+    height: int,
+    viewMatrix: Vector | None = None,
+    projectionMatrix: Vector | None = None,
+    lightDirection: Vector | None = None,
+    lightColor: Vector | None = None,
+    lightDistance: float = -1,
+    shadow: int = -1,
+    lightAmbientCoeff: float = -1,
+    lightDiffuseCoeff: float = -1,
+    lightSpecularCoeff: float = -1,
+    renderer: int = -1,
+    flags: int = -1,
+    projectiveTextureView: Vector | None = None,
+    projectiveTextureProj: Vector | None = None,
+    physicsClientId: int = 0,
+) -> tuple[int, int, NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]]:
+    """Takes a picture of the world. Needs neither a GPU nor a display.
+
+    What is said about the light, shadows included, holds for the images that follow, too.
+
+    Args:
+        width: Number of columns, from 1 to 16384; there may be up to 64 million pixels.
+        height: Number of rows.
+        viewMatrix: World to camera, 16 numbers column after column, as from `computeViewMatrix`.
+        projectionMatrix: Camera to image, as from `computeProjectionMatrixFOV`. When one of the two is
+            left out, the camera is that of the window, or without one looks at the origin from near by.
+        lightDirection: Towards the light, world axes; (-50, 30, 100) at first.
+        lightColor: Red, green and blue of the light; (1, 1, 1) at first.
+        lightDistance: Shadows are those of a lamp so far from the origin of the world [m]; 2 at first. It
+            lights what the camera's field of view shows when placed there. Negative: as before.
+        shadow: 1 for shadows, 0 for none; -1 as before, at first none.
+        lightAmbientCoeff: Share of the colour seen without light; 0.6 at first. Negative: as before.
+        lightDiffuseCoeff: Share seen the more, the more a surface faces the light; 0.35 at first.
+        lightSpecularCoeff: Strength of highlights; 0.05 at first.
+        renderer: `ER_TINY_RENDERER` or `ER_BULLET_HARDWARE_OPENGL`: there is one renderer for both.
+        flags: `ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX`, `ER_NO_SEGMENTATION_MASK` and
+            `ER_USE_PROJECTIVE_TEXTURE`, added up.
+        projectiveTextureView: With that last flag: world to the projector that casts the textures; the
+            camera itself when left out.
+        projectiveTextureProj: Projector to the square of the texture, whose lower left corner is (0, 0).
+        physicsClientId: The connection.
+
+    Returns:
+        (width, height, colours, depth, segmentation). Colours: (height, width, 4) uint8, red, green, blue,
+        255, white where there is nothing. Depth: (height, width) float32 as in OpenGL's buffer; the
+        distance along the view is far * near / (far - (far - near) * depth) [m]. Segmentation:
+        (height, width) int32 body ids, -1 where there is nothing; with the flag
+        `ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX` body id + (link index + 1) << 24. Row 0 is the top.
+
+    Raises:
+        pybullet.error: Not connected, the size is out of range, or a matrix, a colour or the direction of
+            the light is not fit.
+
+    Examples:
+        >>> view = p.computeViewMatrix([2, 0, 1], [0, 0, 0.5], [0, 0, 1])
+        >>> lens = p.computeProjectionMatrixFOV(60, 4 / 3, 0.1, 10)
+        >>> width, height, colour, depth, bodies = p.getCameraImage(64, 48, view, lens)
+        >>> colour.shape, depth.shape, bodies.shape
+        ((48, 64, 4), (48, 64), (48, 64))
+    """
+    client = client_of(physicsClientId)
+    columns, rows = integer(width, "width"), integer(height, "height")
+    options = max(integer(flags, "flags"), 0)
+    integer(renderer, "renderer")
+    view, projection = _matrix(viewMatrix, "viewMatrix"), _matrix(projectionMatrix, "projectionMatrix")
+    if view is None or projection is None:
+        view, projection = view_of_window(client), _projection_of_window(client)
+
+    from carom.render.appearance import appearance_of
+    from carom.render.renderer import renderer_of
+
+    projector = None
+    if options & ER_USE_PROJECTIVE_TEXTURE:
+        projector = projection @ view
+        place = _matrix(projectiveTextureView, "projectiveTextureView")
+        cast = _matrix(projectiveTextureProj, "projectiveTextureProj")
+        if place is not None and cast is not None:
+            projector = cast @ place
+    with client.lock:
+        appearance = appearance_of(client.world)
+        light = _changed_light(
+            appearance.light,
+            lightDirection,
+            lightColor,
+            {
+                "distance": real(lightDistance, "lightDistance"),
+                "ambient": real(lightAmbientCoeff, "lightAmbientCoeff"),
+                "diffuse": real(lightDiffuseCoeff, "lightDiffuseCoeff"),
+                "specular": real(lightSpecularCoeff, "lightSpecularCoeff"),
+            },
+            integer(shadow, "shadow"),
+        )
+        try:
+            image = renderer_of(client.world).draw(
+                client.world, view, projection, columns, rows, light, projector
+            )
+        except ValueError as problem:
+            fail(_FAILED, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
+        appearance.light = light
+    label = image.label
+    if options & ER_NO_SEGMENTATION_MASK:
+        label.fill(-1)
+    elif not options & ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX:
+        label[label >= 0] &= _BODY_BITS
+    client.window.show_image(image.rgba, image.depth, label)
+    return columns, rows, image.rgba, image.depth, label
+
+
+def _matrix(values: Any, name: str) -> NDArray[np.float64] | None:
+    """4 x 4 matrix of 16 numbers, column after column; None, with a warning, of another number of them."""
+    if not has_length(values, 16, name):
+        return None
+    return _square(numbers(values, _FAILED, name))
+
+
+def _square(columns: Sequence[float]) -> NDArray[np.float64]:
+    import numpy as np
+
+    return np.array(columns).reshape(4, 4).T
+
+
+def view_of_window(client: Client) -> NDArray[np.float64]:
+    """World to the camera of the window, or to PyBullet's camera without a window."""
+    width, _, view = client.window.camera_info()[:3]
+    if width and isinstance(view, tuple):
+        return _square(view)
+    target = (0.0, 0.0, 0.0)
+    eye, up = orbit(target, 1.5, -80.0, -10.0, 0.0, Z_UP)
+    default: Matrix16 | None = look_at(eye, target, up)
+    assert default is not None
+    return _square(default)
+
+
+def _projection_of_window(client: Client) -> NDArray[np.float64]:
+    """Camera of the window to image; PyBullet's without a window."""
+    width, _, _, projection = client.window.camera_info()[:4]
+    if width and isinstance(projection, tuple):
+        return _square(projection)
+    near, far, aspect = 0.01, 1000.0, 4.0 / 3.0
+    return _square(frustum(-aspect * near, aspect * near, -near, near, near, far))
+
+
+def _changed_light(
+    light: Light,
+    direction: Any,
+    colour: Any,
+    coefficients: dict[str, float],
+    shadow: int,
+) -> Light:
+    """The light with what was given; negative numbers stand for no change."""
+    changes: dict[str, Any] = {name: value for name, value in coefficients.items() if value >= 0.0}
+    if has_length(direction, 3, "lightDirection"):
+        changes["direction"] = vector3(direction, _FAILED, "lightDirection")
+        if not any(changes["direction"]):
+            fail(_FAILED, "lightDirection has length 0.")
+    if has_length(colour, 3, "lightColor"):
+        changes["colour"] = vector3(colour, _FAILED, "lightColor")
+    if shadow >= 0:
+        changes["shadow"] = shadow != 0
+    return replace(light, **changes)

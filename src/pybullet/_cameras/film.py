@@ -1,0 +1,56 @@
+"""Videos of what the window shows, by the software camera."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.camera import DAYLIGHT, NOTHING
+from carom.recording.recorder import Film
+from carom.recording.video import VideoFile
+from carom.render.renderer import renderer_of
+from pybullet._cameras.camera import view_of_window
+from pybullet._maths.camera_maths import frustum
+
+if TYPE_CHECKING:
+    from pybullet._clients.clients import Client
+
+PICTURES_PER_SECOND = 60.0
+"""Of a video unless told otherwise, as PyBullet's windows have it."""
+
+# Without a window, which has a size of its own.
+_WIDTH, _HEIGHT = 640, 480
+# PyBullet's background.
+_BACKGROUND = (0.7, 0.7, 0.8)
+_NEAR, _FAR = 0.01, 1000.0
+
+
+def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Film:
+    """A film of the world of a client, from where the camera of its window is at the time.
+
+    Its size is that of the window now. It takes a picture each `1 / fps` seconds of simulated time, so it
+    plays as fast as the simulated things move.
+
+    Raises:
+        ImportError: PyAV is not installed.
+        OSError: The file cannot be written.
+        ValueError: The rate is not positive.
+    """
+    width, height = (int(size) for size in client.window.camera_info()[:2] if isinstance(size, int))
+    width, height = width or _WIDTH, height or _HEIGHT
+    aspect = width / height
+    lens = frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR)
+    projection = np.array(lens).reshape(4, 4).T
+
+    def picture() -> NDArray[np.uint8]:
+        world = client.world
+        image = renderer_of(world).draw(world, view_of_window(client), projection, width, height, DAYLIGHT)
+        colour = np.ascontiguousarray(image.rgba[:, :, :3])
+        background = client.window.background or _BACKGROUND
+        colour[image.label == NOTHING] = [round(255 * min(max(part, 0.0), 1.0)) for part in background]
+        return colour
+
+    return Film(client.world, VideoFile(path, width, height, fps), 1.0 / fps, picture)

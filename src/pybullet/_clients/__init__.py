@@ -1,0 +1,1 @@
+"""What belongs to one connection: its world, its registries, its clock."""

@@ -1,0 +1,200 @@
+"""Physics clients: independent worlds, picked by `physicsClientId`."""
+
+from __future__ import annotations
+
+from threading import RLock
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pybullet._calls.arguments import integer
+from pybullet._calls.detours import remove_detour
+from pybullet._calls.errors import fail
+from pybullet._clients.log_registry import Logs
+from pybullet._clients.plugin_registry import Plugins
+from pybullet._clients.shape_registry import ShapeRegistry
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from carom.formats.search import AssetSearch
+    from carom.scene.body import Body
+    from carom.scene.snapshot import Snapshot
+    from carom.world.world import World
+    from pybullet._bodies.body_access import BodyTable
+    from pybullet._clients.origins import Origin
+    from pybullet._clients.real_time import RealTimeClock
+    from pybullet._connections.remote import RemoteClient
+    from pybullet._connections.served import Served
+    from pybullet._window.window import Window
+
+MAX_CLIENTS = 1024
+NOT_CONNECTED = "Not connected to physics server."
+
+
+class Client:
+    """One connection and the world behind it.
+
+    Attributes:
+        logs: Logs of states that are being written.
+        method: How it was connected: `DIRECT`, `GUI`, ...
+        world: Its world.
+        bodies: Direct access to the state of bodies, by id; made when first asked for and forgotten
+            whenever bodies come or go, because that moves the rows of the state arrays.
+        time_step: `fixedTimeStep` [s].
+        origins: The calls that loaded bodies from files, by body id.
+        plugins: Plugins the script has loaded.
+        real_time: `useRealTimeSimulation` as the script set it.
+        report_analytics: `stepSimulation` returns the statistics of the solver.
+        server: What lets other processes drive the world, if anything does.
+        search_path: Directory that this connection was told to search besides the usual ones.
+        latest_search_path: What any connection of this process was told last: PyBullet has but one directory
+            for all of them, and keeps it when they end.
+        shapes: Shapes the script has created.
+        states: States the script has saved, by id.
+        window: What the script sees of a graphical interface.
+        clock: Steps the world by the wall clock while that is asked for.
+        lock: Held during a step and while bodies come, go or change shape. Getters and setters of the
+            state do without: they read and write single numbers.
+    """
+
+    __slots__ = (
+        "bodies",
+        "clock",
+        "lock",
+        "logs",
+        "method",
+        "origins",
+        "plugins",
+        "real_time",
+        "report_analytics",
+        "search_path",
+        "server",
+        "shapes",
+        "states",
+        "time_step",
+        "window",
+        "world",
+    )
+
+    latest_search_path: ClassVar[Path | None] = None
+
+    def __init__(self, method: int, world: World, bodies: BodyTable, window: Window) -> None:
+        self.method = method
+        self.world = world
+        self.bodies = bodies
+        self.window = window
+        self.time_step = world.parameters.time_step
+        self.real_time = 0
+        self.report_analytics = False
+        self.search_path: Path | None = None
+        self.shapes = ShapeRegistry()
+        self.logs = Logs()
+        self.plugins = Plugins()
+        self.origins: dict[int, Origin] = {}
+        self.states: dict[int, Snapshot] = {}
+        self.clock: RealTimeClock | None = None
+        self.server: Served | None = None
+        self.lock = RLock()
+        bodies.client = self
+
+    def body(self, body_id: Any) -> Body | None:
+        """The body of an id, or None; raises `TypeError` for anything but an integer."""
+        return self.world.bodies.get(integer(body_id, "bodyUniqueId"))
+
+    def search(self) -> AssetSearch:
+        """Where files that the script names are looked for."""
+        return self.plugins.search(self.search_path, Client.latest_search_path)
+
+    def set_search_path(self, path: Path) -> None:
+        """Searches a directory besides the usual ones; the other connections do so after their own."""
+        self.search_path = Client.latest_search_path = path
+
+    def set_timeout(self, seconds: float) -> None:
+        """A world in the same process answers at once."""
+
+    def close(self) -> None:
+        """Stops what runs in the background, and finishes what is being written."""
+        if self.server is not None:
+            self.server.close()
+            self.server = None
+        if self.clock is not None:
+            self.clock.stop()
+            self.clock = None
+        self.logs.stop_all(self)
+        self.plugins.remove_all_places()
+        self.window.close()
+
+
+closed_by_users: set[int] = set()
+"""The clients whose window a user has closed, until the script disconnects or connects anew."""
+
+clients: dict[int, Client] = {}
+"""Every client with a world in this process, by its id."""
+
+remote_clients: dict[int, RemoteClient] = {}
+"""Every client with a world in another process, by its id."""
+
+
+def living_client(physics_client_id: Any) -> Client | None:
+    """The client of an id, unless there is none or its window was closed, which ends the connection.
+
+    Raises:
+        TypeError: The id is not an integer.
+    """
+    number = integer(physics_client_id, "physicsClientId")
+    client = clients.get(number)
+    if client is not None and not client.window.is_open():
+        forget(number)
+        closed_by_users.add(number)
+        return None
+    return client
+
+
+def why_not_connected(physics_client_id: Any) -> str:
+    """What to do about a connection that does not exist."""
+    if physics_client_id in closed_by_users:
+        return f"The window of client {physics_client_id} has been closed."
+    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) before."
+
+
+def client_of(physics_client_id: Any) -> Client:
+    """The client of an id.
+
+    Raises:
+        pybullet.error: There is none.
+        TypeError: The id is not an integer.
+    """
+    client = clients.get(physics_client_id) if type(physics_client_id) is int else None
+    if client is None or not client.window.is_open():
+        client = living_client(physics_client_id)
+    if client is None:
+        fail(NOT_CONNECTED, why_not_connected(physics_client_id))
+    return client
+
+
+def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
+    """The client of an id, wherever its world is, unless there is none or it has lost its server or window.
+
+    Raises:
+        TypeError: The id is not an integer.
+    """
+    number = integer(physics_client_id, "physicsClientId")
+    client = remote_clients.get(number)
+    if client is not None and not client.is_open():
+        forget(number)
+        return None
+    return client or living_client(number)
+
+
+def forget(number: int) -> None:
+    """Closes a client, which frees its id."""
+    remove_detour(number)
+    client = clients.pop(number, None) or remote_clients.pop(number, None)
+    if client is not None:
+        client.close()
+
+
+def free_slot() -> int | None:
+    """The least id that no client has."""
+    return next(
+        (slot for slot in range(MAX_CLIENTS) if slot not in clients and slot not in remote_clients), None
+    )

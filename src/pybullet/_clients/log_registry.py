@@ -1,0 +1,77 @@
+"""The logs of one client."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from carom.world.log import SubstepObserver
+
+if TYPE_CHECKING:
+    from pybullet._clients.clients import Client
+
+
+class StateLog(Protocol):
+    """Any log: it is told of every step, and finishes its file in the end."""
+
+    def before_step(self) -> None:
+        """A step is about to be made."""
+        ...
+
+    def after_step(self) -> None:
+        """It has been made."""
+        ...
+
+    def close(self) -> None:
+        """Finish the file."""
+        ...
+
+
+class Logs:
+    """Logs by id.
+
+    Attributes:
+        by_id: Those that are being written.
+        next_id: Id of the next one; ids are not used again.
+        zones: Names of the zones of `submitProfileTiming` that have begun.
+    """
+
+    def __init__(self) -> None:
+        self.by_id: dict[int, StateLog] = {}
+        self.next_id = 0
+        self.zones: list[str] = []
+
+    def shoot(self) -> None:
+        """Takes a picture for each video; from now on they have the pictures they are told to take."""
+        if not self.by_id:
+            return
+        from carom.recording.recorder import Film
+
+        for log in self.by_id.values():
+            if isinstance(log, Film):
+                log.automatic = False
+                log.shoot()
+
+    def start(self, client: Client, log: StateLog | None) -> int:
+        """Begins a log and returns its id; None is one that is not written."""
+        number = self.next_id
+        self.next_id += 1
+        if log is not None:
+            self.by_id[number] = log
+            client.world.observers.append(log)
+            if isinstance(log, SubstepObserver):
+                client.world.watch_substeps(log)
+        return number
+
+    def stop(self, client: Client, number: int) -> None:
+        """Ends a log and finishes its file; nothing if there is none."""
+        log = self.by_id.pop(number, None)
+        if log is not None:
+            client.world.observers.remove(log)
+            if isinstance(log, SubstepObserver):
+                client.world.unwatch_substeps(log)
+            log.close()
+
+    def stop_all(self, client: Client) -> None:
+        """Ends all logs."""
+        for number in list(self.by_id):
+            self.stop(client, number)

@@ -1,0 +1,120 @@
+"""Finding bodies and joints for calls that did not succeed at once, and saying what is wrong with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pybullet._calls.arguments import integer
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import Client, client_of
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._joints.joint_access import JointAccess
+
+BASE = -1
+"""Index of the base among the links."""
+
+OUT_OF_RANGE = "Joint index out-of-range."
+
+
+def no_body(body_id: int) -> str:
+    """Says that there is no body of an id."""
+    return f"There is no body {body_id}."
+
+
+def no_joint(body: Body, index: int) -> str:
+    """Says that a body has no joint of an index."""
+    return f"Body {body.id} ({body.spec.name}) has {body.joint_count} joints, so there is no joint {index}."
+
+
+def body_of(client: Client, body_id: Any, problem: str) -> Body:
+    """A body.
+
+    Args:
+        client: The connection.
+        body_id: The body.
+        problem: PyBullet's text when there is no such body.
+
+    Raises:
+        pybullet.error: There is none.
+        TypeError: The id is not an integer.
+    """
+    body = client.body(body_id)
+    if body is None:
+        fail(problem, no_body(body_id))
+    return body
+
+
+def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str) -> tuple[Body, int] | None:
+    """A body and the index of a link of it; None, with a warning, if there is no such body or link.
+
+    Args:
+        client: The connection.
+        body_id: The body.
+        link_index: The link, from 0; -1 for the base.
+        function: Name of the function that needs them.
+
+    Raises:
+        TypeError: One is not an integer.
+    """
+    body, link = client.body(body_id), integer(link_index, "linkIndex")
+    if body is None:
+        logger.warning("%s: %s", function, no_body(body_id))
+        return None
+    if not BASE <= link < body.joint_count:
+        logger.warning("%s: %s", function, no_joint(body, link))
+        return None
+    return body, link
+
+
+def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: str = "") -> BodyAccess:
+    """Access to a body.
+
+    Args:
+        body_id: The body.
+        physics_client_id: The connection.
+        problem: PyBullet's text when there is no such body.
+        negative: PyBullet's text for negative ids, where it has one of its own.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body.
+        TypeError: An id is not an integer.
+    """
+    client = client_of(physics_client_id)
+    number = integer(body_id, "bodyUniqueId")
+    if number not in client.world.bodies:
+        fail(negative if number < 0 and negative else problem, no_body(number))
+    return client.bodies[number]
+
+
+def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
+    """Access to a joint that is to be set.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+        TypeError: An id or index is not an integer.
+    """
+    access = body_access(body_id, physics_client_id, OUT_OF_RANGE)
+    index = integer(joint_index, "jointIndex")
+    if index not in access.joints:
+        fail(OUT_OF_RANGE, no_joint(access.body, index))
+    return access.joints[index]
+
+
+def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
+    """Access to a joint whose state is asked for by unusual integers, such as arrays without dimensions.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+        TypeError: An id or index is not an integer.
+    """
+    access = body_access(
+        body_id, physics_client_id, "getJointState failed.", "getJointState failed; invalid bodyUniqueId"
+    )
+    index = integer(joint_index, "jointIndex")
+    if index not in access.joints:
+        problem = "getJointState failed; invalid jointIndex" if index < 0 else "getJointState failed (2)."
+        fail(problem, no_joint(access.body, index))
+    return access.joints[index]

@@ -1,0 +1,90 @@
+"""Simulation by the wall clock, in the background."""
+
+from __future__ import annotations
+
+import atexit
+from threading import Event, Thread
+from time import monotonic
+from typing import TYPE_CHECKING
+from weakref import WeakSet
+
+from pybullet._calls.errors import logger
+
+if TYPE_CHECKING:
+    from pybullet._clients.clients import Client
+
+# A world that cannot keep up, or a process that was asleep, falls behind the clock by no more than this [s].
+_GREATEST_LAG = 0.1
+# How often the world is brought up to date with the clock, unless its time step is longer [s].
+_PERIOD = 1.0 / 240.0
+
+_running: WeakSet[RealTimeClock] = WeakSet()
+
+
+class Pace:
+    """How far a simulation is behind a clock. Steps are counted from one beginning, so nothing drifts."""
+
+    def __init__(self, now: float) -> None:
+        """Starts at a time of the clock [s]."""
+        self._simulated_until = now
+
+    def steps_due(self, now: float, time_step: float) -> int:
+        """How many steps are due; they count as done.
+
+        Args:
+            now: Time of the clock [s].
+            time_step: Of the simulation [s]; it may change from call to call.
+        """
+        earliest = now - max(_GREATEST_LAG, time_step)
+        if self._simulated_until < earliest:
+            self._simulated_until = earliest
+        count = int((now - self._simulated_until) / time_step)
+        self._simulated_until += count * time_step
+        return count
+
+
+class RealTimeClock:
+    """Steps the world of a client so that simulated time passes as fast as real time.
+
+    The world is behind the clock by less than one time step while it can keep up; what it cannot keep
+    up with beyond a tenth of a second is dropped. The time step may change on the way.
+    """
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._stopping = Event()
+        self._thread = Thread(target=self._run, name="pybullet real-time simulation", daemon=True)
+        _running.add(self)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stops and waits for the step in progress: none if the caller holds the client's lock."""
+        self._stopping.set()
+        _running.discard(self)
+        # Not for the thread, which may be waiting for the lock that the caller holds.
+        # In a forked process it is gone, and the lock may be held for ever.
+        if self._thread.is_alive():
+            with self._client.lock:
+                return
+
+    def _run(self) -> None:
+        client, pace = self._client, Pace(monotonic())
+        while not self._stopping.wait(max(_PERIOD, client.time_step)):
+            for _ in range(pace.steps_due(monotonic(), client.time_step / (client.window.speed or 1.0))):
+                if client.window.held and not client.window.has_turn():
+                    break
+                with client.lock:
+                    if self._stopping.is_set():
+                        return
+                    try:
+                        client.world.step()
+                    except Exception:
+                        logger.exception("Real-time simulation has stopped.")
+                        return
+
+
+@atexit.register
+def _stop_all() -> None:
+    # A thread that is inside compiled code while the interpreter shuts down would crash it.
+    for clock in list(_running):
+        clock.stop()

@@ -1,0 +1,1 @@
+"""Connecting, also to worlds of other processes."""

@@ -1,0 +1,340 @@
+"""Connecting to worlds, and what can be asked of a connection."""
+
+from __future__ import annotations
+
+import atexit
+from operator import index
+from typing import Any, overload
+
+from pybullet._calls.arguments import by_name, integer, real, text
+from pybullet._calls.builtin import exported, exported_as
+from pybullet._calls.constants import (
+    DIRECT,
+    GRAPHICS_CLIENT,
+    GRAPHICS_SERVER,
+    GRAPHICS_SERVER_MAIN_THREAD,
+    GRAPHICS_SERVER_TCP,
+    GUI,
+    GUI_MAIN_THREAD,
+    GUI_SERVER,
+    SHARED_MEMORY,
+    SHARED_MEMORY_KEY,
+    SHARED_MEMORY_SERVER,
+    TCP,
+    UDP,
+)
+from pybullet._calls.detours import add_detour
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import (
+    MAX_CLIENTS,
+    NOT_CONNECTED,
+    Client,
+    client_of,
+    clients,
+    closed_by_users,
+    connection_of,
+    forget,
+    free_slot,
+    living_client,
+    remote_clients,
+    why_not_connected,
+)
+from pybullet._connections.target import Target
+from pybullet._window.window import NoWindow
+
+__all__ = [
+    "connect",
+    "disconnect",
+    "getAPIVersion",
+    "getConnectionInfo",
+    "isConnected",
+    "isNumpyEnabled",
+    "setTimeOut",
+    "syncBodyInfo",
+]
+
+_API_VERSION = 202010061
+_WITH_WINDOW = (GUI, GUI_SERVER, GUI_MAIN_THREAD, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
+_SERVERS = (SHARED_MEMORY_SERVER, GUI_SERVER, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
+_TO_A_SERVER = (SHARED_MEMORY, UDP, TCP)
+# Without a server these have a world of their own that nobody sees.
+_TO_GRAPHICS = (GRAPHICS_CLIENT, GRAPHICS_SERVER_TCP)
+_METHODS = {DIRECT, *_WITH_WINDOW, *_SERVERS, *_TO_A_SERVER, *_TO_GRAPHICS}
+_NO_SERVER = -1
+_ONE_WINDOW = (
+    "Only one local in-process GUI/GUI_SERVER connection allowed. Use DIRECT connection mode or start a "
+    "separate GUI physics server (ExampleBrowser, App_SharedMemoryPhysics_GUI, App_SharedMemoryPhysics_VR) "
+    "and connect over SHARED_MEMORY, UDP or TCP instead."
+)
+
+
+@overload
+def connect(method: int, key: int = SHARED_MEMORY_KEY, options: str = "") -> int: ...
+@overload
+def connect(method: int, hostName: str, port: int = -1, options: str = "") -> int: ...
+@exported_as("(method, key=12347, options='', *, hostName='localhost', port=-1)")
+def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
+    """Makes a world and connects to it.
+
+    Also called as `connect(method, hostName, port, options)`.
+
+    Args:
+        *arguments: `key` and `options`, or `hostName`, `port` and `options`.
+        **keywords: The same by name.
+        method: `DIRECT` for a world without a window; any number of them, up to 1024 connections. `GUI`
+            for one with a window; `GUI_MAIN_THREAD` is the same here. The window is a page in the browser:
+            its address is printed, and it opens where there is a display and `CI` is not set.
+
+            `SHARED_MEMORY_SERVER` for a world that other processes can join, `GUI_SERVER` for one with a
+            window. `SHARED_MEMORY` joins such a world, or that of `python -m carom serve`, on the same
+            machine; `TCP` and `UDP` join one on any machine.
+
+            `GRAPHICS_SERVER` (and `..._MAIN_THREAD`) opens a window for the world of another process,
+            which connects by `GRAPHICS_CLIENT` (also called `SHARED_MEMORY_GUI`) or, over TCP, by
+            `GRAPHICS_SERVER_TCP`; without such a server these two have a world that nobody sees.
+        key: Of shared memory: servers and clients with the same key meet.
+        options: Separated by spaces; unknown ones are ignored. Of the window: `--width=1024 --height=768`,
+            the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
+            `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
+            `--port=8400`, where the page is. Of servers: `--tcp=6667` and
+            `--udp=1234`, ports to listen at as well; `--bind=127.0.0.1`, the address of these ports. Of
+            servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the key that both sides have
+            to know; otherwise it is the environment variable `CAROM_SERVER_KEY`, and between processes
+            of one user on one machine none has to be stated.
+        hostName: Of a server.
+        port: Of a server; 6667 for TCP and 1234 for UDP if it is negative.
+
+    Returns:
+        The id of the connection, from 0; it is the `physicsClientId` of the other functions. -1 when no
+        server can be reached by `SHARED_MEMORY`, `UDP` or `TCP`, or it does not accept the key.
+
+    Raises:
+        pybullet.error: There is a window already, there are 1024 connections, the page cannot be served at
+            the address asked for, there is a server with this key already or it cannot listen at its
+            ports, a key cannot be read, or the method does not exist.
+
+    Examples:
+        >>> other = p.connect(p.DIRECT)
+        >>> p.getNumBodies(physicsClientId=other)
+        0
+        >>> p.disconnect(other)
+    """
+    method = integer(method, "method")
+    target = _target(arguments, keywords)
+    slot = free_slot()
+    if slot is None:
+        fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
+    closed_by_users.discard(slot)
+    if method not in _METHODS:
+        fail("connectPhysicsServer unexpected argument", f"There is no connection method {method}.")
+    if method in _TO_A_SERVER or method in _TO_GRAPHICS:
+        if _join(slot, method, target):
+            return slot
+        if method in _TO_A_SERVER:
+            return _NO_SERVER
+    if method in _WITH_WINDOW and any(
+        living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)
+    ):
+        fail(_ONE_WINDOW)
+    clients[slot] = _new_client(method, target)
+    if method in _SERVERS:
+        try:
+            _serve(slot, target)
+        except BaseException:
+            forget(slot)
+            raise
+    return slot
+
+
+def _join(slot: int, method: int, target: Target) -> bool:
+    """Connects to a server in another process; returns whether there is one."""
+    from pybullet._connections.remote import join_server
+    from pybullet._connections.server_options import address_of
+
+    client = join_server(method, address_of(method, target))
+    if client is None:
+        return False
+    remote_clients[slot] = client
+    add_detour(slot, client)
+    return True
+
+
+def _new_client(method: int, target: Target) -> Client:
+    """A client with a new world in this process."""
+    # The engine is imported when it is needed, so that importing the module stays quick.
+    from carom.world.world import World
+    from pybullet._bodies.body_access import BodyTable
+
+    client = Client(method, World(), BodyTable(), NoWindow())
+    if method in _WITH_WINDOW:
+        from pybullet._window.page_window import open_window
+
+        client.window = open_window(client, target.options)
+    return client
+
+
+def _serve(slot: int, target: Target) -> None:
+    """Lets other processes drive the world of a client."""
+    from pybullet._connections.served import Served
+    from pybullet._connections.server_options import server_options
+
+    client = clients[slot]
+    client.server = Served(slot, client, server_options(client.method, target))
+    add_detour(slot, client.server)
+
+
+@exported
+def disconnect(physicsClientId: int = 0) -> None:
+    """Ends a connection; its world is gone.
+
+    A connection that the user has ended, by closing the window, may be ended once more.
+
+    Args:
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: There is no such connection.
+
+    Examples:
+        >>> p.disconnect()
+        >>> p.isConnected()
+        0
+    """
+    if connection_of(physicsClientId) is None:
+        number = index(physicsClientId)
+        if number not in closed_by_users:
+            fail(NOT_CONNECTED, why_not_connected(physicsClientId))
+        closed_by_users.remove(number)
+        return
+    forget(index(physicsClientId))
+
+
+@exported
+def isConnected(physicsClientId: int = 0) -> int:
+    """Whether a connection exists, and its window, if it has one, is open.
+
+    Args:
+        physicsClientId: The connection; any integer.
+
+    Returns:
+        1 or 0.
+
+    Examples:
+        >>> p.isConnected(), p.isConnected(99)
+        (1, 0)
+    """
+    return int(connection_of(physicsClientId) is not None)
+
+
+@exported
+def getConnectionInfo(physicsClientId: int = 0) -> dict[str, int]:
+    """How a connection was made.
+
+    Args:
+        physicsClientId: The connection; any integer.
+
+    Returns:
+        `isConnected`: 1 or 0; `connectionMethod`: `DIRECT`, `GUI`, ..., 0 when not connected.
+
+    Examples:
+        >>> p.getConnectionInfo()
+        {'isConnected': 1, 'connectionMethod': 2}
+    """
+    client = connection_of(physicsClientId)
+    if client is None:
+        return {"isConnected": 0, "connectionMethod": 0}
+    return {"isConnected": 1, "connectionMethod": client.method}
+
+
+@exported
+def getAPIVersion(physicsClientId: int = 0) -> int:
+    """The version of PyBullet's interface that the module offers: that of PyBullet 3.2.7.
+
+    Args:
+        physicsClientId: Not used; needs no connection.
+
+    Returns:
+        A date and a counter as one integer.
+
+    Examples:
+        >>> p.getAPIVersion()
+        202010061
+    """
+    return _API_VERSION
+
+
+@exported
+def isNumpyEnabled(physicsClientId: int = 0) -> int:
+    """Whether images come as NumPy arrays: they always do.
+
+    Args:
+        physicsClientId: Not used; needs no connection.
+
+    Returns:
+        1.
+
+    Examples:
+        >>> p.isNumpyEnabled()
+        1
+    """
+    return 1
+
+
+@exported
+def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
+    """How long to wait for a server's answers: 60 s at first with `TCP` and `UDP`, for ever otherwise.
+
+    A call that is not answered in time raises `pybullet.error`, and the connection is closed. Worlds in the
+    same process answer at once.
+
+    Args:
+        timeOutInSeconds: Time [s].
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or the time is not finite.
+
+    Examples:
+        >>> p.setTimeOut(5)
+    """
+    client = connection_of(physicsClientId)
+    if client is None:
+        fail(NOT_CONNECTED, why_not_connected(physicsClientId))
+    client.set_timeout(real(timeOutInSeconds, "timeOutInSeconds"))
+
+
+@exported
+def syncBodyInfo(physicsClientId: int = 0) -> None:
+    """Reads the list of bodies from the server again. Here, every client always sees all bodies.
+
+    Args:
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.syncBodyInfo()
+    """
+    client_of(physicsClientId)
+
+
+def _target(arguments: tuple[int | str, ...], keywords: dict[str, int | str]) -> Target:
+    """Checks what follows the method, in either of the two forms."""
+    server_named = (bool(arguments) and isinstance(arguments[0], str)) or bool(
+        {"hostName", "port"} & set(keywords)
+    )
+    names = ("hostName", "port", "options") if server_named else ("key", "options")
+    given = by_name("connect", names, arguments, keywords)
+    checked: dict[str, Any] = {}
+    for name, value in given.items():
+        checked[name] = text(value, name) if name in ("hostName", "options") else integer(value, name)
+    if "hostName" in checked:
+        checked["host"] = checked.pop("hostName")
+    return Target(**checked)
+
+
+@atexit.register
+def _disconnect_all() -> None:
+    for number in (*clients, *remote_clients):
+        forget(number)

@@ -1,0 +1,120 @@
+"""Connections to a server in another process."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, NoReturn
+from weakref import WeakSet
+
+from carom.remote.errors import Malformed, NoServer, ServerGone
+from pybullet._bodies.user_data_view import UserDataView
+from pybullet._calls.errors import error, fail, logger
+from pybullet._clients.clients import NOT_CONNECTED
+
+if TYPE_CHECKING:
+    from carom.remote.connection import Connection
+    from pybullet._calls.detours import Function
+    from pybullet._connections.server_options import Address
+
+RESULT, PROBLEM = 0, 1
+"""First item of an answer; what follows is the result, or name and text of the exception."""
+
+ERROR = "pybullet.error"
+"""Name of `pybullet.error` in answers; other exceptions have their own."""
+
+# Exceptions a function may raise about its arguments; what else a server has to tell is an `error`.
+EXCEPTIONS = {
+    kind.__name__: kind
+    for kind in (TypeError, ValueError, OverflowError, IndexError, KeyError, OSError, MemoryError)
+}
+
+_alive: WeakSet[RemoteClient] = WeakSet()
+
+
+class RemoteClient:
+    """A connection to a world in another process.
+
+    Args:
+        method: How it was connected: `SHARED_MEMORY`, `TCP`, ...
+        connection: The connection itself.
+    """
+
+    def __init__(self, method: int, connection: Connection) -> None:
+        self.method = method
+        self._connection = connection
+        self._user_data = UserDataView(lambda name, *arguments: self._ask(name, list(arguments), {}))
+        _alive.add(self)
+
+    def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        """Has the server call a function.
+
+        Raises:
+            pybullet.error: The server does not answer, or raises it.
+            TypeError: The arguments are not as they should be; so are other exceptions.
+        """
+        if not self._connection.is_usable:
+            fail(NOT_CONNECTED, "The server has closed the connection, or did not answer in time.")
+        positional, named = function.with_client(0, list(arguments), keywords)
+        return self._user_data.call(
+            function, arguments, keywords, lambda: self._ask(function.name, positional, named)
+        )
+
+    def _ask(self, name: str, arguments: list[Any], keywords: dict[str, Any]) -> Any:
+        """Has the server call a function by name; raises what `call` does."""
+        try:
+            kind, *answer = self._connection.call((name, arguments, keywords))
+        except ServerGone as problem:
+            raise error(f"{NOT_CONNECTED} {problem}") from None
+        except Malformed as problem:
+            raise error(f"{name} cannot be called in another process: {problem}") from None
+        if kind == RESULT:
+            return answer[0]
+        _raise(*answer)
+
+    def set_timeout(self, seconds: float) -> None:
+        """Sets how long to wait for answers [s]."""
+        self._connection.set_timeout(seconds)
+
+    def is_open(self) -> bool:
+        """Whether the server is still there."""
+        return self._connection.is_open()
+
+    def close(self) -> None:
+        """Ends the connection; the server and its world go on."""
+        self._connection.close()
+
+    def leave_to_the_parent(self) -> None:
+        """Lets go of the connection, in a process that was forked from its own."""
+        self._connection.abandon()
+
+
+def join_server(method: int, address: Address) -> RemoteClient | None:
+    """Connects to a server.
+
+    Returns:
+        The connection; None when there is no server or it does not accept the key, as the log tells.
+    """
+    from carom.remote.connection import Connection
+
+    problem: object = address.nobody
+    for place in address.places:
+        try:
+            return RemoteClient(method, Connection(place.host, place.port, place.key, address.timeout))
+        except NoServer as reason:
+            problem = reason
+    logger.log(address.importance, "No physics server: %s", problem)
+    return None
+
+
+def _raise(name: str, text: str) -> NoReturn:
+    raise EXCEPTIONS.get(name, error)(text)
+
+
+def _leave_to_the_parent() -> None:
+    # Two processes on one connection would read each other's answers.
+    for client in list(_alive):
+        client.leave_to_the_parent()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_the_parent)

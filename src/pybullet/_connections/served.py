@@ -1,0 +1,178 @@
+"""Worlds of this process that other processes may drive."""
+
+from __future__ import annotations
+
+import os
+from threading import RLock, current_thread, local
+from typing import Any
+from weakref import WeakSet
+
+from carom.remote.connection import Connection
+from carom.remote.errors import Malformed, NoServer, RemoteError
+from carom.remote.frames import OF_RESULTS, Frame, check_size
+from carom.remote.listener import Listener
+from carom.remote.meeting import Note, find
+from carom.remote.values import pack, unpack
+from pybullet._bodies.user_data_view import UserDataView
+from pybullet._calls.detours import Function, detour_of, functions, remove_detour
+from pybullet._calls.errors import error, fail, logger
+from pybullet._clients.clients import NOT_CONNECTED, Client, living_client
+from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
+from pybullet._connections.server_options import ServerOptions, reachable
+
+# How long a server may take to answer that it is there [s].
+_PATIENCE = 5.0
+_CANNOT_START = "Cannot start the physics server:"
+# Takes the lock itself, but not while it waits for the window to let the simulation go on.
+_STEP = "stepSimulation"
+
+_alive: WeakSet[Served] = WeakSet()
+
+
+class Served:
+    """A world, its own client, and the clients in other processes.
+
+    All of them call the same functions, one call at a time. Only of user data each has a view of its own.
+
+    Args:
+        number: Id of the client in this process.
+        client: The client in this process.
+        options: Where to listen, and under which names to be found.
+
+    Raises:
+        pybullet.error: There is such a server already, or an address cannot be listened at.
+    """
+
+    def __init__(self, number: int, client: Client, options: ServerOptions) -> None:
+        self._number = number
+        self._client = client
+        self._user_data = UserDataView(self._ask)
+        self._for_others = local()
+        self._notes: list[tuple[str, Note]] = []
+        for meeting in options.meetings:
+            name = meeting.name(meeting.port)
+            if _is_taken(name):
+                fail(_CANNOT_START, f"there is one already that is found as {name}.")
+        try:
+            places = [(meeting.host, meeting.port) for meeting in options.meetings]
+            self._listener = Listener(places, options.key, self._answer)
+        except OSError as problem:
+            fail(_CANNOT_START, f"{problem}.")
+        try:
+            for meeting, (host, port) in zip(options.meetings, self._listener.addresses, strict=True):
+                note = Note(reachable(host), port, options.key)
+                note.leave(meeting.name(port))
+                self._notes.append((meeting.name(port), note))
+        except (OSError, RemoteError) as problem:
+            self.close()
+            fail(_CANNOT_START, f"{problem}")
+        _alive.add(self)
+
+    @property
+    def addresses(self) -> list[tuple[str, int]]:
+        """Where it listens."""
+        return self._listener.addresses
+
+    @property
+    def client_count(self) -> int:
+        """How many processes are connected."""
+        return self._listener.client_count
+
+    def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        """Calls a function for the script in this process, or for another on its way through a log."""
+        if getattr(self._for_others, "answering", False):
+            return self._call(function, arguments, keywords)
+        return self._user_data.call(
+            function, arguments, keywords, lambda: self._call(function, arguments, keywords)
+        )
+
+    def _ask(self, name: str, *arguments: Any) -> Any:
+        """Calls a function by name."""
+        function = functions()[name]
+        positional, keywords = function.with_client(self._number, list(arguments), {})
+        return self._call(function, positional, keywords)
+
+    def close(self) -> None:
+        """Ends all connections."""
+        for name, note in self._notes:
+            note.take_away(name)
+        self._listener.close()
+
+    def leave_to_the_parent(self) -> None:
+        """Forgets everything about the server, in a process that was forked from its own."""
+        self._notes = []
+        self._listener.abandon()
+        remove_detour(self._number)
+        # Another thread may have held it, and there are no others here.
+        self._client.lock = RLock()
+        self._client.server = None
+
+    def _answer(self, frame: Frame) -> tuple[bytes, list[memoryview]]:
+        """Calls a function for a script in another process."""
+        request = unpack(frame.message, frame.contents, lists=True)
+        name, arguments, keywords = _checked(request)
+        function = functions().get(name)
+        # A thread that answers others does so for ever.
+        self._for_others.answering = True
+        try:
+            if function is None:
+                fail(f"A server has no function {name!r}.")
+            if living_client(self._number) is not self._client:
+                fail(NOT_CONNECTED, "The server is closing.")
+            arguments, keywords = function.with_client(self._number, arguments, keywords)
+            # A log may have put itself before this server.
+            way = detour_of(self._number) or self
+            answer = pack((RESULT, way.call(function, tuple(arguments), keywords)))
+            check_size(*answer, OF_RESULTS)
+        except error as problem:
+            return pack((PROBLEM, ERROR, str(problem)))
+        except tuple(EXCEPTIONS.values()) as problem:
+            kind = next(name for name, kind in EXCEPTIONS.items() if isinstance(problem, kind))
+            return pack((PROBLEM, kind, _text(problem)))
+        except Malformed as problem:
+            return pack((PROBLEM, ERROR, f"{name}: {problem}"))
+        except Exception as problem:
+            logger.exception("%s has failed in %s.", name, current_thread().name)
+            return pack((PROBLEM, ERROR, f"{name} has failed in the server: {problem!r}"))
+        return answer
+
+    def _call(self, function: Function, arguments: Any, keywords: dict[str, Any]) -> Any:
+        if function.name == _STEP:
+            return function.plain(*arguments, **keywords)
+        with self._client.lock:
+            return function.plain(*arguments, **keywords)
+
+
+def _checked(request: Any) -> tuple[str, list[Any], dict[str, Any]]:
+    match request:
+        case [str() as name, list() as arguments, dict() as keywords] if all(
+            isinstance(key, str) for key in keywords
+        ):
+            return name, arguments, keywords
+    raise Malformed("A message is no call.")
+
+
+def _text(problem: Exception) -> str:
+    # That of a KeyError is not what it was made of.
+    return problem.args[0] if len(problem.args) == 1 and isinstance(problem.args[0], str) else str(problem)
+
+
+def _is_taken(name: str) -> bool:
+    """Whether a server answers that has left a note of a name; one that was killed has left one, too."""
+    note = find(name)
+    if note is None:
+        return False
+    try:
+        Connection(note.host, note.port, note.key, _PATIENCE).close()
+    except NoServer:
+        return False
+    return True
+
+
+def _leave_to_the_parent() -> None:
+    for server in list(_alive):
+        server.leave_to_the_parent()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_the_parent)

@@ -1,0 +1,195 @@
+"""Where servers listen and where clients look for them, as `connect` and its options tell."""
+
+from __future__ import annotations
+
+import logging
+import os
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from ipaddress import ip_address
+from pathlib import Path
+from typing import NamedTuple
+
+from carom.remote.handshake import new_key
+from carom.remote.meeting import Note, find
+from pybullet._calls.constants import (
+    GRAPHICS_CLIENT,
+    GRAPHICS_SERVER,
+    GRAPHICS_SERVER_MAIN_THREAD,
+    GRAPHICS_SERVER_TCP,
+    SHARED_MEMORY,
+    TCP,
+    UDP,
+)
+from pybullet._calls.errors import fail
+from pybullet._connections.target import Target
+
+KEY_VARIABLE = "CAROM_SERVER_KEY"
+"""Environment variable with the key of a server."""
+
+_LEAST_KEY = 16
+_LOOPBACK = "127.0.0.1"
+_FOR_EVER, _A_MINUTE = 1e30, 60.0
+_SHARED_MEMORY, _GRAPHICS, _TCP, _UDP = "shared-memory", "graphics", "tcp", "udp"
+_DEFAULT_PORTS = {_TCP: 6667, _UDP: 1234}
+_CANNOT_START = "Cannot start the physics server:"
+
+
+class Meeting(NamedTuple):
+    """Where a server can be met.
+
+    Attributes:
+        kind: Of connection.
+        host: Address it listens at.
+        port: Port it listens at; 0 for any.
+        number: What tells servers of a kind apart: key or port; 0 for the port it gets.
+    """
+
+    kind: str
+    host: str
+    port: int
+    number: int
+
+    def name(self, port: int) -> str:
+        """The name of its note, when it listens at that port."""
+        return f"{self.kind}-{self.number or port}"
+
+
+@dataclass(frozen=True)
+class ServerOptions:
+    """What a server needs to know.
+
+    Attributes:
+        meetings: Where it can be met.
+        key: What clients have to know.
+    """
+
+    meetings: tuple[Meeting, ...]
+    key: bytes
+
+
+class Address(NamedTuple):
+    """Where a client looks for its server.
+
+    Attributes:
+        places: Address and key, for each key it may have.
+        timeout: How long to wait for an answer, at first [s].
+        importance: Level of what the log says when there is no server.
+        nobody: What it says when there is no key for it.
+    """
+
+    places: tuple[Note, ...]
+    timeout: float
+    importance: int
+    nobody: str
+
+
+def server_options(method: int, target: Target) -> ServerOptions:
+    """Where a server is to listen, and its key.
+
+    Raises:
+        pybullet.error: There is no such port, or the key cannot be used.
+    """
+    bind = target.option("bind") or _LOOPBACK
+    graphics = method in (GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
+    meetings = [Meeting(_GRAPHICS if graphics else _SHARED_MEMORY, _LOOPBACK, 0, target.key)]
+    for kind, usual in _DEFAULT_PORTS.items():
+        port = target.option(kind)
+        if port is not None:
+            number = _port(port) if port else usual
+            meetings.append(Meeting(kind, bind, number, number))
+    return ServerOptions(tuple(meetings), _own_key(target, bind))
+
+
+def address_of(method: int, target: Target) -> Address:
+    """Where the server is that a client asks for.
+
+    Raises:
+        pybullet.error: The file with the key cannot be used.
+    """
+    if method in (SHARED_MEMORY, GRAPHICS_CLIENT):
+        note = find(f"{_SHARED_MEMORY if method == SHARED_MEMORY else _GRAPHICS}-{target.key}")
+        nobody = f"None has the key {target.key}."
+        return Address((note,) if note else (), _FOR_EVER, logging.INFO, nobody)
+    assert method in (TCP, UDP, GRAPHICS_SERVER_TCP)
+    kind = _UDP if method == UDP else _TCP
+    port = target.port if target.port >= 0 else _DEFAULT_PORTS[kind]
+    keys = [_given_key(target)]
+    if _is_loopback(target.host):
+        note = find(f"{kind}-{port}")
+        keys.append(note.key if note else None)
+    places = tuple(Note(target.host, port, key) for key in keys if key)
+    nobody = f"None of yours on this machine is found as {kind}-{port}, and no key is stated for others."
+    return Address(places, _A_MINUTE, logging.WARNING, nobody)
+
+
+def reachable(host: str) -> str:
+    """Where clients on this machine reach a server that listens at an address."""
+    return {"0.0.0.0": _LOOPBACK, "::": "::1"}.get(host, host)
+
+
+def _port(text: str) -> int:
+    number = int(text) if text.isdecimal() else -1
+    if not 0 <= number <= 65535:
+        fail(_CANNOT_START, f"{text!r} is no port.")
+    return number
+
+
+def _is_loopback(host: str) -> bool:
+    with suppress(ValueError):
+        return ip_address(host).is_loopback
+    return host.lower() == "localhost"
+
+
+def _given_key(target: Target) -> bytes | None:
+    """The key the options or the environment state."""
+    file = target.option("key-file")
+    if file:
+        try:
+            return _fit(Path(file).read_text(encoding="utf-8"), file)
+        except (OSError, UnicodeError) as problem:
+            fail("Cannot read the key of the physics server:", f"{problem}.")
+    text = os.environ.get(KEY_VARIABLE)
+    return _fit(text, KEY_VARIABLE) if text else None
+
+
+def _own_key(target: Target, bind: str) -> bytes:
+    """The key of a server; a file that does not exist gets a new one."""
+    file = target.option("key-file")
+    if file and not Path(file).exists():
+        key = new_key()
+        try:
+            _write_private(Path(file), key)
+        except OSError as problem:
+            fail(_CANNOT_START, f"{problem}.")
+        return key
+    given = _given_key(target)
+    if given is None and not _is_loopback(bind):
+        fail(
+            _CANNOT_START,
+            f"other machines can reach {bind}, so clients need a key they know: state --key-file=FILE or "
+            f"set {KEY_VARIABLE}.",
+        )
+    return given or new_key()
+
+
+def _write_private(file: Path, key: bytes) -> None:
+    # As others must never be able to read it, not even for a moment, it gets its place when it is complete.
+    handle, draft = tempfile.mkstemp(dir=file.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(key)
+        os.replace(draft, file)
+    except OSError:
+        Path(draft).unlink(missing_ok=True)
+        raise
+
+
+def _fit(text: str, origin: str) -> bytes:
+    key = text.strip().encode()
+    if len(key) < _LEAST_KEY:
+        fail(
+            "The key of the physics server is too short.", f"{origin} has less than {_LEAST_KEY} characters."
+        )
+    return key

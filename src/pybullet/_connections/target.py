@@ -1,0 +1,35 @@
+"""What a call of `connect` says besides the method."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from pybullet._calls.constants import SHARED_MEMORY_KEY
+
+_WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
+
+
+@dataclass(frozen=True)
+class Target:
+    """What follows the method in a call of `connect`.
+
+    Attributes:
+        key: Of shared memory.
+        host: Of a server.
+        port: Of a server; negative for the usual one.
+        options: Separated by spaces, which may be part of what is between double quotes.
+    """
+
+    key: int = SHARED_MEMORY_KEY
+    host: str = "localhost"
+    port: int = -1
+    options: str = ""
+
+    def option(self, name: str) -> str | None:
+        """The value of `--name=value`, empty for `--name`; None if it is not there."""
+        for word in reversed(_WORDS.findall(self.options)):
+            found, _, value = word.lstrip("-").partition("=")
+            if found == name:
+                return value.replace('"', "")
+        return None

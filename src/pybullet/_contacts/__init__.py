@@ -1,0 +1,1 @@
+"""Contacts, nearest points, overlaps, rays, collision filters."""

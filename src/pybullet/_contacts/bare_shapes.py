@@ -1,0 +1,124 @@
+"""Nearest points of collision shapes that no body is made of.
+
+They are compared in a world made for the purpose, which holds the shape and copies of the links it is
+compared with, all of them fixed where they are now.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Pose
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
+from pybullet._calls.arguments import integer
+from pybullet._calls.errors import logger
+from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+from pybullet._clients.clients import Client
+
+if TYPE_CHECKING:
+    from carom.description.pose import Vector3
+    from carom.model.body_spec import BodySpec
+    from pybullet._bodies.link_rows import Place
+
+BARE_LINK = -2
+"""What is reported as link of a shape without a body."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """Something to compare: a link, or a shape without a body.
+
+    Attributes:
+        place: Body and link that are reported.
+        spec: Its shapes, as a fixed body.
+        pose: Of its link frame, in the world.
+    """
+
+    place: Place
+    spec: BodySpec
+    pose: Pose
+
+
+def bare_shape(
+    client: Client, number: Any, body_id: int, position: Any, orientation: Any, side: str
+) -> Thing | None:
+    """A collision shape at a place; None, with a warning, if there is no such shape.
+
+    Args:
+        client: The connection.
+        number: Id of the shape.
+        body_id: What the script gave as body beside it; it is reported.
+        position: Where the shape is; None for the origin.
+        orientation: How it is turned; None for not at all.
+        side: A or B, for errors.
+
+    Raises:
+        pybullet.error: The position is not three, or the orientation not four, finite numbers.
+    """
+    from carom.layouts.flags import LoadFlags
+    from carom.model.body_spec import BodySpec, LinkSpec
+
+    problem = "getClosestPoints failed."
+    name = f"collisionShape{side}"
+    shape = client.shapes.collisions.get(integer(number, name))
+    place = optional_vector3(position, problem, f"collisionShapePosition{side}") or IDENTITY.position
+    turn = optional_rotation(orientation, problem, f"collisionShapeOrientation{side}") or IDENTITY.orientation
+    turn = quaternion_from_matrix(rotation_matrix(turn))
+    if shape is None:
+        logger.warning("getClosestPoints: there is no %s %d.", name, number)
+        return None
+    link = LinkSpec("", collisions=shape.collisions, compound_margin=0.0)
+    spec = BodySpec("", link, fixed_base=True, flags=LoadFlags.USE_IMPLICIT_CYLINDER)
+    return Thing((body_id, BARE_LINK), spec, Pose(place, turn))
+
+
+def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
+    """A link, or with `BARE_LINK` all links, of a body; nothing if there is no such body or link."""
+    from carom.model.body_spec import BodySpec
+
+    body = client.world.bodies.get(body_id)
+    if body is None:
+        return []
+    things = []
+    for index in range(-1, body.joint_count) if link == BARE_LINK else [link]:
+        if not -1 <= index < body.joint_count:
+            continue
+        spec = body.link_spec(index)
+        x, y, z, qx, qy, qz, qw = client.world.link_pose[body.first_link + 1 + index].tolist()
+        pose = compose(Pose((x, y, z), (qx, qy, qz, qw)), inverse(spec.inertial_frame))
+        copy = replace(spec, parent=-1, visuals=())
+        things.append(
+            Thing((body.id, index), BodySpec("", copy, fixed_base=True, flags=body.spec.flags), pose)
+        )
+    return things
+
+
+def nearest_points(
+    first: list[Thing], second: list[Thing], reach: float
+) -> list[tuple[Place, Place, Vector3, Vector3, Vector3, float]]:
+    """The nearest points of all shapes of pairs of things that are no farther apart than `reach` [m].
+
+    Returns:
+        As `Queries.nearest` gives them, with what is reported in place of links.
+    """
+    from carom.world.world import World
+
+    with World() as world:
+        places: dict[int, Place] = {}
+
+        def rows(things: list[Thing]) -> tuple[int, ...]:
+            added = []
+            for thing in things:
+                row = world.load(thing.spec, thing.pose.position, thing.pose.orientation).first_link
+                places[row] = thing.place
+                added.append(row)
+            return tuple(added)
+
+        sides = rows(first), rows(second)
+        found = world.queries().nearest(*sides, reach)
+        return [
+            (places[a], places[b], on_a, on_b, normal, distance)
+            for a, b, on_a, on_b, normal, distance in found
+        ]

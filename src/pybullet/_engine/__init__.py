@@ -1,0 +1,1 @@
+"""Stepping, engine parameters, states."""

@@ -1,0 +1,436 @@
+"""Stepping a world, and the parameters of its engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from carom.errors import SimulationError
+from pybullet._calls.arguments import integer, quantity, real
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import DIRECT
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import Client, client_of, clients
+from pybullet._clients.shape_registry import ShapeRegistry
+
+__all__ = [
+    "getPhysicsEngineParameters",
+    "resetSimulation",
+    "setDefaultContactERP",
+    "setGravity",
+    "setInternalSimFlags",
+    "setPhysicsEngineParameter",
+    "setRealTimeSimulation",
+    "setTimeStep",
+    "stepSimulation",
+]
+
+# What decides how long a step takes: parameter, argument and greatest value.
+_WORK = {
+    "substeps": ("numSubSteps", 10_000),
+    "solver_iterations": ("numSolverIterations", 1_000_000),
+    "noncontact_inner_iterations": ("numNonContactInnerIterations", 10_000),
+}
+_MOST_WORK = 10_000_000
+# Forces are impulses by time [s].
+_LEAST_TIME_STEP = 1e-12
+
+
+@exported
+def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ...]:
+    """Advances time by `fixedTimeStep`, in `numSubSteps` equal parts if there are any.
+
+    Applied forces and torques last for this step only.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        An empty tuple; after `setPhysicsEngineParameter(reportSolverAnalytics=1)` a dictionary for each
+        group of bodies that touch or are joined: `islandId`, `numBodies`, `numIterationsUsed` and
+        `remainingResidual` of the solver.
+
+    Raises:
+        pybullet.error: Not connected, or the motion of a body is no longer finite.
+
+    Examples:
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> p.getBasePositionAndOrientation(cube)[0][2] < 0.03
+        True
+    """
+    try:
+        client = clients[physicsClientId]
+    except (KeyError, TypeError, ValueError):
+        client = client_of(physicsClientId)
+    if client.window.held:
+        goes_on = client.window.wait_for_turn()
+        client = client_of(physicsClientId)
+        if not goes_on:
+            return ()
+    with client.lock:
+        try:
+            client.world.step()
+        except SimulationError as problem:
+            fail("stepSimulation failed:", f"{problem}.")
+        return tuple(client.world.analytics()) if client.report_analytics else ()
+
+
+@exported
+def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
+    """Removes everything from the world and sets the engine's parameters back.
+
+    `fixedTimeStep` and `numSubSteps` stay as they are. Body ids start at 0 again.
+
+    Args:
+        flags: `RESET_USE_*` for another kind of world; worlds of rigid bodies are the same with each.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.resetSimulation()
+        >>> p.getNumBodies()
+        0
+    """
+    client = client_of(physicsClientId)
+    integer(flags, "flags")
+    with client.lock:
+        client.bodies.forget_all()
+
+        def also() -> None:
+            client.shapes = ShapeRegistry()
+            client.states.clear()
+            client.origins.clear()
+            client.report_analytics = False
+            client.window.remove_drawings()
+
+        client.world.reset(also)
+
+
+@exported
+def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 0) -> None:
+    """Sets gravity; it is 0 at first.
+
+    Args:
+        gravX: Acceleration along the world's x axis [m/s²].
+        gravY: Along y [m/s²].
+        gravZ: Along z [m/s²].
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or a number is not finite.
+
+    Examples:
+        >>> p.setGravity(0, 0, -1.62)
+        >>> p.getPhysicsEngineParameters()["gravityAccelerationZ"]
+        -1.62
+    """
+    client = client_of(physicsClientId)
+    gravity = (quantity(gravX, "gravX"), quantity(gravY, "gravY"), quantity(gravZ, "gravZ"))
+    # Scripts that set gravity before every step need not pay for it.
+    if gravity != client.world.parameters.gravity:
+        _change(client, gravity=gravity)
+
+
+@exported
+def setTimeStep(timeStep: float, physicsClientId: int = 0) -> None:
+    """Sets the time by which `stepSimulation` advances; 1/240 s at first.
+
+    The greatest impulses of motors that are already set stay, so the greatest forces change.
+
+    Args:
+        timeStep: Time [s], greater than 0.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or the time is not a finite number greater than 0.
+
+    Examples:
+        >>> p.setTimeStep(1 / 1000)
+        >>> p.getPhysicsEngineParameters()["fixedTimeStep"]
+        0.001
+    """
+    _set_time_step(client_of(physicsClientId), timeStep, "timeStep")
+
+
+@exported
+def setDefaultContactERP(defaultContactERP: float, physicsClientId: int = 0) -> None:
+    """Sets the fraction of a penetration that one step takes back; 0.08 at first.
+
+    Args:
+        defaultContactERP: The fraction.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or it is not a finite number.
+
+    Examples:
+        >>> p.setDefaultContactERP(0.2)
+    """
+    _change(client_of(physicsClientId), contact_erp=quantity(defaultContactERP, "defaultContactERP"))
+
+
+@exported
+def setRealTimeSimulation(enableRealTimeSimulation: int, physicsClientId: int = 0) -> None:
+    """Lets the simulation follow the wall clock, in the background.
+
+    With a window and in servers; in `DIRECT` the setting is kept but nothing moves by itself.
+
+    Args:
+        enableRealTimeSimulation: 1 to start, 0 to stop.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.setRealTimeSimulation(0)
+    """
+    client = client_of(physicsClientId)
+    client.real_time = int(integer(enableRealTimeSimulation, "enableRealTimeSimulation") != 0)
+    if client.method == DIRECT:
+        return
+    if client.real_time and client.clock is None:
+        from pybullet._clients.real_time import RealTimeClock
+
+        client.clock = RealTimeClock(client)
+    elif not client.real_time and client.clock is not None:
+        client.clock.stop()
+        client.clock = None
+
+
+@exported
+def setInternalSimFlags(flags: int, physicsClientId: int = 0) -> None:
+    """Sets flags that only concern deformable bodies in PyBullet; rigid bodies move as before.
+
+    Args:
+        flags: Any integer.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.setInternalSimFlags(0)
+    """
+    client_of(physicsClientId)
+    integer(flags, "flags")
+
+
+@exported
+def getPhysicsEngineParameters(physicsClientId: int = 0) -> dict[str, int | float]:
+    """Some of the engine's parameters.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        `fixedTimeStep` [s], `numSubSteps` (0: none), `numSolverIterations`, `useRealTimeSimulation`,
+        `gravityAccelerationX`, `...Y` and `...Z` [m/s²], `numNonContactInnerIterations`.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getPhysicsEngineParameters()["numSolverIterations"]
+        50
+    """
+    client = client_of(physicsClientId)
+    parameters = client.world.parameters
+    x, y, z = parameters.gravity
+    return {
+        "fixedTimeStep": client.time_step,
+        "numSubSteps": parameters.substeps,
+        "numSolverIterations": parameters.solver_iterations,
+        "useRealTimeSimulation": client.real_time,
+        "gravityAccelerationX": x,
+        "gravityAccelerationY": y,
+        "gravityAccelerationZ": z,
+        "numNonContactInnerIterations": parameters.noncontact_inner_iterations,
+    }
+
+
+@exported
+def setPhysicsEngineParameter(
+    fixedTimeStep: float = -1,
+    numSolverIterations: int = -1,
+    useSplitImpulse: int = -1,
+    splitImpulsePenetrationThreshold: float = -1,
+    numSubSteps: int = -1,
+    collisionFilterMode: int = -1,
+    contactBreakingThreshold: float = -1,
+    maxNumCmdPer1ms: int = -2,
+    enableFileCaching: int = -1,
+    restitutionVelocityThreshold: float = -1,
+    erp: float = -1,
+    contactERP: float = -1,
+    frictionERP: float = -1,
+    enableConeFriction: int = -1,
+    deterministicOverlappingPairs: int = -1,
+    allowedCcdPenetration: float = -1,
+    jointFeedbackMode: int = -1,
+    solverResidualThreshold: float = -1,
+    contactSlop: float = -1,
+    enableSAT: int = -1,
+    constraintSolverType: int = -1,
+    globalCFM: float = -1,
+    minimumSolverIslandSize: int = -1,
+    reportSolverAnalytics: int = -1,
+    warmStartingFactor: float = -1,
+    sparseSdfVoxelSize: float = -1,
+    numNonContactInnerIterations: int = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets parameters of the engine. Those that are negative stay as they are.
+
+    Args:
+        fixedTimeStep: Time by which `stepSimulation` advances [s].
+        numSolverIterations: Greatest number of passes over all constraints in a step; 50 at first.
+        useSplitImpulse: Correct penetration of rigid bodies without giving them speed.
+        splitImpulsePenetrationThreshold: Penetration from which that is done [m].
+        numSubSteps: Parts of a step, each solved by itself; 0 or 1 for none. The greatest impulse of a
+            motor holds for each part.
+        collisionFilterMode: 0: both bodies' filters have to agree; 1: one is enough.
+        contactBreakingThreshold: Distance at which a contact is given up, relative to the size.
+        maxNumCmdPer1ms: Of PyBullet's server; nothing here.
+        enableFileCaching: Of PyBullet's file reader; files are read anew here when they change.
+        restitutionVelocityThreshold: Speed below which nothing bounces [m/s].
+        erp: Fraction of an error of limits and constraints that one step takes back.
+        contactERP: The same for penetration.
+        frictionERP: The same for friction with an anchor.
+        enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each by
+            itself.
+        deterministicOverlappingPairs: Sort pairs; Carom's order is always the same.
+        allowedCcdPenetration: Penetration that continuous collision detection allows [m]; nothing here:
+            bodies stop where they touch.
+        jointFeedbackMode: `JOINT_FEEDBACK_IN_WORLD_SPACE`, `JOINT_FEEDBACK_IN_JOINT_FRAME`, or both;
+            0: in the link's inertial frame.
+        solverResidualThreshold: The solver stops when no constraint's speed changes by more than the
+            square root of this.
+        contactSlop: Penetration that is left alone [m].
+        enableSAT: Use the separating axis test between hulls; nothing here: faces that touch are always
+            found.
+        constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`; nothing here: all are solved as the first.
+        globalCFM: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
+        minimumSolverIslandSize: Solve groups of fewer bodies together.
+        reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
+        warmStartingFactor: Fraction of the last step's impulses to start from, of rigid bodies that are no
+            multibodies; nothing here.
+        sparseSdfVoxelSize: Of deformable bodies; nothing here.
+        numNonContactInnerIterations: Passes over motors, limits and constraints for each one over
+            contacts; at least 1.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, a number is not finite, or the time step is 0.
+
+    Examples:
+        >>> p.setPhysicsEngineParameter(numSubSteps=4, numSolverIterations=100)
+        >>> p.getPhysicsEngineParameters()["numSubSteps"]
+        4
+    """
+    client = client_of(physicsClientId)
+    changes: dict[str, Any] = {}
+
+    def take(field: str, value: Any, name: str, convert: Callable[[Any, str], Any], least: float = 0) -> None:
+        number = convert(value, name)
+        if number >= least:
+            changes[field] = number
+
+    take("solver_iterations", numSolverIterations, "numSolverIterations", integer)
+    take("split_impulse", useSplitImpulse, "useSplitImpulse", _switch)
+    take(
+        "split_impulse_penetration_threshold",
+        splitImpulsePenetrationThreshold,
+        "splitImpulsePenetrationThreshold",
+        real,
+    )
+    take("collision_filter_mode", collisionFilterMode, "collisionFilterMode", integer)
+    take("contact_breaking_threshold", contactBreakingThreshold, "contactBreakingThreshold", quantity)
+    take(
+        "restitution_velocity_threshold",
+        restitutionVelocityThreshold,
+        "restitutionVelocityThreshold",
+        quantity,
+    )
+    take("erp", erp, "erp", quantity)
+    take("contact_erp", contactERP, "contactERP", quantity)
+    take("friction_erp", frictionERP, "frictionERP", quantity)
+    take("cone_friction", enableConeFriction, "enableConeFriction", _switch)
+    take(
+        "deterministic_overlapping_pairs",
+        deterministicOverlappingPairs,
+        "deterministicOverlappingPairs",
+        _switch,
+    )
+    take("allowed_ccd_penetration", allowedCcdPenetration, "allowedCcdPenetration", quantity)
+    take("joint_feedback_mode", jointFeedbackMode, "jointFeedbackMode", integer)
+    take("solver_residual_threshold", solverResidualThreshold, "solverResidualThreshold", quantity)
+    take("contact_slop", contactSlop, "contactSlop", quantity)
+    take("sat", enableSAT, "enableSAT", _switch)
+    take("constraint_solver", constraintSolverType, "constraintSolverType", integer)
+    take("global_cfm", globalCFM, "globalCFM", quantity)
+    take("minimum_island_size", minimumSolverIslandSize, "minimumSolverIslandSize", integer)
+    take("report_solver_analytics", reportSolverAnalytics, "reportSolverAnalytics", _switch)
+    take("warm_starting_factor", warmStartingFactor, "warmStartingFactor", quantity)
+    take(
+        "noncontact_inner_iterations",
+        numNonContactInnerIterations,
+        "numNonContactInnerIterations",
+        integer,
+        least=1,
+    )
+    substeps = integer(numSubSteps, "numSubSteps")
+    if substeps >= 0:
+        changes["substeps"] = substeps
+    _check_work(client, changes)
+    integer(maxNumCmdPer1ms, "maxNumCmdPer1ms")
+    integer(enableFileCaching, "enableFileCaching")
+    real(sparseSdfVoxelSize, "sparseSdfVoxelSize")
+    if real(fixedTimeStep, "fixedTimeStep") >= 0.0:
+        _set_time_step(client, fixedTimeStep, "fixedTimeStep")
+    if changes:
+        _change(client, **changes)
+        client.report_analytics = bool(client.world.parameters.report_solver_analytics)
+
+
+def _check_work(client: Client, changes: dict[str, Any]) -> None:
+    """See that a step comes to an end in sensible time: nothing can interrupt a launch of kernels."""
+    parameters = client.world.parameters
+    product = 1
+    for name, (argument, greatest) in _WORK.items():
+        value = changes.get(name, getattr(parameters, name))
+        if value > greatest:
+            fail(f"{argument} has to be at most {greatest}, not {value}.")
+        product *= max(value, 1)
+    if product > _MOST_WORK:
+        stated = " x ".join(argument for argument, _ in _WORK.values())
+        fail(f"{stated} would be {product}; it has to be at most {_MOST_WORK}.")
+
+
+def _switch(value: Any, name: str) -> int:
+    """An integer of which only the sign, and whether it is 0, matter."""
+    number = integer(value, name)
+    return number if number < 0 else int(number != 0)
+
+
+def _set_time_step(client: Client, value: Any, name: str) -> None:
+    time_step = quantity(value, name)
+    if time_step <= 0.0:
+        fail(f"{name} has to be greater than 0, not {time_step}.")
+    if time_step < _LEAST_TIME_STEP:
+        fail(f"{name} has to be at least {_LEAST_TIME_STEP:g} s, not {time_step:g} s.")
+    _change(client, time_step=time_step)
+    client.time_step = time_step
+
+
+def _change(client: Client, **changes: Any) -> None:
+    parameters = client.world.parameters
+    with client.lock:
+        if all(getattr(parameters, field) == value for field, value in changes.items()):
+            return
+        for field, value in changes.items():
+            setattr(parameters, field, value)
+        client.world.apply_parameters()

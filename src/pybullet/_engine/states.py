@@ -1,0 +1,176 @@
+"""Saving the state of a world and going back to it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pybullet._calls.arguments import integer, text
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import client_of
+from pybullet._shapes.shape_arguments import find_file
+
+__all__ = ["loadBullet", "removeState", "restoreState", "saveBullet", "saveState"]
+
+_CANNOT_LOAD = "Couldn't load .bullet file."
+_CANNOT_RESTORE = "Couldn't restore state."
+
+
+@exported
+def saveState(physicsClientId: int = 0) -> int:
+    """Remembers the state of the world: all that the next step starts from.
+
+    That is positions and velocities, motors and their targets, applied forces, contacts and what they
+    remember. Masses, friction, constraints, gravity and the other parameters of the engine are not part
+    of it.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the state: the least that is free.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> state = p.saveState()
+        >>> p.resetJointState(arm, 0, 1.0)
+        >>> p.restoreState(state)
+        >>> p.getJointState(arm, 0)[0]
+        0.0
+    """
+    client = client_of(physicsClientId)
+    with client.lock:
+        number = next(n for n in range(len(client.states) + 1) if n not in client.states)
+        client.states[number] = client.world.snapshot()
+        return number
+
+
+@exported
+def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId: int = 0) -> None:
+    """Goes back to a state. The steps that follow are the same, to the last bit, as they were then.
+
+    Args:
+        stateId: A state of `saveState`; it can be restored any number of times.
+        fileName: A file of `saveBullet` instead: as given, in `data` folders near the working directory,
+            or in the directory of `setAdditionalSearchPath`.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such state or file, the file cannot be used, or bodies
+            have come or gone since, or have other joints. The world is then as it was.
+
+    Examples:
+        >>> state = p.saveState()
+        >>> p.resetBasePositionAndOrientation(cube, [0, 0, 9], [0, 0, 0, 1])
+        >>> p.restoreState(stateId=state)
+        >>> p.getBasePositionAndOrientation(cube)[0]
+        (0.5, 0.0, 0.025)
+    """
+    client = client_of(physicsClientId)
+    number = integer(stateId, "stateId")
+
+    from carom.errors import CaromError
+
+    with client.lock:
+        if number >= 0 or fileName is None:
+            if number not in client.states:
+                fail(_CANNOT_RESTORE, f"There is no state {number}.")
+            state = client.states[number]
+        else:
+            state = find_file(client, text(fileName, "fileName"), _CANNOT_RESTORE)
+        try:
+            client.world.restore(state)
+        except CaromError as problem:
+            fail(_CANNOT_RESTORE, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
+
+
+@exported
+def removeState(stateUniqueId: int, physicsClientId: int = 0) -> None:
+    """Forgets a state. One that does not exist is no error.
+
+    Args:
+        stateUniqueId: The state; its id is free again.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> state = p.saveState()
+        >>> p.removeState(state)
+    """
+    client = client_of(physicsClientId)
+    with client.lock:
+        client.states.pop(integer(stateUniqueId, "stateUniqueId"), None)
+
+
+@exported
+def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
+    """Writes the world to a file.
+
+    That is bodies with their meshes and looks, constraints, parameters, user data and the state. The
+    format is Carom's own, not PyBullet's; see docs/world-files.md.
+
+    Args:
+        bulletFileName: The file; one that is there is replaced.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or the file cannot be written.
+
+    Examples:
+        >>> p.saveBullet(folder + "/scene.bullet")
+        >>> p.restoreState(fileName=folder + "/scene.bullet")
+    """
+    client = client_of(physicsClientId)
+    path = text(bulletFileName, "bulletFileName")
+    try:
+        with client.lock:
+            client.world.save(Path(path))
+    except (OSError, ValueError) as problem:
+        fail("Couldn't save .bullet file.", f"{problem}.")
+
+
+@exported
+def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]:
+    """Adds the bodies of a file of `saveBullet`, as they were, with what ties them.
+
+    A world without bodies becomes the one that was saved, body ids, gravity and the other parameters
+    included, and goes on exactly as that one did.
+
+    Args:
+        bulletFileName: The file: as given, in `data` folders near the working directory, or in the
+            directory of `setAdditionalSearchPath`.
+        physicsClientId: The connection.
+
+    Returns:
+        The ids of the bodies.
+
+    Raises:
+        pybullet.error: Not connected, the file is missing or damaged, or it is no file of `saveBullet`.
+            The world is then as it was.
+
+    Examples:
+        >>> p.saveBullet(folder + "/scene.bullet")
+        >>> p.resetSimulation()
+        >>> p.loadBullet(folder + "/scene.bullet")
+        (0, 1, 2)
+    """
+    client = client_of(physicsClientId)
+    path = find_file(client, text(bulletFileName, "bulletFileName"), _CANNOT_LOAD)
+
+    from carom.errors import CaromError
+
+    with client.lock:
+        client.bodies.forget_all()
+        try:
+            bodies = client.world.load(path)
+        except CaromError as problem:
+            fail(_CANNOT_LOAD, f"{problem}.")
+        client.time_step = client.world.parameters.time_step
+        client.report_analytics = bool(client.world.parameters.report_solver_analytics)
+        for body in bodies:
+            client.origins.pop(body.id, None)
+        return tuple(body.id for body in bodies)

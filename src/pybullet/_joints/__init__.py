@@ -1,0 +1,1 @@
+"""Joints, motors and constraints."""

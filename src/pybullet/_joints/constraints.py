@@ -1,0 +1,357 @@
+"""Constraints between two links, or a link and the world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from carom.description.pose import IDENTITY, Pose
+from pybullet._calls.arguments import Vector, integer, real
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import JOINT_FIXED, JOINT_GEAR, JOINT_POINT2POINT, JOINT_PRISMATIC
+from pybullet._calls.errors import fail, logger
+from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+from pybullet._clients.clients import Client, client_of
+from pybullet._clients.lookup import no_body
+from pybullet._maths.rotations import unit
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.user_constraints import UserConstraint
+
+__all__ = [
+    "changeConstraint",
+    "createConstraint",
+    "getConstraintInfo",
+    "getConstraintState",
+    "getConstraintUniqueId",
+    "getNumConstraints",
+    "removeConstraint",
+]
+
+_WORLD = -1
+_KINDS = (JOINT_PRISMATIC, JOINT_FIXED, JOINT_POINT2POINT, JOINT_GEAR)
+_FAILED = "createConstraint failed."
+_CHANGE_FAILED = "changeConstraint failed."
+_UNCHANGED_TARGET = 1e32
+
+Numbers = tuple[float, ...]
+ConstraintInfo = tuple[
+    int, int, int, int, int, Numbers, Numbers, Numbers, Numbers, Numbers, float, float, int, float, float
+]
+
+
+@exported
+def createConstraint(
+    parentBodyUniqueId: int,
+    parentLinkIndex: int,
+    childBodyUniqueId: int,
+    childLinkIndex: int,
+    jointType: int,
+    jointAxis: Vector,
+    parentFramePosition: Vector,
+    childFramePosition: Vector,
+    parentFrameOrientation: Vector | None = None,
+    childFrameOrientation: Vector | None = None,
+    physicsClientId: int = 0,
+) -> int:
+    """Ties a link to another, or to the world.
+
+    Args:
+        parentBodyUniqueId: The first body.
+        parentLinkIndex: Its link; -1 for the base.
+        childBodyUniqueId: The second body; -1 for the world.
+        childLinkIndex: Its link; -1 for the base.
+        jointType: `JOINT_POINT2POINT`: two points stay together. `JOINT_FIXED`: two frames do.
+            `JOINT_PRISMATIC`: two frames do but for sliding along `jointAxis`. `JOINT_GEAR`: the rate of
+            the parent's joint is minus the gear ratio times that of the child's.
+        jointAxis: Axis in the inertial frame of the parent's link; only a prismatic constraint uses it.
+        parentFramePosition: Pivot in the inertial frame of the parent's link [m].
+        childFramePosition: Pivot in the inertial frame of the child's link, or in the world [m].
+        parentFrameOrientation: Axes there, a quaternion; those of the inertial frame if not given.
+        childFrameOrientation: The same of the child.
+        physicsClientId: The connection.
+
+    Returns:
+        The number of the constraint; the first is 1.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, link or type, or a vector is not what is
+            asked for.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> round(p.getBasePositionAndOrientation(cube)[0][2], 2)
+        1.0
+    """
+    client = client_of(physicsClientId)
+    parent = _body(client, parentBodyUniqueId, "parentBodyUniqueId")
+    parent_link = _link(parent, parentLinkIndex, "parentLinkIndex")
+    child, child_link = None, integer(childLinkIndex, "childLinkIndex")
+    if integer(childBodyUniqueId, "childBodyUniqueId") >= 0:
+        child = _body(client, childBodyUniqueId, "childBodyUniqueId")
+        child_link = _link(child, childLinkIndex, "childLinkIndex")
+    kind = integer(jointType, "jointType")
+    if kind not in _KINDS:
+        fail(_FAILED, f"jointType is {kind}; expected JOINT_POINT2POINT, _FIXED, _PRISMATIC or _GEAR.")
+    if kind == JOINT_GEAR:
+        _check_gear(parent, parent_link, child, child_link)
+
+    from carom.layouts.codes import UserConstraintKind
+
+    parent_frame = _frame(parentFramePosition, parentFrameOrientation, "parentFrame")
+    child_frame = _frame(childFramePosition, childFrameOrientation, "childFrame")
+    axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
+    with client.lock:
+        constraint = client.world.tie(
+            UserConstraintKind(kind),
+            parent,
+            parent_link,
+            child,
+            child_link,
+            axis=axis,
+            parent_frame=parent_frame,
+            child_frame=child_frame,
+        )
+    return constraint.id
+
+
+@exported
+def changeConstraint(
+    userConstraintUniqueId: int,
+    jointChildPivot: Vector | None = None,
+    jointChildFrameOrientation: Vector | None = None,
+    maxForce: float = -1,
+    gearRatio: float = 0,
+    gearAuxLink: int = -1,
+    relativePositionTarget: float = _UNCHANGED_TARGET,
+    erp: float = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """Changes a constraint, for instance to drag a body along. An unknown number is no error.
+
+    Args:
+        userConstraintUniqueId: The constraint.
+        jointChildPivot: New pivot of the child, in the world if there is no child [m].
+        jointChildFrameOrientation: New axes of the child, a quaternion.
+        maxForce: Greatest force of each row [N or N m]; negative leaves it.
+        gearRatio: Of a gear, 1 at first; 0 leaves it.
+        gearAuxLink: Link of the parent whose joint's motion is taken off the gear's; negative leaves it.
+        relativePositionTarget: What the joint positions of a gear are to add up to.
+        erp: Share of a gear's position error that is taken back per step; negative leaves it.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, or an argument is not what is asked for.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> p.changeConstraint(tie, jointChildPivot=[0.5, 0, 2], maxForce=50)
+        >>> p.getConstraintInfo(tie)[10]
+        50.0
+    """
+    client = client_of(physicsClientId)
+    constraint = client.world.user_constraints.get(integer(userConstraintUniqueId, "userConstraintUniqueId"))
+    force, ratio = real(maxForce, "maxForce"), real(gearRatio, "gearRatio")
+    auxiliary, share = integer(gearAuxLink, "gearAuxLink"), real(erp, "erp")
+    target = real(relativePositionTarget, "relativePositionTarget")
+    pivot = optional_vector3(jointChildPivot, _CHANGE_FAILED, "jointChildPivot")
+    orientation = optional_rotation(jointChildFrameOrientation, _CHANGE_FAILED, "jointChildFrameOrientation")
+    if constraint is None:
+        logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
+        return
+    if auxiliary >= 0:
+        constraint.gear_auxiliary_link = _link(constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED)
+    if pivot is not None or orientation is not None:
+        old = constraint.child_frame
+        constraint.child_frame = Pose(
+            pivot or old.position, old.orientation if orientation is None else unit(orientation)
+        )
+    if force >= 0.0:
+        constraint.max_force = force
+        constraint.max_impulse = force * client.world.parameters.substep_time
+    if ratio != 0.0:
+        constraint.gear_ratio = ratio
+    if target < _UNCHANGED_TARGET:
+        constraint.relative_position_target = target
+    if share >= 0.0:
+        constraint.erp = share
+    client.world.user_constraints.write(client.world.touch)
+
+
+@exported
+def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> None:
+    """Removes a constraint; an unknown number is no error.
+
+    Args:
+        userConstraintUniqueId: The constraint.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> p.removeConstraint(tie)
+        >>> p.getNumConstraints()
+        0
+    """
+    client = client_of(physicsClientId)
+    number = integer(userConstraintUniqueId, "userConstraintUniqueId")
+    constraint = client.world.user_constraints.get(number)
+    if constraint is None:
+        logger.warning("removeConstraint: there is no constraint %s.", number)
+        return
+    with client.lock:
+        client.world.untie(constraint)
+
+
+@exported
+def getNumConstraints(physicsClientId: int = 0) -> int:
+    """The number of constraints.
+
+    Args:
+        physicsClientId: The connection.
+
+    Returns:
+        How many there are.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> p.getNumConstraints()
+        0
+    """
+    return len(client_of(physicsClientId).world.user_constraints)
+
+
+@exported
+def getConstraintUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
+    """The number of a constraint by its place among all.
+
+    Args:
+        serialIndex: From 0 to `getNumConstraints()` - 1.
+        physicsClientId: The connection.
+
+    Returns:
+        Its number; -1 if there are not so many.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> p.getConstraintUniqueId(0) == tie
+        True
+    """
+    constraints = client_of(physicsClientId).world.user_constraints.all
+    index = integer(serialIndex, "serialIndex")
+    return constraints[index].id if 0 <= index < len(constraints) else -1
+
+
+@exported
+def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> ConstraintInfo:
+    """What a constraint holds.
+
+    Args:
+        constraintUniqueId: The constraint.
+        physicsClientId: The connection.
+
+    Returns:
+        (parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis,
+        parentFramePosition, childFramePosition, parentFrameOrientation, childFrameOrientation, maxForce,
+        gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world, and gearAuxLink
+        is 0 also where there is none.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such constraint.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> info = p.getConstraintInfo(tie)
+        >>> info[0] == cube, info[4] == p.JOINT_FIXED, info[7]
+        (True, True, (0.5, 0.0, 1.0))
+    """
+    constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't get user constraint info")
+    return (
+        constraint.parent.id,
+        constraint.parent_link,
+        _WORLD if constraint.child is None else constraint.child.id,
+        constraint.child_link,
+        int(constraint.kind),
+        constraint.axis,
+        constraint.parent_frame.position,
+        constraint.child_frame.position,
+        constraint.parent_frame.orientation,
+        constraint.child_frame.orientation,
+        constraint.max_force,
+        constraint.gear_ratio,
+        max(constraint.gear_auxiliary_link, 0),
+        constraint.relative_position_target,
+        constraint.erp,
+    )
+
+
+@exported
+def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Numbers:
+    """The forces of a constraint in the last step.
+
+    Args:
+        constraintUniqueId: The constraint.
+        physicsClientId: The connection.
+
+    Returns:
+        A force [N] or torque [N m] for each of its rows.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such constraint.
+
+    Examples:
+        >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
+        >>> _ = p.stepSimulation()
+        >>> len(p.getConstraintState(tie))
+        6
+    """
+    constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't getConstraintState.")
+    world = client_of(physicsClientId).world
+    impulses = world.user_constraints.impulses(constraint, world.arrays.state)
+    # PyBullet's point-to-point rows count the other way round.
+    sign = -1.0 if constraint.kind == JOINT_POINT2POINT else 1.0
+    return tuple((sign * impulses / world.parameters.substep_time).tolist())
+
+
+def _constraint(number: int, physics_client_id: int, problem: str) -> UserConstraint:
+    client = client_of(physics_client_id)
+    constraint = client.world.user_constraints.get(integer(number, "constraintUniqueId"))
+    if constraint is None:
+        fail(problem, f"There is no constraint {number}.")
+    return constraint
+
+
+def _body(client: Client, number: int, name: str) -> Body:
+    body = client.world.bodies.get(integer(number, name))
+    if body is None:
+        fail(_FAILED, f"{name}: {no_body(number)}")
+    return body
+
+
+def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
+    link = integer(number, name)
+    if not -1 <= link < body.joint_count:
+        fail(problem, f"{name} is {link}, but body {body.id} ({body.name}) has {body.joint_count} links.")
+    return link
+
+
+def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:
+    """A gear needs a joint of one freedom on each side."""
+    for body, link, name in ((parent, parent_link, "parent"), (child, child_link, "child")):
+        if body is None or link < 0 or body.velocity_count[link] != 1:
+            fail(_FAILED, f"The {name} of a gear has to be a revolute or prismatic joint.")
+
+
+def _frame(position: Vector, orientation: Vector | None, name: str) -> Pose:
+    origin = optional_vector3(position, _FAILED, f"{name}Position") or IDENTITY.position
+    turn = optional_rotation(orientation, _FAILED, f"{name}Orientation") or IDENTITY.orientation
+    return Pose(origin, unit(turn))

@@ -1,0 +1,125 @@
+"""Several joints of a body at once.
+
+Scripts name the same joints in every step of a control loop, so what is known of them is kept. When their
+rows follow each other in the state arrays, as they do for all joints of most arms, one loop reads them all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from carom.scene.motor_group import MotorGroup
+from pybullet._joints.joint_access import NO_WRENCH, AxisJoint, JointAccess, JointState
+from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+
+if TYPE_CHECKING:
+    from pybullet._clients.clients import Client
+
+# Groups of one body that are remembered.
+_MOST_GROUPS = 64
+
+
+class JointGroup:
+    """Any joints, one after the other. The other kinds build on it."""
+
+    def __init__(self, client: Client, joints: Sequence[JointAccess]) -> None:
+        self.client = client
+        self.joints = joints
+
+    def states(self) -> tuple[JointState, ...]:
+        """The state of each, as `getJointState` returns it."""
+        return tuple([joint.state() for joint in self.joints])
+
+    def command(self, mode: int, *lists: Iterable[float] | None) -> None:
+        """Sets the motor of each as `setJointMotorControl2` does.
+
+        Args:
+            mode: The mode.
+            *lists: Positions, velocities, forces, position gains and velocity gains; a number for each joint,
+                or None.
+
+        Raises:
+            ValueError: Nothing has been set: the joints differ in kind, the mode is not one of the common
+                ones, or a number is not finite.
+            struct.error: Nothing has been set: a list does not fit.
+        """
+        raise ValueError("these motors are set one by one")
+
+
+class AxisGroup(JointGroup):
+    """Revolute and prismatic joints."""
+
+    def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
+        super().__init__(client, joints)
+        self._axes = joints
+
+    @cached_property
+    def _motors(self) -> MotorGroup:
+        return MotorGroup(
+            self.client.world,
+            [joint.u for joint in self._axes],
+            [(joint.lower, joint.upper) for joint in self._axes],
+            DEFAULT_FORCE,
+            DEFAULT_POSITION_GAIN,
+            DEFAULT_VELOCITY_GAIN,
+        )
+
+    def command(self, mode: int, *lists: Iterable[float] | None) -> None:
+        self._motors.command(mode, self.client.time_step, *lists)
+
+
+class ConsecutiveAxes(AxisGroup):
+    """Such joints without sensors, in rows that follow each other."""
+
+    def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
+        super().__init__(client, joints)
+        first, count = joints[0], len(joints)
+        self._positions = first.positions[first.q : first.q + count]
+        self._velocities = first.velocities[first.u : first.u + count]
+        self._impulses = first.impulses[first.u : first.u + count]
+
+    def states(self) -> tuple[JointState, ...]:
+        time_step = self.client.time_step
+        return tuple(
+            [
+                (position, velocity, NO_WRENCH, impulse / time_step)
+                for position, velocity, impulse in zip(
+                    self._positions, self._velocities, self._impulses, strict=True
+                )
+            ]
+        )
+
+
+class JointGroups(dict[tuple[int, ...], JointGroup]):
+    """The groups of a body's joints by their indices; an entry is made when it is first asked for.
+
+    Asking for a joint that does not exist raises `KeyError`.
+    """
+
+    def __init__(self, client: Client, joints: dict[int, JointAccess]) -> None:
+        super().__init__()
+        self._client = client
+        self._joints = joints
+
+    def __missing__(self, indices: tuple[int, ...]) -> JointGroup:
+        joints = [self._joints[index] for index in indices]
+        axes = [joint for joint in joints if isinstance(joint, AxisJoint)]
+        if not axes or len(axes) < len(joints):
+            group = JointGroup(self._client, joints)
+        elif _are_consecutive(axes) and not any(joint.has_sensor for joint in axes):
+            group = ConsecutiveAxes(self._client, axes)
+        else:
+            group = AxisGroup(self._client, axes)
+        if len(self) >= _MOST_GROUPS:
+            self.clear()
+        self[indices] = group
+        return group
+
+
+def _are_consecutive(joints: Sequence[AxisJoint]) -> bool:
+    first = joints[0]
+    return all(
+        joint.q == first.q + place and joint.u == first.u + place for place, joint in enumerate(joints)
+    )

@@ -1,0 +1,360 @@
+"""Joints: what their file says about them, where they are, and moving them by hand."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pybullet._calls.arguments import (
+    MAX_MAGNITUDE,
+    Indices,
+    Vector,
+    Vectors,
+    indices,
+    integer,
+    quantities,
+    quantity,
+    sequence,
+)
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import JOINT_SPHERICAL
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import client_of, clients
+from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no_joint, state_access
+
+if TYPE_CHECKING:
+    from pybullet._joints.joint_access import JointAccess, JointState, MultiDofState
+    from pybullet._joints.joint_info import JointInfo
+
+__all__ = [
+    "getJointInfo",
+    "getJointState",
+    "getJointStateMultiDof",
+    "getJointStates",
+    "getJointStatesMultiDof",
+    "resetJointState",
+    "resetJointStateMultiDof",
+    "resetJointStatesMultiDof",
+]
+
+NO_INDICES = "expected a sequence of joint indices"
+_NO_STATE = "getJointState failed."
+_NEGATIVE_BODY = "getJointState failed; invalid bodyUniqueId"
+_NO_LISTS = "Expected an position and/or velocity list."
+
+_LEAST = -MAX_MAGNITUDE
+
+
+@exported
+def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> JointInfo:
+    """What the file of a robot says about a joint, and the link that it carries.
+
+    `changeDynamics` does not change what is told here.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        physicsClientId: The connection.
+
+    Returns:
+        17 fields: 0 index; 1 name (bytes); 2 type (`JOINT_*`); 3 index of its first position, the base
+        having the first seven, and 4 of its first velocity, the base having the first six (both -1 for
+        a fixed joint); 5 flags, 1 for a joint that has a motor; 6 damping [N m s/rad or N s/m];
+        7 friction, which is not simulated; 8 lower and 9 upper limit [rad or m], the lower greater than
+        the upper when there are none; 10 greatest force and 11 greatest velocity, which are not
+        enforced; 12 name of the link (bytes); 13 axis in the link's inertial frame; 14 position of the
+        joint in the parent's inertial frame; 15 quaternion that turns vectors of the parent's inertial
+        frame into the link's; 16 index of the parent link, -1 for the base.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> info = p.getJointInfo(arm, 3)
+        >>> info[1].decode(), info[2] == p.JOINT_REVOLUTE
+        ('lbr_iiwa_joint_4', True)
+        >>> lower, upper = info[8:10]
+        >>> round(lower, 2), round(upper, 2)
+        (-2.09, 2.09)
+    """
+    try:
+        return clients[physicsClientId].bodies[bodyUniqueId].joint_infos[jointIndex]
+    except (KeyError, TypeError, ValueError):
+        problem = "GetJointInfo failed."
+        access = body_access(bodyUniqueId, physicsClientId, problem)
+        index = integer(jointIndex, "jointIndex")
+        if index not in access.joint_infos:
+            fail(problem, no_joint(access.body, index))
+        return access.joint_infos[index]
+
+
+@exported
+def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> JointState:
+    """Where a joint is, how fast it moves and what acts on it.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        physicsClientId: The connection.
+
+    Returns:
+        (position [rad or m], velocity, (Fx, Fy, Fz, Mx, My, Mz) [N, N m], motor torque [N m or N]).
+        The third is what the joint does to its link, zeros unless `enableJointForceTorqueSensor` was
+        called; the fourth is what the motor did in the last step, and stays when the motor is switched
+        off. Zeros for a fixed joint; for a spherical one see `getJointStateMultiDof`.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> position, velocity, reaction, torque = p.getJointState(arm, 3)
+        >>> position, velocity
+        (0.0, 0.0)
+    """
+    try:
+        return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].state()
+    except (KeyError, TypeError, ValueError):
+        return state_access(bodyUniqueId, jointIndex, physicsClientId).state()
+
+
+@exported
+def getJointStates(
+    bodyUniqueId: int, jointIndices: Indices, physicsClientId: int = 0
+) -> tuple[JointState, ...] | None:
+    """The states of several joints of a body.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndices: The joints, in any order.
+        physicsClientId: The connection.
+
+    Returns:
+        What `getJointState` returns, for each joint; None when there are no indices.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> [state[0] for state in p.getJointStates(arm, range(7))]
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    """
+    try:
+        group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
+        return group.states() or None
+    except (KeyError, TypeError, ValueError):
+        requested = _requested(bodyUniqueId, jointIndices, physicsClientId)
+        if not requested:
+            return None
+        access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+        for index in requested:
+            if index not in access.joints:
+                fail(OUT_OF_RANGE, no_joint(access.body, index))
+        return tuple(access.joints[index].state() for index in requested)
+
+
+@exported
+def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> MultiDofState:
+    """The state of a joint with any number of freedoms.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        physicsClientId: The connection.
+
+    Returns:
+        (positions, velocities, (Fx, Fy, Fz, Mx, My, Mz), motor torques) as in `getJointState`, each a
+        tuple: empty for a fixed joint; of a spherical joint a quaternion (x, y, z, w), and the angular
+        velocity in the axes of its link.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> position, velocity, reaction, torque = p.getJointStateMultiDof(arm, 3)
+        >>> position, velocity
+        ((0.0,), (0.0,))
+    """
+    try:
+        return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].multi_dof_state()
+    except (KeyError, TypeError, ValueError):
+        return state_access(bodyUniqueId, jointIndex, physicsClientId).multi_dof_state()
+
+
+@exported
+def getJointStatesMultiDof(
+    bodyUniqueId: int, jointIndex: Indices, physicsClientId: int = 0
+) -> tuple[MultiDofState, ...] | None:
+    """The states of several joints with any number of freedoms.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joints, in any order: a sequence, whatever the name says.
+        physicsClientId: The connection.
+
+    Returns:
+        What `getJointStateMultiDof` returns, for each joint; None when there are no indices.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or joint.
+
+    Examples:
+        >>> [state[0] for state in p.getJointStatesMultiDof(arm, [0, 1])]
+        [(0.0,), (0.0,)]
+    """
+    access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+    requested = indices(jointIndex, NO_INDICES, "jointIndex")
+    for index in requested:
+        if index not in access.joints:
+            fail("getJointState failed (2).", no_joint(access.body, index))
+    return tuple(access.joints[index].multi_dof_state() for index in requested) or None
+
+
+@exported
+def resetJointState(
+    bodyUniqueId: int,
+    jointIndex: int,
+    targetValue: float,
+    targetVelocity: float = 0,
+    physicsClientId: int = 0,
+) -> None:
+    """Puts a joint somewhere, without any physics. Its motor stays as it is.
+
+    Fixed, spherical and planar joints do not move.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        targetValue: Position [rad or m].
+        targetVelocity: Velocity [rad/s or m/s].
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or joint, or a number is not finite.
+
+    Examples:
+        >>> p.resetJointState(arm, 3, 0.5, targetVelocity=0.1)
+        >>> p.getJointState(arm, 3)[:2]
+        (0.5, 0.1)
+    """
+    try:
+        joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
+        if _LEAST < targetValue < MAX_MAGNITUDE and _LEAST < targetVelocity < MAX_MAGNITUDE:
+            joint.reset(targetValue, targetVelocity)
+            return
+    except (KeyError, TypeError, ValueError):
+        pass
+    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    joint.reset(quantity(targetValue, "targetValue"), quantity(targetVelocity, "targetVelocity"))
+
+
+@exported
+def resetJointStateMultiDof(
+    bodyUniqueId: int,
+    jointIndex: int,
+    targetValue: Vector,
+    targetVelocity: Vector | None = None,
+    physicsClientId: int = 0,
+) -> None:
+    """Puts a joint with any number of freedoms somewhere, without any physics.
+
+    A list of a length that does not fit the joint is ignored, and so is a velocity without a position.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        targetValue: Positions: one number, or for a spherical joint a quaternion (x, y, z, w).
+        targetVelocity: Velocities: one number, or three for a spherical joint; 0 when left out.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or joint, both lists are empty, or they hold
+            something that is not a finite number.
+
+    Examples:
+        >>> p.resetJointStateMultiDof(arm, 3, [0.5], [0.1])
+        >>> p.getJointState(arm, 3)[:2]
+        (0.5, 0.1)
+    """
+    client_of(physicsClientId)
+    position, velocity = _targets(targetValue, targetVelocity)
+    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    with joint.client.lock:
+        _reset(joint, position, velocity)
+
+
+@exported
+def resetJointStatesMultiDof(
+    bodyUniqueId: int,
+    jointIndices: Indices,
+    targetValues: Vectors,
+    targetVelocities: Vectors | None = None,
+    physicsClientId: int = 0,
+) -> None:
+    """Puts several joints somewhere: `resetJointStateMultiDof` for each. Nothing moves if one is wrong.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndices: The joints, in any order.
+        targetValues: A list of positions for each.
+        targetVelocities: A list of velocities for each.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body or joint, the numbers of lists and of joints
+            differ, both lists of a joint are empty, or one holds something that is not a finite number.
+
+    Examples:
+        >>> p.resetJointStatesMultiDof(arm, [2, 3], [[0.25], [0.5]])
+        >>> [state[0] for state in p.getJointStates(arm, [2, 3])]
+        [0.25, 0.5]
+    """
+    client = client_of(physicsClientId)
+    requested = indices(jointIndices, NO_INDICES, "jointIndices")
+    if not requested:
+        return
+    positions = sequence(targetValues, _NO_LISTS, "targetValues")
+    velocities = () if targetVelocities is None else sequence(targetVelocities, _NO_LISTS, "targetVelocities")
+    for name, values in (("targetValues", positions), ("targetVelocities", velocities)):
+        if values and len(values) != len(requested):
+            fail(
+                "Number of targetValues and targetVelocities needs to match number of indices.",
+                f"There are {len(requested)} indices and {len(values)} {name}.",
+            )
+    resets = []
+    for place, index in enumerate(requested):
+        joint = joint_access(bodyUniqueId, index, physicsClientId)
+        resets.append(
+            (
+                joint,
+                *_targets(positions[place] if positions else (), velocities[place] if velocities else None),
+            )
+        )
+    with client.lock:
+        for joint, position, velocity in resets:
+            _reset(joint, position, velocity)
+
+
+def _requested(body_id: int, joint_indices: Indices, physics_client_id: int) -> tuple[int, ...]:
+    """The joint indices of a query, after the checks that come before them."""
+    client_of(physics_client_id)
+    if integer(body_id, "bodyUniqueId") < 0:
+        body_access(body_id, physics_client_id, _NO_STATE, _NEGATIVE_BODY)
+    return indices(joint_indices, NO_INDICES, "jointIndices")
+
+
+def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Positions and velocities of one joint from what the script gave for them."""
+    positions = quantities(position, _NO_LISTS, "targetValue") if position is not None else ()
+    velocities = quantities(velocity, _NO_LISTS, "targetVelocity") if velocity is not None else ()
+    if not positions and not velocities:
+        fail(_NO_LISTS, "Both are empty.")
+    return positions, velocities
+
+
+def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[float, ...]) -> None:
+    body, index = joint.body, joint.index
+    if not position or len(position) != body.position_count[index]:
+        return
+    if body.joint_types[index] == JOINT_SPHERICAL and not any(position):
+        fail("targetValue is a quaternion of length 0, which is no rotation.")
+    freedoms = body.velocity_count[index]
+    body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)

@@ -1,0 +1,356 @@
+"""Joint motors by numbers: one joint or many joints of one freedom each."""
+
+from __future__ import annotations
+
+from struct import error as StructError
+from typing import Any, overload
+
+from pybullet._calls.arguments import (
+    MAX_MAGNITUDE,
+    Indices,
+    Vector,
+    bound,
+    indices,
+    integer,
+    one_body,
+    quantity,
+    real,
+    required,
+    sequence,
+)
+from pybullet._calls.builtin import exported_as
+from pybullet._calls.constants import PD_CONTROL, POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
+from pybullet._calls.errors import error, fail
+from pybullet._clients.clients import client_of, clients
+from pybullet._clients.lookup import joint_access
+from pybullet._joints.joints import NO_INDICES
+from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+
+__all__ = [
+    "setJointMotorControl",
+    "setJointMotorControl2",
+    "setJointMotorControlArray",
+]
+
+_ILLEGAL_MODE = "Illegal control mode."
+_UNPARSED = "Error parsing arguments in setJointControl."
+_WRONG_POSITIONS = "number of target positions should match the number of joint indices"
+_WRONG_VELOCITIES = "number of target velocies should match the number of joint indices"
+_WRONG_FORCES = "number of forces should match the joint indices"
+_WRONG_KPS = "number of kps should match the joint indices"
+_WRONG_KDS = "number of kds should match the number of joint indices"
+_NO_CLAMP = -1.0
+_MODES = (VELOCITY_CONTROL, TORQUE_CONTROL, POSITION_CONTROL, PD_CONTROL)
+
+
+@overload
+def setJointMotorControl2(
+    bodyUniqueId: int,
+    jointIndex: int,
+    controlMode: int,
+    targetPosition: float = 0.0,
+    targetVelocity: float = 0.0,
+    force: float = DEFAULT_FORCE,
+    positionGain: float = DEFAULT_POSITION_GAIN,
+    velocityGain: float = DEFAULT_VELOCITY_GAIN,
+    maxVelocity: float = -1,
+    physicsClientId: int = 0,
+) -> None: ...
+@overload
+def setJointMotorControl2(
+    *,
+    bodyIndex: int,
+    jointIndex: int,
+    controlMode: int,
+    targetPosition: float = 0.0,
+    targetVelocity: float = 0.0,
+    force: float = DEFAULT_FORCE,
+    positionGain: float = DEFAULT_POSITION_GAIN,
+    velocityGain: float = DEFAULT_VELOCITY_GAIN,
+    maxVelocity: float = -1,
+    physicsClientId: int = 0,
+) -> None: ...
+@exported_as(
+    "(bodyUniqueId, jointIndex, controlMode, targetPosition=0.0, targetVelocity=0.0, force=100000.0, "
+    "positionGain=0.1, velocityGain=1.0, maxVelocity=-1, physicsClientId=0)"
+)
+def setJointMotorControl2(
+    bodyUniqueId: Any = None,
+    jointIndex: Any = None,
+    controlMode: Any = None,
+    targetPosition: float = 0.0,
+    targetVelocity: float = 0.0,
+    force: float = DEFAULT_FORCE,
+    positionGain: float = DEFAULT_POSITION_GAIN,
+    velocityGain: float = DEFAULT_VELOCITY_GAIN,
+    maxVelocity: float = -1,
+    physicsClientId: int = 0,
+    *,
+    bodyIndex: Any = None,
+) -> None:
+    """Sets the motor of a joint. It keeps its setting until it is set again.
+
+    Each step the motor of a revolute or prismatic joint reaches for the velocity `velocity + positionGain ·
+    (targetPosition - position) / timeStep + velocityGain · (targetVelocity - velocity)` and gets there
+    unless that takes more than `force`. A new body's motors hold its joints still with an impulse of
+    1 N m s (240 N m at the default step), so for joints that swing freely, or that torques alone should
+    move, call this first with `VELOCITY_CONTROL` and `force=0`.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0. The motor of a fixed joint does nothing.
+        controlMode: `POSITION_CONTROL` as above. `VELOCITY_CONTROL` the same without the position.
+            `TORQUE_CONTROL` adds `force` to the torques of the next step, beside the motor.
+            `PD_CONTROL` adds the torque `positionGain · (targetPosition - position) + velocityGain ·
+            (targetVelocity - velocity)`, at most `force`, in every step, beside the motor; `force=0`
+            ends it.
+        targetPosition: [rad or m]; taken to the nearest limit when it is beyond.
+        targetVelocity: [rad/s or m/s].
+        force: Greatest force of the motor, or the torque [N m or N]. As a bound of a motor it may be
+            infinite.
+        positionGain: See above.
+        velocityGain: See above.
+        maxVelocity: Greatest velocity the motor reaches for with `POSITION_CONTROL` when greater than 0
+            [rad/s or m/s]; it stays until `VELOCITY_CONTROL` is set.
+        physicsClientId: The connection.
+        bodyIndex: Another name of `bodyUniqueId`.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, or a number is not finite.
+
+    Examples:
+        >>> p.setJointMotorControl2(arm, 3, p.POSITION_CONTROL, targetPosition=0.5, force=200)
+        >>> for _ in range(240):
+        ...     _ = p.stepSimulation()
+        >>> round(p.getJointState(arm, 3)[0], 2)
+        0.5
+    """
+    try:
+        check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
+        # Anything else, such as an array, would be noticed only when half of the motor is written.
+        if isinstance(check, float) and -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
+            joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
+            joint.command(
+                controlMode, targetPosition, targetVelocity, force, positionGain, velocityGain, maxVelocity
+            )
+            return
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
+    body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
+    required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
+    joint = joint_access(body, jointIndex, physicsClientId)
+    joint.command(
+        integer(controlMode, "controlMode"),
+        quantity(targetPosition, "targetPosition"),
+        quantity(targetVelocity, "targetVelocity"),
+        _force(force, controlMode, "force"),
+        quantity(positionGain, "positionGain"),
+        quantity(velocityGain, "velocityGain"),
+        bound(maxVelocity, "maxVelocity"),
+    )
+
+
+@overload
+def setJointMotorControlArray(
+    bodyUniqueId: int,
+    jointIndices: Indices,
+    controlMode: int,
+    targetPositions: Vector | None = None,
+    targetVelocities: Vector | None = None,
+    forces: Vector | None = None,
+    positionGains: Vector | None = None,
+    velocityGains: Vector | None = None,
+    physicsClientId: int = 0,
+) -> None: ...
+@overload
+def setJointMotorControlArray(
+    *,
+    bodyIndex: int,
+    jointIndices: Indices,
+    controlMode: int,
+    targetPositions: Vector | None = None,
+    targetVelocities: Vector | None = None,
+    forces: Vector | None = None,
+    positionGains: Vector | None = None,
+    velocityGains: Vector | None = None,
+    physicsClientId: int = 0,
+) -> None: ...
+@exported_as(
+    "(bodyUniqueId, jointIndices, controlMode, targetPositions=None, targetVelocities=None, forces=None, "
+    "positionGains=None, velocityGains=None, physicsClientId=0)"
+)
+def setJointMotorControlArray(
+    bodyUniqueId: Any = None,
+    jointIndices: Any = None,
+    controlMode: Any = None,
+    targetPositions: Any = None,
+    targetVelocities: Any = None,
+    forces: Any = None,
+    positionGains: Any = None,
+    velocityGains: Any = None,
+    physicsClientId: int = 0,
+    *,
+    bodyIndex: Any = None,
+) -> None:
+    """Sets the motors of several joints of a body: `setJointMotorControl2` for each.
+
+    Nothing is set when an argument is wrong. Lists that are left out stand for the defaults of
+    `setJointMotorControl2`.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndices: The joints, in any order.
+        controlMode: `POSITION_CONTROL`, `VELOCITY_CONTROL`, `TORQUE_CONTROL` or `PD_CONTROL`.
+        targetPositions: A number for each joint [rad or m].
+        targetVelocities: A number for each joint [rad/s or m/s].
+        forces: A number for each joint [N m or N].
+        positionGains: A number for each joint.
+        velocityGains: A number for each joint.
+        physicsClientId: The connection.
+        bodyIndex: Another name of `bodyUniqueId`.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, a list has not as many
+            numbers as there are joints, or a number is not finite.
+
+    Examples:
+        >>> p.setJointMotorControlArray(arm, [0, 1], p.VELOCITY_CONTROL, targetVelocities=[0.5, 0])
+        >>> for _ in range(24):
+        ...     _ = p.stepSimulation()
+        >>> round(p.getJointState(arm, 0)[1], 2)
+        0.5
+    """
+    try:
+        group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
+        group.command(controlMode, targetPositions, targetVelocities, forces, positionGains, velocityGains)
+        return
+    except (KeyError, TypeError, ValueError, StructError):
+        pass
+    _set_array_carefully(
+        one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
+        jointIndices,
+        controlMode,
+        (targetPositions, targetVelocities, forces, positionGains, velocityGains),
+        physicsClientId,
+    )
+
+
+def _set_array_carefully(
+    body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
+) -> None:
+    """Sets the motors after checking, and where needed converting, every argument."""
+    required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
+    client_of(physics_client_id)
+    mode = integer(control_mode, "controlMode")
+    if mode not in _MODES:
+        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of joints can have.")
+    requested = indices(joint_indices, NO_INDICES, "jointIndices")
+    if not requested:
+        return
+    joints = [joint_access(body, index, physics_client_id) for index in requested]
+    positions, velocities, forces, kps, kds = lists
+    count, torque = len(joints), mode == TORQUE_CONTROL
+    checked = [
+        _one_each(velocities, 0.0, count, _WRONG_VELOCITIES, "targetVelocities"),
+        _one_each(positions, 0.0, count, _WRONG_POSITIONS, "targetPositions"),
+        _one_each(forces, DEFAULT_FORCE, count, _WRONG_FORCES, "forces", infinite=not torque),
+        _one_each(kps, DEFAULT_POSITION_GAIN, count, _WRONG_KPS, "positionGains"),
+        _one_each(kds, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
+    ]
+    for joint, velocity, position, force, kp, kd in zip(joints, *checked, strict=True):
+        joint.command(mode, position, velocity, force, kp, kd, _NO_CLAMP)
+
+
+@overload
+def setJointMotorControl(
+    bodyUniqueId: int,
+    jointIndex: int,
+    controlMode: int,
+    targetValue: float,
+    maxForce: float = DEFAULT_FORCE,
+    gain: float = ...,
+    /,
+    *,
+    physicsClientId: int = 0,
+) -> None: ...
+@overload
+def setJointMotorControl(
+    bodyUniqueId: int,
+    jointIndex: int,
+    controlMode: int,
+    targetPosition: float,
+    targetVelocity: float,
+    maxForce: float,
+    kp: float,
+    kd: float,
+    /,
+    *,
+    physicsClientId: int = 0,
+) -> None: ...
+@exported_as("(*arguments, physicsClientId=0)")
+def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
+    """Sets the motor of a joint. An old form of `setJointMotorControl2`, by position only.
+
+    Called as `(body, joint, mode, target)`, `(body, joint, mode, target, maxForce)`,
+    `(body, joint, mode, target, maxForce, gain)` or
+    `(body, joint, mode, targetPosition, targetVelocity, maxForce, kp, kd)`.
+
+    Args:
+        *arguments: Body, joint, mode (`POSITION_CONTROL`, `VELOCITY_CONTROL`, or `TORQUE_CONTROL` in the
+            first and last form), and what the mode aims at: a position, a velocity or, in the first
+            form, a torque. In the last form a torque is 0.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, the number of arguments is
+            none of these, or a number is not finite.
+
+    Examples:
+        >>> p.setJointMotorControl(arm, 3, p.POSITION_CONTROL, 0.5, 200)
+    """
+    client_of(physicsClientId)
+    count = len(arguments)
+    if count not in (4, 5, 6, 8):
+        fail(_UNPARSED, f"There are {count} arguments instead of 4, 5, 6 or 8.")
+    try:
+        body, index, mode = (
+            integer(value, name)
+            for value, name in zip(arguments, ("bodyUniqueId", "jointIndex", "controlMode"), strict=False)
+        )
+        values = [real(value, "argument") for value in arguments[3:]]
+    except (TypeError, OverflowError) as problem:
+        raise error(f"Error parsing arguments. {problem}") from None
+    position = velocity = torque = 0.0
+    force, kp, kd = DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+    if count == 8:
+        position, velocity, force, kp, kd = values
+    elif mode == POSITION_CONTROL:
+        position, force, kp = (*values, *(force, kp)[len(values) - 1 :])
+    elif mode == VELOCITY_CONTROL:
+        velocity, force, kd = (*values, *(force, kd)[len(values) - 1 :])
+    elif mode == TORQUE_CONTROL and count == 4:
+        torque = values[0]
+    else:
+        fail(_UNPARSED, f"Mode {mode} does not go with {count} arguments.")
+    joint = joint_access(body, index, physicsClientId)
+    if mode not in (POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL):
+        fail(_ILLEGAL_MODE, f"{mode} is neither position, velocity nor torque control.")
+    joint.command(mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP)
+
+
+def _force(value: Any, mode: int, name: str) -> float:
+    """A torque has to be finite; the bound of a motor need not be."""
+    return real(value, name) if mode == TORQUE_CONTROL else bound(value, name)
+
+
+def _one_each(
+    values: Any, default: float, count: int, problem: str, name: str, infinite: bool = False
+) -> tuple[float, ...]:
+    """A number for each joint."""
+    if values is None:
+        return (default,) * count
+    items = sequence(values, problem, name)
+    if len(items) != count:
+        fail(problem, f"{name} has {len(items)} values for {count} joints.")
+    convert = bound if infinite else real
+    return tuple([convert(item, name) for item in items])

@@ -1,0 +1,256 @@
+"""Joint motors by lists: for joints of any number of freedoms, spherical ones above all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from math import inf
+from typing import TYPE_CHECKING, Any, SupportsFloat
+
+from pybullet._calls.arguments import (
+    MAX_MAGNITUDE,
+    Indices,
+    Vector,
+    bound,
+    check_rotation,
+    indices,
+    integer,
+    quantities,
+    quantity,
+    sequence,
+)
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL, TORQUE_CONTROL
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no_joint
+from pybullet._joints.joints import NO_INDICES
+from pybullet._joints.motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+
+if TYPE_CHECKING:
+    from pybullet._joints.joint_access import JointAccess
+
+__all__ = [
+    "setJointMotorControlMultiDof",
+    "setJointMotorControlMultiDofArray",
+]
+
+_ILLEGAL_MODE = "Illegal control mode."
+_NO_CLAMP = -1.0
+_NO_DAMPING = 1.0
+_USUAL_LISTS = frozenset((list, tuple))
+_USUAL_NUMBERS = frozenset((float, int))
+
+
+@exported
+def setJointMotorControlMultiDof(
+    bodyUniqueId: int,
+    jointIndex: int,
+    controlMode: int,
+    targetPosition: Vector | None = None,
+    targetVelocity: Vector | None = None,
+    force: Vector | None = None,
+    positionGain: float | Vector = 0.1,
+    velocityGain: float | Vector = 1.0,
+    maxVelocity: float = -1,
+    damping: float | Vector = 1.0,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets the motor of a joint by a number for each of its freedoms.
+
+    A list of a length that does not fit the joint counts as not given, and so does what is left out; a
+    motor with neither position nor velocity is not changed. A motor without force is very strong.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndex: The joint, from 0.
+        controlMode: `POSITION_CONTROL`, or `TORQUE_CONTROL`, which adds `force` to the torques of the
+            next step.
+        targetPosition: One number [rad or m]; for a spherical joint a quaternion (x, y, z, w).
+        targetVelocity: One number [rad/s or m/s], or three; a spherical motor ignores it.
+        force: Greatest forces of the motor, or the torques [N m or N]: a number for each freedom, or one
+            for all.
+        positionGain: Fraction of the error that one step takes back. A number, or one for each freedom;
+            those count only when forces and both gains are all given so.
+        velocityGain: As in `setJointMotorControl2`, and a number or numbers as before.
+        maxVelocity: Greatest velocity the motor reaches for when greater than 0; not for spherical joints.
+        damping: Fraction of the angular velocity that a spherical motor takes away, for each axis or for
+            all.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, or an argument holds something
+            that is not a finite number.
+
+    Examples:
+        >>> p.setJointMotorControlMultiDof(arm, 3, p.POSITION_CONTROL, targetPosition=[0.5], force=[200])
+    """
+    client_of(physicsClientId)
+    position = _list(targetPosition, "targetPosition", 4)
+    velocity = _list(targetVelocity, "targetVelocity", 3)
+    forces = _list(force, "force", 3)
+    kp, kd = _gain(positionGain, "positionGain"), _gain(velocityGain, "velocityGain")
+    damped = _gain(damping, "damping")
+    clamp = bound(maxVelocity, "maxVelocity")
+    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    mode = integer(controlMode, "controlMode")
+    if mode == TORQUE_CONTROL:
+        joint.add_torques(forces)
+    elif mode == POSITION_CONTROL:
+        _check_rotation(position)
+        joint.command_multi_dof(position, velocity, forces, kp, kd, clamp, damped)
+    else:
+        fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
+
+
+@exported
+def setJointMotorControlMultiDofArray(
+    bodyUniqueId: int,
+    jointIndices: Indices,
+    controlMode: int,
+    targetPositions: Iterable[Vector] | None = None,
+    targetVelocities: Iterable[Vector] | None = None,
+    forces: Iterable[Vector] | None = None,
+    positionGains: Vector | None = None,
+    velocityGains: Vector | None = None,
+    maxVelocities: Vector | None = None,
+    physicsClientId: int = 0,
+) -> None:
+    """Sets the motors of several joints, each by a list of numbers.
+
+    Nothing happens when a list is not empty and has not as many entries as there are joints. A list of a
+    joint whose length does not fit it counts as not given.
+
+    Args:
+        bodyUniqueId: The body.
+        jointIndices: The joints, in any order.
+        controlMode: `POSITION_CONTROL` or `TORQUE_CONTROL` as in `setJointMotorControlMultiDof`;
+            `PD_CONTROL` as in `setJointMotorControl2`, for joints of one freedom; `STABLE_PD_CONTROL`, for
+            the next step only: the torques of a PD controller that looks one step ahead with the equations
+            of motion of the whole body, and so stays stable with high gains (Tan, Liu and Turk, 2011).
+        targetPositions: For each joint one number [rad or m], or a quaternion (x, y, z, w).
+        targetVelocities: For each joint one number [rad/s or m/s], or three.
+        forces: For each joint the greatest forces of the motor, or the torques [N m or N].
+        positionGains: A number for each joint.
+        velocityGains: A number for each joint.
+        maxVelocities: Not used, as in PyBullet.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected, there is no such body, joint or mode, or a list holds something that
+            is not a finite number.
+
+    Examples:
+        >>> p.setJointMotorControlMultiDofArray(
+        ...     arm, [2, 3], p.POSITION_CONTROL, targetPositions=[[0.1], [0.5]], forces=[[200], [200]]
+        ... )
+    """
+    client = client_of(physicsClientId)
+    mode = integer(controlMode, "controlMode")
+    if mode not in (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL):
+        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of such joints can have.")
+    requested = indices(jointIndices, NO_INDICES, "jointIndices")
+    lists = {
+        "targetPositions": _entries(targetPositions, "targetPositions"),
+        "targetVelocities": _entries(targetVelocities, "targetVelocities"),
+        "forces": _entries(forces, "forces"),
+        "positionGains": _entries(positionGains, "positionGains"),
+        "velocityGains": _entries(velocityGains, "velocityGains"),
+    }
+    count = len(requested)
+    if count == 0 or any(entries and len(entries) != count for entries in lists.values()):
+        return
+    access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
+    for index in requested:
+        if index not in access.joints:
+            fail(OUT_OF_RANGE, no_joint(access.body, index))
+    joints = [access.joints[index] for index in requested]
+    positions, velocities, bounds = (
+        _lists(lists[name], name, most) or [()] * count
+        for name, most in (("targetPositions", 4), ("targetVelocities", 3), ("forces", 3))
+    )
+    kps = _gains(lists["positionGains"], "positionGains") or [DEFAULT_POSITION_GAIN] * count
+    kds = _gains(lists["velocityGains"], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
+    for position in positions:
+        _check_rotation(position)
+    if mode == STABLE_PD_CONTROL:
+        _stable_pd(joints, positions, velocities, bounds, kps, kds, client.time_step)
+        return
+    for joint, position, velocity, force, kp, kd in zip(
+        joints, positions, velocities, bounds, kps, kds, strict=True
+    ):
+        if mode == TORQUE_CONTROL:
+            joint.add_torques(force)
+        elif mode == PD_CONTROL:
+            joint.command_pd(position, velocity, force, kp, kd)
+        else:
+            joint.command_multi_dof(position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING)
+
+
+def _stable_pd(
+    joints: Sequence[JointAccess],
+    positions: Sequence[Sequence[float]],
+    velocities: Sequence[Sequence[float]],
+    forces: Sequence[Sequence[float]],
+    kps: Sequence[float],
+    kds: Sequence[float],
+    time_step: float,
+) -> None:
+    """Adds the torques of a stable PD controller to those of the next step."""
+    from carom.algorithms.stable_pd import JointTarget, stable_pd_torques
+
+    columns = zip(positions, velocities, forces, kps, kds, strict=True)
+    targets = zip([joint.index for joint in joints], map(JointTarget._make, columns), strict=True)
+    body = joints[0].body
+    torques = stable_pd_torques(body, dict(targets), time_step)
+    first = body.first_velocity
+    body.world.joint_torque[first : first + len(torques)] += torques
+
+
+def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[Sequence[float]]:
+    """The numbers of each joint, all looked at together if they are as usual."""
+    try:
+        if (
+            _USUAL_LISTS.issuperset(map(type, entries))
+            and max(map(len, entries), default=0) <= most  # type: ignore[arg-type]
+            and -inf < sum(chain.from_iterable(entries)) < inf  # type: ignore[arg-type]
+        ):
+            return entries  # type: ignore[return-value]
+    except TypeError:
+        pass
+    return [_list(values, name, most) for values in entries]
+
+
+def _gains(values: Sequence[float], name: str) -> Sequence[float]:
+    """Finite numbers, all looked at together if they are as usual."""
+    if _USUAL_NUMBERS.issuperset(map(type, values)) and -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
+        return values
+    return [quantity(value, name) for value in values]
+
+
+def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
+    """The numbers of one joint, at most as many as any joint has; none when left out."""
+    if isinstance(values, (list, tuple)) and len(values) <= most:
+        try:
+            if -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
+                return values
+        except TypeError:
+            pass
+    return () if values is None else quantities(values, f"expected a {name} sequence", name)[:most]
+
+
+def _entries(values: Any, name: str) -> tuple[Any, ...]:
+    return () if values is None else sequence(values, f"expected a {name} sequence", name)
+
+
+def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
+    """A number, or at most three of them; no number at all stands for the default of each use."""
+    # Arrays of one number can be floats, too, but are lists.
+    if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
+        return quantity(value, name)
+    return quantities(value, f"expected a {name} sequence", name)[:3]
+
+
+def _check_rotation(position: Sequence[float]) -> None:
+    if len(position) == 4:
+        check_rotation(position, "expected a targetPosition sequence", "targetPosition")

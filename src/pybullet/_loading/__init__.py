@@ -1,0 +1,1 @@
+"""Bodies from files and from shapes, and scenes as scripts."""

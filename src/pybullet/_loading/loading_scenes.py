@@ -1,0 +1,132 @@
+"""Bringing whole scenes into a world: files that hold several robots and say where they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pybullet._calls.arguments import integer, moderate, real, text
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import Client, client_of
+from pybullet._clients.origins import FileLoad
+from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
+
+if TYPE_CHECKING:
+    from carom.formats.search import AssetSearch
+    from carom.model.from_files import PlacedBody
+
+__all__ = ["loadMJCF", "loadSDF"]
+
+_CANNOT_LOAD_SDF = "Cannot load SDF file."
+_CANNOT_LOAD_MJCF = "Couldn't load .mjcf file."
+_MOST_BODIES = 512
+
+
+@exported
+def loadSDF(
+    sdfFileName: str, useMaximalCoordinates: int = -1, globalScaling: float = -1, physicsClientId: int = 0
+) -> tuple[int, ...]:
+    """Loads the models of an SDF file, where the file puts them.
+
+    As in PyBullet inertias come from collision shapes, the pose of a model is that of its root link,
+    `<static>` counts when it says 1, joints are at the origins of their children, and models inside of
+    models are left out. Unlike there, files named by `<include>` are loaded too.
+
+    Args:
+        sdfFileName: The file: as given, in `data` folders near the working directory, or in the
+            directory of `setAdditionalSearchPath`.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
+        globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet balls and limits of
+            joints keep their size.
+        physicsClientId: The connection.
+
+    Returns:
+        The ids of the bodies, in the order of the file.
+
+    Raises:
+        pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
+            text names file, line, element and reason). The world is then as it was.
+
+    Examples:
+        >>> bodies = p.loadSDF("kuka_iiwa/model.sdf")
+        >>> [p.getNumJoints(body) for body in bodies]
+        [7]
+    """
+    name = text(sdfFileName, "sdfFileName")
+    maximal = integer(useMaximalCoordinates, "useMaximalCoordinates")
+    scaling = real(globalScaling, "globalScaling")
+    if scaling > 0.0:
+        moderate(scaling, _CANNOT_LOAD_SDF, "globalScaling")
+    client = client_of(physicsClientId)
+    warn_of_coordinates("loadSDF", maximal)
+
+    def read(search: AssetSearch) -> list[PlacedBody]:
+        from carom.model.from_files import sdf_bodies
+
+        return sdf_bodies(Path(name), search, scale=scaling if scaling > 0.0 else 1.0)
+
+    load = FileLoad("loadSDF", {"globalScaling": scaling})
+    return _load(client, read, _CANNOT_LOAD_SDF, load)
+
+
+@exported
+def loadMJCF(
+    mjcfFileName: str, flags: int = -1, useMultiBody: int = -1, physicsClientId: int = 0
+) -> tuple[int, ...]:
+    """Loads the bodies of an MJCF file, where the file puts them.
+
+    What PyBullet reads of such files is read its way: every joint has a link without mass of its own,
+    geoms weigh 1000 kg/m³, joints have neither damping nor armature, a body without joints floats, and
+    every geom of the world is a body, `axisangle` turns geoms but not bodies, and named classes of defaults
+    limit no joint. What PyBullet cannot read is read as MuJoCo means it: what else such classes say, ball
+    joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
+
+    Args:
+        mjcfFileName: The file: as given, in `data` folders near the working directory, or in the
+            directory of `setAdditionalSearchPath`.
+        flags: `URDF_*` and `MJCF_COLORS_FROM_FILE`, added up; -1 for none.
+        useMultiBody: Bodies always have reduced coordinates in Carom; 0 logs a warning.
+        physicsClientId: The connection.
+
+    Returns:
+        The ids of the bodies, in the order of the file.
+
+    Raises:
+        pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
+            text names file, line, element and reason). The world is then as it was.
+
+    Examples:
+        >>> bodies = p.loadMJCF("mjcf/inverted_pendulum.xml")
+        >>> p.getBodyInfo(bodies[-1])[1].decode()
+        'inverted pendulum'
+    """
+    name = text(mjcfFileName, "mjcfFileName")
+    bits = max(0, integer(flags, "flags"))
+    client = client_of(physicsClientId)
+    if integer(useMultiBody, "useMultiBody") == 0:
+        logger.warning("loadMJCF: useMultiBody=0 has no effect; bodies have reduced coordinates.")
+
+    def read(search: AssetSearch) -> list[PlacedBody]:
+        from carom.model.from_files import mjcf_bodies
+
+        return mjcf_bodies(Path(name), search, flags=bits, as_mujoco=False)
+
+    return _load(client, read, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
+
+
+def _load(
+    client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
+) -> tuple[int, ...]:
+    """Brings all robots of a file into the world of a client, or none."""
+    from carom.errors import CaromError
+
+    try:
+        bodies = read(client.search())
+    except CaromError as error:
+        fail(problem, str(error))
+    if len(bodies) > _MOST_BODIES:
+        fail(f"SDF exceeds body capacity: {len(bodies)} > {_MOST_BODIES}")
+    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)))

@@ -1,0 +1,350 @@
+"""Bodies made by scripts from shapes, masses and joints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar, overload
+
+from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose, Robot
+from carom.description.pose import Quaternion, Vector3
+from carom.description.transform import quaternion_from_matrix, rotation_matrix
+from pybullet._calls.arguments import (
+    Indices,
+    Vector,
+    Vectors,
+    integer,
+    moderate,
+    real,
+    rotation,
+    sequence,
+    vector3,
+)
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
+from pybullet._calls.errors import fail, logger
+from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+from pybullet._clients.clients import Client, client_of
+from pybullet._clients.shape_registry import ShapeTable
+from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
+
+if TYPE_CHECKING:
+    from carom.model.body_spec import BodySpec
+
+__all__ = ["createMultiBody"]
+
+Shape = TypeVar("Shape")
+
+_FAILED = "createMultiBody failed."
+
+_JOINT_TYPES = {
+    JOINT_REVOLUTE: JointType.REVOLUTE,
+    JOINT_PRISMATIC: JointType.PRISMATIC,
+    JOINT_SPHERICAL: JointType.SPHERICAL,
+    JOINT_FIXED: JointType.FIXED,
+}
+_NEEDS_AXIS = (JointType.REVOLUTE, JointType.PRISMATIC)
+
+_ORIGIN = (0.0, 0.0, 0.0)
+_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+
+
+@overload
+def createMultiBody(
+    baseMass: float = 0,
+    baseCollisionShapeIndex: int = -1,
+    baseVisualShapeIndex: int = -1,
+    basePosition: Vector | None = None,
+    baseOrientation: Vector | None = None,
+    baseInertialFramePosition: Vector | None = None,
+    baseInertialFrameOrientation: Vector | None = None,
+    linkMasses: Vector | None = None,
+    linkCollisionShapeIndices: Indices | None = None,
+    linkVisualShapeIndices: Indices | None = None,
+    linkPositions: Vectors | None = None,
+    linkOrientations: Vectors | None = None,
+    linkInertialFramePositions: Vectors | None = None,
+    linkInertialFrameOrientations: Vectors | None = None,
+    linkParentIndices: Indices | None = None,
+    linkJointTypes: Indices | None = None,
+    linkJointAxis: Vectors | None = None,
+    useMaximalCoordinates: int = 0,
+    flags: int = -1,
+    batchPositions: None = None,
+    physicsClientId: int = 0,
+) -> int: ...
+@overload
+def createMultiBody(
+    baseMass: float = 0,
+    baseCollisionShapeIndex: int = -1,
+    baseVisualShapeIndex: int = -1,
+    basePosition: Vector | None = None,
+    baseOrientation: Vector | None = None,
+    baseInertialFramePosition: Vector | None = None,
+    baseInertialFrameOrientation: Vector | None = None,
+    linkMasses: Vector | None = None,
+    linkCollisionShapeIndices: Indices | None = None,
+    linkVisualShapeIndices: Indices | None = None,
+    linkPositions: Vectors | None = None,
+    linkOrientations: Vectors | None = None,
+    linkInertialFramePositions: Vectors | None = None,
+    linkInertialFrameOrientations: Vectors | None = None,
+    linkParentIndices: Indices | None = None,
+    linkJointTypes: Indices | None = None,
+    linkJointAxis: Vectors | None = None,
+    useMaximalCoordinates: int = 0,
+    flags: int = -1,
+    *,
+    batchPositions: Vectors,
+    physicsClientId: int = 0,
+) -> tuple[int, ...]: ...
+@exported
+def createMultiBody(
+    baseMass: float = 0,
+    baseCollisionShapeIndex: int = -1,
+    baseVisualShapeIndex: int = -1,
+    basePosition: Vector | None = None,
+    baseOrientation: Vector | None = None,
+    baseInertialFramePosition: Vector | None = None,
+    baseInertialFrameOrientation: Vector | None = None,
+    linkMasses: Vector | None = None,
+    linkCollisionShapeIndices: Indices | None = None,
+    linkVisualShapeIndices: Indices | None = None,
+    linkPositions: Vectors | None = None,
+    linkOrientations: Vectors | None = None,
+    linkInertialFramePositions: Vectors | None = None,
+    linkInertialFrameOrientations: Vectors | None = None,
+    linkParentIndices: Indices | None = None,
+    linkJointTypes: Indices | None = None,
+    linkJointAxis: Vectors | None = None,
+    useMaximalCoordinates: int = 0,
+    flags: int = -1,
+    batchPositions: Vectors | None = None,
+    physicsClientId: int = 0,
+) -> int | tuple[int, ...]:
+    """Makes a body: a base and, if there are link lists, links on joints.
+
+    Links are called `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`...,
+    and the base is `link0`. Like those of a file they get their indices depth first, or with
+    `URDF_MAINTAIN_LINK_ORDER` in the order of the lists. Joints have no limits and, as always, a motor
+    that holds their velocity at 0. Moments of inertia are those of the collision shapes.
+
+    Args:
+        baseMass: [kg]; 0 for a base that does not move.
+        baseCollisionShapeIndex: A collision shape; -1 for none.
+        baseVisualShapeIndex: A visual shape; -1 for none: then the collision shape is seen.
+        basePosition: Where the link frame of the base is [m].
+        baseOrientation: Its orientation (x, y, z, w).
+        baseInertialFramePosition: Centre of mass in the link frame [m].
+        baseInertialFrameOrientation: Orientation of the inertial frame in the link frame.
+        linkMasses: Mass of each link [kg].
+        linkCollisionShapeIndices: Its collision shape, or -1.
+        linkVisualShapeIndices: Its visual shape, or -1.
+        linkPositions: Its joint in the link frame of its parent [m].
+        linkOrientations: Orientation of that.
+        linkInertialFramePositions: As for the base.
+        linkInertialFrameOrientations: As for the base.
+        linkParentIndices: What carries it: 0 for the base, k for the k-th link of the lists.
+        linkJointTypes: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_SPHERICAL` or `JOINT_FIXED`.
+        linkJointAxis: Axis of its joint, in the frame of the joint.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
+        flags: `URDF_*` for self-collision, link order, inertia and sleeping, added up.
+        batchPositions: Makes a body at each of these positions instead of `basePosition`.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the body, or a tuple of ids if there are `batchPositions`.
+
+    Raises:
+        pybullet.error: Not connected, the link lists are not equally long, an item is not what it should
+            be, or the links form no tree. No body is made then.
+
+    Examples:
+        >>> ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+        >>> pendulum = p.createMultiBody(
+        ...     baseMass=0,
+        ...     linkMasses=[1],
+        ...     linkCollisionShapeIndices=[ball],
+        ...     linkVisualShapeIndices=[-1],
+        ...     linkPositions=[[0, 0, -1]],
+        ...     linkOrientations=[[0, 0, 0, 1]],
+        ...     linkInertialFramePositions=[[0, 0, 0]],
+        ...     linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        ...     linkParentIndices=[0],
+        ...     linkJointTypes=[p.JOINT_REVOLUTE],
+        ...     linkJointAxis=[[0, 1, 0]],
+        ...     basePosition=[0, 2, 2],
+        ... )
+        >>> p.getNumJoints(pendulum)
+        1
+    """
+    client = client_of(physicsClientId)
+    maximal, bits = integer(useMaximalCoordinates, "useMaximalCoordinates"), integer(flags, "flags")
+    position = optional_vector3(basePosition, _FAILED, "basePosition") or _ORIGIN
+    orientation = _rotation(optional_rotation(baseOrientation, _FAILED, "baseOrientation"), "baseOrientation")
+    lists = _link_lists(
+        linkMasses=linkMasses,
+        linkCollisionShapeIndices=linkCollisionShapeIndices,
+        linkVisualShapeIndices=linkVisualShapeIndices,
+        linkPositions=linkPositions,
+        linkOrientations=linkOrientations,
+        linkInertialFramePositions=linkInertialFramePositions,
+        linkInertialFrameOrientations=linkInertialFrameOrientations,
+        linkParentIndices=linkParentIndices,
+        linkJointTypes=linkJointTypes,
+        linkJointAxis=linkJointAxis,
+    )
+    places = None if batchPositions is None else sequence(batchPositions, _FAILED, "batchPositions")
+    batch = [vector3(place, _FAILED, "batchPositions") for place in places or ()]
+    base_frame = Pose(
+        optional_vector3(baseInertialFramePosition, _FAILED, "baseInertialFramePosition") or _ORIGIN,
+        _rotation(
+            optional_rotation(baseInertialFrameOrientation, _FAILED, "baseInertialFrameOrientation"),
+            "baseInertialFrameOrientation",
+        ),
+    )
+    base = _link(
+        client, 0, _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
+    )
+    links = [base, *_links(client, lists)]
+    warn_of_coordinates("createMultiBody", maximal)
+    spec = _assembled(Robot("", tuple(links), tuple(_joints(lists))), max(bits, 0))
+    ids = add_bodies(client, [(spec, Pose(place, orientation)) for place in batch or [position]], _FAILED)
+    for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
+        shape = client.shapes.collisions.get(integer(number, "collision shape"))
+        if shape is not None:
+            shape.used = True
+    return ids if batch else ids[0]
+
+
+def _link_lists(**lists: Any) -> dict[str, tuple[Any, ...]]:
+    """The link lists by name, all equally long."""
+    items = {
+        name: () if values is None else sequence(values, "expected a sequence", name)
+        for name, values in lists.items()
+    }
+    lengths = {name: len(values) for name, values in items.items()}
+    if len(set(lengths.values())) > 1:
+        stated = ", ".join(f"{name} has {length}" for name, length in lengths.items())
+        fail("All link arrays need to be same size.", f"{stated}.")
+    return items
+
+
+def _links(client: Client, lists: dict[str, tuple[Any, ...]]) -> list[Link]:
+    columns = zip(
+        _each(lists, "linkMasses", _mass),
+        _each(lists, "linkInertialFramePositions", lambda values, name: vector3(values, _FAILED, name)),
+        _each(lists, "linkInertialFrameOrientations", _rotation),
+        lists["linkCollisionShapeIndices"],
+        lists["linkVisualShapeIndices"],
+        strict=True,
+    )
+    return [
+        _link(client, number, mass, Pose(place, turn), collision, visual)
+        for number, (mass, place, turn, collision, visual) in enumerate(columns, start=1)
+    ]
+
+
+def _joints(lists: dict[str, tuple[Any, ...]]) -> list[Joint]:
+    parents = _each(lists, "linkParentIndices", integer)
+    _check_tree(parents)
+    columns = zip(
+        parents,
+        _each(lists, "linkJointTypes", _joint_type),
+        _each(lists, "linkPositions", lambda values, name: vector3(values, _FAILED, name)),
+        _each(lists, "linkOrientations", _rotation),
+        _each(lists, "linkJointAxis", lambda values, name: vector3(values, _FAILED, name)),
+        strict=True,
+    )
+    return [_joint(number, *column) for number, column in enumerate(columns, start=1)]
+
+
+def _each(lists: dict[str, tuple[Any, ...]], name: str, convert: Callable[[Any, str], Any]) -> list[Any]:
+    return [convert(item, f"{name}[{place}]") for place, item in enumerate(lists[name])]
+
+
+def _mass(value: Any, name: str) -> float:
+    mass = real(value, name)
+    if mass < 0.0:
+        fail(_FAILED, f"{name} is {mass}; it has to be at least 0.")
+    return moderate(mass, _FAILED, name)
+
+
+def _rotation(values: Any, name: str) -> Quaternion:
+    if values is None:
+        return _UPRIGHT
+    return quaternion_from_matrix(rotation_matrix(rotation(values, _FAILED, name)))
+
+
+def _joint_type(value: Any, name: str) -> JointType:
+    kind = integer(value, name)
+    if kind not in _JOINT_TYPES:
+        fail(_FAILED, f"{name} is {kind}, which is no joint that can be made here.")
+    return _JOINT_TYPES[kind]
+
+
+def _check_tree(parents: list[int]) -> None:
+    """Every link has to hang on the base, over other links or directly."""
+    for link, parent in enumerate(parents):
+        if not 0 <= parent <= len(parents):
+            fail(_FAILED, f"linkParentIndices[{link}] is {parent}; it has to be from 0 to {len(parents)}.")
+    hangs = {0}
+    for link in range(1, len(parents) + 1):
+        way = []
+        while link not in hangs:
+            if link in way:
+                fail(_FAILED, f"linkParentIndices: link {link} hangs on itself.")
+            way.append(link)
+            link = parents[link - 1]
+        hangs.update(way)
+
+
+def _link(client: Client, number: int, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Link:
+    collision = _shape(client.shapes.collisions, collision_id, "collision")
+    visuals = _shape(client.shapes.visuals, visual_id, "visual")
+    # With URDF_USE_INERTIA_FROM_FILE PyBullet takes these moments.
+    moment = mass if number else 0.0
+    return Link(
+        f"link{number}",
+        Inertial(mass, frame, (moment, 0.0, 0.0, moment, 0.0, moment)),
+        () if collision is None else collision.collisions,
+        visuals or (() if collision is None else collision.visuals),
+    )
+
+
+def _shape(table: ShapeTable[Shape], number: Any, kind: str) -> Shape | None:
+    index = integer(number, f"{kind} shape")
+    shape = table.get(index)
+    if shape is None and index >= 0:
+        logger.warning("createMultiBody: there is no %s shape %d.", kind, index)
+    return shape
+
+
+def _joint(
+    number: int, parent: int, kind: JointType, place: Vector3, turn: Quaternion, axis: Vector3
+) -> Joint:
+    x, y, z = axis
+    length = (x * x + y * y + z * z) ** 0.5
+    if length == 0.0 and kind in _NEEDS_AXIS:
+        fail(_FAILED, f"linkJointAxis[{number - 1}] has no length.")
+    unit = (x / length, y / length, z / length) if length else (1.0, 0.0, 0.0)
+    return Joint(
+        f"joint{number}", kind, parent, number, Pose(place, turn), unit, length or 1.0, JointLimit(1.0, -1.0)
+    )
+
+
+def _assembled(robot: Robot, flags: int) -> BodySpec:
+    from carom.errors import CaromError
+    from carom.layouts.flags import LoadFlags
+    from carom.model.assemble import assemble
+
+    of_files = (
+        LoadFlags.MERGE_FIXED_LINKS
+        | LoadFlags.IGNORE_VISUAL_SHAPES
+        | LoadFlags.IGNORE_COLLISION_SHAPES
+        | LoadFlags.PRINT_URDF_INFO
+    )
+    kept = (LoadFlags(flags) & ~of_files) | LoadFlags.USE_IMPLICIT_CYLINDER
+    try:
+        return assemble(robot, flags=kept, compound_margin=0.0)
+    except CaromError as problem:
+        fail(_FAILED, str(problem))

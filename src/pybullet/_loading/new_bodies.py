@@ -1,0 +1,77 @@
+"""Bodies that come into the world of a client: all of a call, or none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import Client
+from pybullet._clients.origins import FileLoad, Origin
+
+if TYPE_CHECKING:
+    from carom.description.pose import Pose
+    from carom.model.body_spec import BodySpec
+    from carom.scene.body import Body
+
+
+def warn_of_coordinates(function: str, use_maximal: int) -> None:
+    """Logs that maximal coordinates, where they are asked for, are not what the bodies have."""
+    if use_maximal > 0:
+        logger.warning(
+            "%s: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.", function
+        )
+
+
+def add_bodies(
+    client: Client,
+    bodies: Sequence[tuple[BodySpec, Pose]],
+    problem: str,
+    load: FileLoad | None = None,
+) -> tuple[int, ...]:
+    """Brings bodies into a world.
+
+    Args:
+        client: Whose world.
+        bodies: What they are, and the pose of the link frame of their base.
+        problem: PyBullet's text when one cannot be made.
+        load: The call that loads them from a file, if one does.
+
+    Returns:
+        Their ids.
+
+    Raises:
+        pybullet.error: The file of a mesh cannot be used; the world is as before.
+    """
+    from carom.errors import CaromError
+
+    try:
+        with client.lock:
+            client.bodies.forget_all()
+
+            def also(added: list[Body]) -> None:
+                for index, body in enumerate(added):
+                    client.origins.pop(body.id, None)
+                    if load is not None:
+                        client.origins[body.id] = Origin(load, index)
+                _look_at_fresh_files(client, [spec for spec, _ in bodies])
+
+            return tuple(body.id for body in client.world.load_all(bodies, also))
+    except CaromError as reason:
+        fail(problem, str(reason))
+
+
+def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
+    """Reads what bodies look like if the files may be gone by the time of the first image.
+
+    Otherwise that waits until somebody looks: a robot has more to look at than to load.
+    """
+    from carom.description import Mesh
+    from carom.formats.files import is_fresh
+
+    visuals = (visual for spec in specs for link in (spec.base, *spec.links) for visual in link.visuals)
+    shapes = (visual.geometry for visual in visuals)
+    if any(isinstance(shape, Mesh) and is_fresh(shape.path) for shape in shapes):
+        from carom.render.appearance import appearance_of
+
+        appearance_of(client.world).number_textures(client.world)

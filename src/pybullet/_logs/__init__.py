@@ -1,0 +1,1 @@
+"""Logs of states, commands and timings, and videos."""

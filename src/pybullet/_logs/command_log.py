@@ -1,0 +1,202 @@
+"""Logs of commands: every call that changes the world, and performing them again.
+
+The calls are taken down on their way to the functions, by a detour that is there as long as the log is; steps
+are taken down from the world itself, so those that the clock of a real-time simulation makes are there, too.
+docs/command-logs.md has the format. Reading a log runs no code from it, and no command writes files.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from operator import index
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+from zlib import crc32
+
+from carom.remote.errors import Malformed
+from carom.remote.values import pack, padded, unpack
+from pybullet._calls.detours import Function, add_detour, call_on, detour_of, functions, remove_detour
+
+if TYPE_CHECKING:
+    from pybullet._clients.clients import Client
+
+_STEP = "stepSimulation"
+_NAMES = """
+addUserData applyExternalForce applyExternalTorque changeConstraint changeDynamics changeTexture
+changeVisualShape createCollisionShape createCollisionShapeArray createConstraint createMultiBody
+createSoftBodyAnchor createVisualShape createVisualShapeArray enableJointForceTorqueSensor
+executePluginCommand loadBullet loadMJCF loadPlugin loadSDF loadTexture loadURDF
+performCollisionDetection removeBody removeCollisionShape removeConstraint removeState removeUserData
+resetBasePositionAndOrientation resetBaseVelocity resetJointState resetJointStateMultiDof
+resetJointStatesMultiDof resetMeshData resetSimulation resetVisualShapeData restoreState saveState
+setAdditionalSearchPath setCollisionFilterGroupMask setCollisionFilterPair setDefaultContactERP setGravity
+setInternalSimFlags setJointMotorControl setJointMotorControl2 setJointMotorControlArray
+setJointMotorControlMultiDof setJointMotorControlMultiDofArray setPhysicsEngineParameter setTimeStep
+stepSimulation unloadPlugin unsupportedChangeScaling
+"""
+COMMANDS = frozenset(_NAMES.split())
+"""Functions that a log takes down: those that change what later steps or questions about the world give."""
+
+_HEADER = struct.Struct("<8s2I")
+_MAGIC, _VERSION = b"\x89CALOG\r\n", 1
+_CHECK = struct.Struct("<I")
+_SIZES = struct.Struct("<IQ")
+
+
+class Command(NamedTuple):
+    """One call.
+
+    Attributes:
+        name: Of the function, one of `COMMANDS`.
+        arguments: By position.
+        keywords: By name.
+        result: What it returned; None for steps.
+    """
+
+    name: str
+    arguments: list[Any]
+    keywords: dict[str, Any]
+    result: Any
+
+
+class CommandLog:
+    """Takes the calls of a client down until it is closed.
+
+    Each is in the file as soon as it has returned, so the log of a process that was killed is whole. Calls
+    that raise are not taken down: they change nothing.
+
+    Args:
+        number: Id of the client.
+        client: The client.
+        path: The file; one that is there is replaced.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, number: int, client: Client, path: Path) -> None:
+        self._number = index(number)
+        self._client = client
+        self._file = open(path, "wb", buffering=0)  # noqa: SIM115 (it is written to until the log is closed)
+        self._file.write(_HEADER.pack(_MAGIC, _VERSION, 0))
+        self._step = _record(Command(_STEP, [], {}, None))
+        self._way = detour_of(self._number)
+        add_detour(self._number, self)
+
+    def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        """Calls a function, and takes it down."""
+        if function.name not in COMMANDS or function.name == _STEP:
+            return self._pass_on(function, arguments, keywords)
+        # Held, so that the order in the file is that of the calls.
+        with self._client.lock:
+            result = self._pass_on(function, arguments, keywords)
+            positional, named = function.with_client(0, list(arguments), keywords)
+            self._file.write(_record(Command(function.name, positional, named, result)))
+            return result
+
+    def before_step(self) -> None:
+        """Nothing: the step is taken down when it is done."""
+
+    def after_step(self) -> None:
+        """Takes a step down."""
+        self._file.write(self._step)
+
+    def close(self) -> None:
+        """Ends the log."""
+        # The detour of a client that is gone has gone with it.
+        if detour_of(self._number) is self:
+            if self._way is None:
+                remove_detour(self._number)
+            else:
+                add_detour(self._number, self._way)
+        self._file.close()
+
+    def _pass_on(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
+        if self._way is None:
+            return function.plain(*arguments, **keywords)
+        return self._way.call(function, arguments, keywords)
+
+
+def replay(number: int, client: Client, path: Path) -> None:
+    """Performs the commands of a log. Its whole file is checked before the first of them.
+
+    Raises:
+        OSError: The file cannot be read.
+        ValueError: It is no such log, or damaged, and nothing has been done; or a command cannot be
+            performed, or gives something else than it gave, and those before it have been performed.
+    """
+    content = memoryview(path.read_bytes())
+    try:
+        for _ in _commands(content):
+            pass
+        for place, command in enumerate(_commands(content)):
+            try:
+                _perform(index(number), client, command)
+            # Anybody may have made the file up, so any argument may be in it.
+            except Exception as problem:
+                raise Malformed(
+                    f"command {place + 1}, {command.name}, cannot be repeated; the {place} before it have "
+                    f"been performed: {str(problem).rstrip('.')}"
+                ) from problem
+    except Malformed as problem:
+        raise ValueError(f"{path}: {problem}") from problem
+
+
+def _perform(number: int, client: Client, command: Command) -> None:
+    if command.name == _STEP:
+        # Not by the function, which would wait for a window that is held.
+        with client.lock:
+            client.world.step()
+        return
+    function = functions()[command.name]
+    arguments, keywords = function.with_client(number, command.arguments, command.keywords)
+    result = call_on(number, function, tuple(arguments), keywords)
+    # As bytes, because a tuple has become a list.
+    if pack(result) != pack(command.result):
+        raise Malformed(
+            f"it gives {result!r} and gave {command.result!r}; the world has to be as it was at the start of "
+            "the log"
+        )
+
+
+def _record(command: Command) -> bytes:
+    message, arrays = pack(tuple(command))
+    contents = b"".join(bytes(array).ljust(padded(len(array)), b"\0") for array in arrays)
+    checked = _SIZES.pack(len(message), len(contents)) + message + contents
+    return _CHECK.pack(crc32(checked)) + checked
+
+
+def _commands(content: memoryview) -> Iterator[Command]:
+    """The commands of a file; raises `Malformed` at the first thing that is not as it should be."""
+    if len(content) < _HEADER.size or bytes(content[: len(_MAGIC)]) != _MAGIC:
+        raise Malformed("this is no log of commands")
+    _, version, _ = _HEADER.unpack_from(content)
+    if version != _VERSION:
+        raise Malformed(f"the log has version {version} of the format; this is version {_VERSION}")
+    place, start = 0, _HEADER.size
+    while start < len(content):
+        place += 1
+        body = start + _CHECK.size + _SIZES.size
+        if body > len(content):
+            raise Malformed(f"the log is cut off in command {place}")
+        message_size, contents_size = _SIZES.unpack_from(content, start + _CHECK.size)
+        middle = body + message_size
+        end = middle + contents_size
+        if end > len(content):
+            raise Malformed(f"the log is cut off in command {place}")
+        if _CHECK.unpack_from(content, start)[0] != crc32(content[start + _CHECK.size : end]):
+            raise Malformed(f"command {place} is damaged")
+        yield _command(place, unpack(content[body:middle], content[middle:end], lists=True))
+        start = end
+
+
+def _command(place: int, value: Any) -> Command:
+    match value:
+        case [str() as name, list() as arguments, dict() as keywords, result] if all(
+            isinstance(key, str) for key in keywords
+        ):
+            if name not in COMMANDS:
+                raise Malformed(f"command {place} is {name!r}, which logs do not hold")
+            return Command(name, arguments, keywords, result)
+    raise Malformed(f"command {place} is no call of a function")

@@ -1,0 +1,258 @@
+"""Log files in PyBullet's layouts.
+
+A binary log is a line of column names, a line of their `struct` types (`I` and `i` 32-bit integers, `f`
+32-bit floats), and then records, each after the bytes AA BB.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from struct import Struct
+from time import perf_counter_ns
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.layouts.codes import JointCode
+from pybullet._calls.constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+_BASE_COLUMNS = (("pos", "XYZ"), ("ori", "XYZW"), ("vel", "XYZ"), ("omega", "XYZ"))
+_MARKER = b"\xaa\xbb"
+_LINKS_THAT_SHIFT = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+_LINKS_THAT_FIT = (*_LINKS_THAT_SHIFT, JointCode.FIXED)
+ANY_LINK = -2
+ANY_BODY = -1
+
+
+class BinaryLog:
+    """A binary log without records; the kinds build on it.
+
+    Args:
+        path: The file; one that is there is replaced.
+        columns: Names of the columns.
+        types: Type of each column.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path, columns: Sequence[str], types: str) -> None:
+        self._file = open(path, "wb")  # noqa: SIM115 (it is written to until the log is closed)
+        self._file.write(f"{','.join(columns)}\n{types}\n".encode())
+        self._pack = Struct(f"<{types}").pack
+        self._steps = 0
+        self._time = 0.0
+        self._start_of_step = (0, 0.0)
+        # Of the present step; the file may be a device, which would not give them back.
+        self._records: list[bytes] = []
+
+    def before_step(self) -> None:
+        """Notes where the records of the step begin."""
+        self._records.clear()
+        self._start_of_step = (self._steps, self._time)
+
+    def after_step(self) -> None:
+        """Writes the records of the substeps to the file."""
+        self._file.write(b"".join(self._records))
+        self._records.clear()
+
+    def after_substep(self) -> None:
+        """Makes the records of a substep."""
+
+    def step_repeated(self) -> None:
+        """Takes the records of the step back."""
+        self._records.clear()
+        self._steps, self._time = self._start_of_step
+
+    def close(self) -> None:
+        """Finishes the file."""
+        self._file.close()
+
+    def _record(self, *values: Any) -> None:
+        self._write(self._steps, self._time, *values)
+
+    def _write(self, *values: Any) -> None:
+        self._records.append(_MARKER + self._pack(*values))
+
+    def _next(self, time_step: float) -> None:
+        self._steps += 1
+        self._time += time_step
+
+
+class RobotLog(BinaryLog):
+    """Bases and joints of bodies.
+
+    A body that has more joints than there are columns, or a spherical or planar one, leaves nothing but the
+    marker, as in PyBullet.
+
+    Args:
+        path: The file.
+        world: The world.
+        bodies: Ids of the bodies; empty for all.
+        room: Number of joints there are columns for.
+        flags: `STATE_LOG_JOINT_MOTOR_TORQUES` and `STATE_LOG_JOINT_USER_TORQUES`, added up.
+    """
+
+    def __init__(self, path: Path, world: World, bodies: frozenset[int], room: int, flags: int) -> None:
+        self._torques = [0.0] * room if flags > 0 else []
+        self._flags = max(flags, 0)
+        columns = [f"{name}{axis}" for name, axes in _BASE_COLUMNS for axis in axes]
+        joints = [
+            f"{letter}{index}" for letter in ("qut" if self._torques else "qu") for index in range(room)
+        ]
+        super().__init__(
+            path,
+            ["stepCount", "timeStamp", "objectId", *columns, "qNum", *joints],
+            "Ifi" + "f" * len(columns) + "I" + "f" * len(joints),
+        )
+        self._world = world
+        self._bodies = bodies
+        self._room = room
+        self._torque = self._applied = world.joint_torque.copy()
+
+    def before_step(self) -> None:
+        """Keeps the torques that scripts apply: the step takes them away."""
+        super().before_step()
+        self._torque = self._world.joint_torque.copy()
+        self._keep_torques()
+
+    def _keep_torques(self) -> None:
+        """Keeps the torques of the next substep, damping included."""
+        if self._flags & STATE_LOG_JOINT_USER_TORQUES:
+            damping = self._world.arrays.model.numpy["dof_damping"][0, : len(self._torque)]
+            self._applied = self._torque - damping * self._world.velocity
+
+    def after_substep(self) -> None:
+        """Writes a record for each body."""
+        for body in self._world.bodies.values():
+            if not self._bodies or body.id in self._bodies:
+                self._write_body(body)
+        self._keep_torques()
+        self._next(self._world.parameters.substep_time)
+
+    def _write_body(self, body: Body) -> None:
+        joints = [index for index, kind in enumerate(body.joint_types) if kind in _LINKS_THAT_SHIFT]
+        if len(joints) > self._room or any(kind not in _LINKS_THAT_FIT for kind in body.joint_types):
+            self._records.append(_MARKER)
+            return
+        world = self._world
+        q = [body.position_index[joint] for joint in joints]
+        u = [body.velocity_index[joint] for joint in joints]
+        rest = [0.0] * (self._room - len(joints))
+        values = [*world.position[q], *rest, *world.velocity[u], *rest]
+        if self._torques:
+            torques = np.zeros(len(u))
+            if self._flags & STATE_LOG_JOINT_MOTOR_TORQUES:
+                torques += world.motor_impulse[u] / world.parameters.substep_time
+            if self._flags & STATE_LOG_JOINT_USER_TORQUES:
+                torques += self._applied[u]
+            values += [*torques, *rest]
+        x, y, z, qx, qy, qz, qw = world.position[body.first_position :][:7]
+        wx, wy, wz, vx, vy, vz = world.velocity[body.first_velocity :][:6]
+        # PyBullet keeps the inverse rotation and turns it round: its zeros are negative.
+        turn = (-(0.0 - qx), -(0.0 - qy), -(0.0 - qz), qw)
+        self._record(body.id, x, y, z, *turn, vx, vy, vz, wx, wy, wz, len(joints), *values)
+
+
+class ContactLog(BinaryLog):
+    """Contacts after each step.
+
+    Args:
+        path: The file.
+        client_id: The connection.
+        world: Its world.
+        sides: Body, -1 for any, and link, -2 for any, of the one and of the other side.
+    """
+
+    def __init__(
+        self, path: Path, client_id: int, world: World, sides: tuple[tuple[int, int], tuple[int, int]]
+    ) -> None:
+        columns = (
+            "stepCount,timeStamp,contactFlag,bodyUniqueIdA,bodyUniqueIdB,linkIndexA,linkIndexB,"
+            "positionOnAX,positionOnAY,positionOnAZ,positionOnBX,positionOnBY,positionOnBZ,"
+            "contactNormalOnBX,contactNormalOnBY,contactNormalOnBZ,contactDistance,normalForce"
+        )
+        super().__init__(path, columns.split(","), "IfIiiii" + "f" * 11)
+        self._client_id = client_id
+        self._world = world
+        self._sides = sides
+
+    def after_substep(self) -> None:
+        """Writes a record for each contact."""
+        from pybullet._contacts.contacts import getContactPoints
+
+        for contact in getContactPoints(physicsClientId=self._client_id):
+            flag, a, b, link_a, link_b, on_a, on_b, normal, distance, force = contact[:10]
+            if self._asked_for((a, link_a), (b, link_b)):
+                self._record(flag, a, b, link_a, link_b, *on_a, *on_b, *normal, distance, force)
+        self._next(self._world.parameters.substep_time)
+
+    def _asked_for(self, a: tuple[int, int], b: tuple[int, int]) -> bool:
+        first, second = self._sides
+        return (_matches(first, a) and _matches(second, b)) or (_matches(first, b) and _matches(second, a))
+
+
+def _matches(side: tuple[int, int], place: tuple[int, int]) -> bool:
+    return side[0] in (ANY_BODY, place[0]) and side[1] in (ANY_LINK, place[1])
+
+
+class ControllerLog(BinaryLog):
+    """Controllers of virtual reality: there are none, so there are no records."""
+
+    def __init__(self, path: Path) -> None:
+        columns = "controllerId,numMoveEvents,m_numButtonEvents,posX,posY,posZ,oriX,oriY,oriZ,oriW,analogAxis"
+        buttons = [f"buttons{index}" for index in range(7)]
+        super().__init__(
+            path,
+            ["stepCount", "timeStamp", *columns.split(","), *buttons, "deviceType"],
+            "IfIIIffffffffIIIIIIII",
+        )
+
+
+class TimingLog:
+    """Where the time goes, as a trace that Chrome and Perfetto show: steps, and zones that scripts name.
+
+    Args:
+        path: The file; `_0.json` is added, as PyBullet adds the number of the thread.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = open(f"{path}_0.json", "w", encoding="utf-8")  # noqa: SIM115 (as above)
+        self._events: list[str] = []
+        self._start = perf_counter_ns()
+
+    def before_step(self) -> None:
+        """A step begins."""
+        self.begin("stepSimulation")
+
+    def after_step(self) -> None:
+        """It ends."""
+        self.end("stepSimulation")
+
+    def begin(self, name: str) -> None:
+        """A zone begins."""
+        self._add("B", name)
+
+    def end(self, name: str) -> None:
+        """It ends."""
+        self._add("E", name)
+
+    def _add(self, phase: str, name: str) -> None:
+        now = (perf_counter_ns() - self._start) / 1000.0
+        event = {"cat": "timing", "pid": 1, "tid": 0, "ts": now, "ph": phase, "name": name, "args": {}}
+        self._events.append(json.dumps(event))
+
+    def close(self) -> None:
+        """Writes the file."""
+        with self._file:
+            events = ",\n".join(self._events)
+            self._file.write(f'{{"traceEvents":[\n{events}\n],\n"displayTimeUnit": "ns"}}')

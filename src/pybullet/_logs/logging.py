@@ -1,0 +1,202 @@
+"""Logging of states, contacts and timings to files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pybullet._calls.arguments import by_name, integer, sequence, text
+from pybullet._calls.builtin import exported, exported_as
+from pybullet._calls.constants import (
+    STATE_LOGGING_ALL_COMMANDS,
+    STATE_LOGGING_CONTACT_POINTS,
+    STATE_LOGGING_GENERIC_ROBOT,
+    STATE_LOGGING_MINITAUR,
+    STATE_LOGGING_PROFILE_TIMINGS,
+    STATE_LOGGING_VIDEO_MP4,
+    STATE_LOGGING_VR_CONTROLLERS,
+    STATE_REPLAY_ALL_COMMANDS,
+)
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import client_of
+
+if TYPE_CHECKING:
+    from pybullet._clients.clients import Client
+    from pybullet._clients.log_registry import StateLog
+    from pybullet._logs.log_files import TimingLog
+
+__all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
+
+_DEFAULT_ROOM = 12
+
+
+@exported
+def startStateLogging(
+    loggingType: int,
+    fileName: str,
+    objectUniqueIds: Sequence[int] | None = None,
+    maxLogDof: int = -1,
+    bodyUniqueIdA: int = -1,
+    bodyUniqueIdB: int = -1,
+    linkIndexA: int = -2,
+    linkIndexB: int = -2,
+    deviceTypeFilter: int = -1,
+    logFlags: int = -1,
+    physicsClientId: int = 0,
+) -> Any:
+    """Starts to write a log after each step, or after each of the substeps it has.
+
+    Args:
+        loggingType: `STATE_LOGGING_GENERIC_ROBOT` for bases and joints, `STATE_LOGGING_CONTACT_POINTS`
+            for contacts, `STATE_LOGGING_MINITAUR` for the motors of a Minitaur, all in PyBullet's binary
+            layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a trace
+            that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
+            `_0.json` added; `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of
+            simulated time, from where the camera of the window is, which needs `pip install carom[video]`
+            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty.
+
+            `STATE_LOGGING_ALL_COMMANDS` for all calls that change the world, one such log at a time;
+            `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results to the last
+            bit in a world that is as it was when the log began. See docs/command-logs.md.
+        fileName: The file; one that is there is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
+        objectUniqueIds: Bodies to log; none for all, but a Minitaur has to be named. Those with more
+            joints than columns, or with spherical or planar joints, are left out.
+        maxLogDof: Number of joints there are columns for; 12 when negative.
+        bodyUniqueIdA: Of contacts: only those of this body; -1 for any.
+        bodyUniqueIdB: Of contacts: and of this one.
+        linkIndexA: Of contacts: only those of this link of `bodyUniqueIdA`; -2 for any.
+        linkIndexB: Of contacts: the same for `bodyUniqueIdB`.
+        deviceTypeFilter: Not used: there are no devices.
+        logFlags: `STATE_LOG_JOINT_MOTOR_TORQUES`, `STATE_LOG_JOINT_USER_TORQUES` or both, added up, for
+            columns of torques.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the log; None for types that log nothing (`STATE_LOGGING_CUSTOM_TIMER` and others),
+        when the first body is no Minitaur, and when commands are being logged already.
+
+    Raises:
+        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, a
+            video is asked for and PyAV is not installed, or a log cannot be replayed: its file is missing
+            or damaged and nothing has been done, or one of its commands fails.
+
+    Examples:
+        >>> log = p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, folder + "/arm.bin", [arm])
+        >>> _ = p.stepSimulation()
+        >>> p.stopStateLogging(log)
+    """
+    client = client_of(physicsClientId)
+    kind, path = integer(loggingType, "loggingType"), text(fileName, "fileName")
+    problem = "startStateLogging failed."
+    given = () if objectUniqueIds is None else sequence(objectUniqueIds, problem, "objectUniqueIds")
+    bodies = [integer(body, "objectUniqueIds") for body in given]
+    room, flags = integer(maxLogDof, "maxLogDof"), integer(logFlags, "logFlags")
+    sides = (
+        (integer(bodyUniqueIdA, "bodyUniqueIdA"), integer(linkIndexA, "linkIndexA")),
+        (integer(bodyUniqueIdB, "bodyUniqueIdB"), integer(linkIndexB, "linkIndexB")),
+    )
+    integer(deviceTypeFilter, "deviceTypeFilter")
+
+    from pybullet._logs import log_files as files
+
+    log: StateLog | None = None
+    try:
+        if kind == STATE_LOGGING_GENERIC_ROBOT:
+            room = _DEFAULT_ROOM if room < 0 else room
+            log = files.RobotLog(Path(path), client.world, frozenset(bodies), room, flags)
+        elif kind == STATE_LOGGING_MINITAUR:
+            from pybullet._logs.minitaur_log import MinitaurLog, minitaur_motors
+
+            robot = minitaur_motors(client.world, bodies)
+            if robot is not None:
+                log = MinitaurLog(Path(path), *robot)
+        elif kind == STATE_LOGGING_CONTACT_POINTS:
+            log = files.ContactLog(Path(path), physicsClientId, client.world, sides)
+        elif kind == STATE_LOGGING_PROFILE_TIMINGS:
+            log = files.TimingLog(Path(path))
+        elif kind == STATE_LOGGING_VR_CONTROLLERS:
+            log = files.ControllerLog(Path(path))
+        elif kind == STATE_LOGGING_VIDEO_MP4:
+            from pybullet._cameras.film import film_of
+
+            log = film_of(client, Path(path))
+        elif kind in (STATE_LOGGING_ALL_COMMANDS, STATE_REPLAY_ALL_COMMANDS):
+            from pybullet._logs.command_log import CommandLog, replay
+
+            if kind == STATE_REPLAY_ALL_COMMANDS:
+                replay(physicsClientId, client, Path(path))
+            elif not any(isinstance(other, CommandLog) for other in client.logs.by_id.values()):
+                log = CommandLog(physicsClientId, client, Path(path))
+    except (OSError, ValueError, ImportError) as reason:
+        fail(problem, f"{reason}.")
+    if log is None and kind != STATE_REPLAY_ALL_COMMANDS:
+        if kind == STATE_LOGGING_MINITAUR:
+            logger.warning("startStateLogging: the first of objectUniqueIds is no Minitaur.")
+        elif kind == STATE_LOGGING_ALL_COMMANDS:
+            logger.warning("startStateLogging: commands are being logged already.")
+        else:
+            logger.warning("startStateLogging: logs of type %d are not available.", kind)
+        return None
+    with client.lock:
+        return client.logs.start(client, log)
+
+
+@exported
+def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
+    """Ends a log and finishes its file. One that does not exist is no error.
+
+    Args:
+        loggingId: The log.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> log = p.startStateLogging(p.STATE_LOGGING_CONTACT_POINTS, folder + "/contacts.bin")
+        >>> p.stopStateLogging(log)
+    """
+    client = client_of(physicsClientId)
+    with client.lock:
+        client.logs.stop(client, integer(loggingId, "loggingId"))
+
+
+@exported_as("(eventName=None, physicsClientId=0)")
+def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0, **spaced: str | None) -> None:
+    """Begins a zone of the logs of `STATE_LOGGING_PROFILE_TIMINGS`, or ends the one begun last.
+
+    Args:
+        eventName: Name of a zone that begins; None ends one.
+        physicsClientId: The connection.
+        spaced: `"eventName "`: what PyBullet calls the first argument, by mistake.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> log = p.startStateLogging(p.STATE_LOGGING_PROFILE_TIMINGS, folder + "/trace")
+        >>> p.submitProfileTiming("plan")
+        >>> p.submitProfileTiming()
+        >>> p.stopStateLogging(log)
+    """
+    if spaced:
+        eventName = by_name("submitProfileTiming", ("eventName ",), (), spaced)["eventName "]
+    client = client_of(physicsClientId)
+    if eventName is not None:
+        name = text(eventName, "eventName")
+        client.logs.zones.append(name)
+        for log in _timing_logs(client):
+            log.begin(name)
+    elif client.logs.zones:
+        name = client.logs.zones.pop()
+        for log in _timing_logs(client):
+            log.end(name)
+
+
+def _timing_logs(client: Client) -> list[TimingLog]:
+    if not client.logs.by_id:
+        return []
+    from pybullet._logs.log_files import TimingLog
+
+    return [log for log in client.logs.by_id.values() if isinstance(log, TimingLog)]

@@ -1,0 +1,1 @@
+"""Quaternions, transformations, camera matrices."""

@@ -1,0 +1,1 @@
+"""Collision shapes, visual shapes, textures."""

@@ -1,0 +1,332 @@
+"""Collision shapes made by scripts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
+from carom.description.pose import IDENTITY
+from pybullet._calls.arguments import Indices, Vector, Vectors, integer, real, text
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH
+from pybullet._calls.errors import fail, logger
+from pybullet._clients.clients import Client, client_of
+from pybullet._clients.shape_registry import CollisionShape
+from pybullet._shapes.shape_arguments import (
+    PRIMITIVES,
+    find_file,
+    frame,
+    points,
+    primitive,
+    scale_of,
+    triangles,
+)
+from pybullet._shapes.shape_columns import ShapeColumns
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+__all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollisionShape"]
+
+_FAILED = "createCollisionShape failed."
+
+# What PyBullet puts around meshes that are part of a compound [m].
+_MARGIN = 0.001
+
+
+@exported
+def createCollisionShape(
+    shapeType: int,
+    radius: float = 0.5,
+    halfExtents: Vector | None = None,
+    height: float = 1,
+    fileName: str | None = None,
+    meshScale: Vector | None = None,
+    planeNormal: Vector | None = None,
+    flags: int = 0,
+    collisionFramePosition: Vector | None = None,
+    collisionFrameOrientation: Vector | None = None,
+    vertices: Vectors | None = None,
+    indices: Indices | None = None,
+    heightfieldTextureScaling: float = 1,
+    heightfieldData: Vector | None = None,
+    numHeightfieldRows: int = -1,
+    numHeightfieldColumns: int = -1,
+    replaceHeightfieldIndex: int = -1,
+    physicsClientId: int = 0,
+) -> int:
+    """Makes a collision shape, from which `createMultiBody` makes bodies; any number from one shape.
+
+    Meshes collide as their convex hull, one hull for each group of an OBJ file; hulls of fine meshes are
+    simplified to 128 vertices. With `GEOM_FORCE_CONCAVE_TRIMESH`, or with `indices`, the triangles
+    themselves collide, which is meant for bodies that do not move.
+
+    Args:
+        shapeType: `GEOM_SPHERE`, `GEOM_BOX`, `GEOM_CAPSULE`, `GEOM_CYLINDER`, `GEOM_PLANE`, `GEOM_MESH` or
+            `GEOM_HEIGHTFIELD`. Cylinders and capsules lie along z.
+        radius: Of a sphere, capsule or cylinder [m].
+        halfExtents: Half the size of a box along x, y and z [m]; boxes need it.
+        height: Of a cylinder, or of the part of a capsule between its two half balls [m].
+        fileName: OBJ, STL or DAE file of a mesh; text or image file of a heightfield.
+        meshScale: Factor on a mesh along x, y and z; distance between the points of a heightfield along x
+            and y, and factor on its heights.
+        planeNormal: Direction out of the half space; z if not given.
+        flags: `GEOM_FORCE_CONCAVE_TRIMESH`. `GEOM_CONCAVE_INTERNAL_EDGE` changes nothing here.
+        collisionFramePosition: Origin of the shape in the link frame [m]. A heightfield stays at the
+            origin.
+        collisionFrameOrientation: Orientation of the shape in the link frame (x, y, z, w).
+        vertices: Points of a mesh, three numbers each, instead of a file.
+        indices: Three vertices for each triangle, one after the other.
+        heightfieldTextureScaling: For a window: how often the texture repeats.
+        heightfieldData: `numHeightfieldRows` * `numHeightfieldColumns` heights, those along x first. The
+            middle between the least and the greatest lies at the origin.
+        numHeightfieldRows: Points along x.
+        numHeightfieldColumns: Points along y.
+        replaceHeightfieldIndex: A heightfield of as many points that gets these heights instead, along
+            with all bodies made of it; where it lies stays.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the shape.
+
+    Raises:
+        pybullet.error: Not connected, an unknown type, a size that is missing, negative or not finite, a
+            file that is missing or cannot be used, or heights of another number.
+
+    Examples:
+        >>> shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.2, 0.3])
+        >>> box = p.createMultiBody(baseMass=1, baseCollisionShapeIndex=shape, basePosition=[0, 2, 1])
+    """
+    client = client_of(physicsClientId)
+    kind, bits = integer(shapeType, "shapeType"), integer(flags, "flags")
+    pose = frame(collisionFramePosition, collisionFrameOrientation, _FAILED, "collisionFrame")
+    is_framed = collisionFramePosition is not None or collisionFrameOrientation is not None
+    name = None if fileName is None else text(fileName, "fileName")
+    if kind in PRIMITIVES:
+        shape = _placed(
+            primitive(
+                kind,
+                _FAILED,
+                radius=radius,
+                length=height,
+                half_extents=halfExtents,
+                normal=planeNormal,
+                length_name="height",
+            ),
+            pose,
+        )
+    elif kind == GEOM_MESH and vertices is not None:
+        shape = _mesh_from_data(vertices, indices, scale_of(meshScale, _FAILED), pose)
+    elif kind == GEOM_MESH and name is not None:
+        shape = _mesh_from_file(client, name, meshScale, bits, pose, is_part=is_framed, problem=_FAILED)
+    elif kind == GEOM_MESH:
+        fail(_FAILED, "A mesh needs fileName or vertices.")
+    elif kind == GEOM_HEIGHTFIELD:
+        real(heightfieldTextureScaling, "heightfieldTextureScaling")
+        rows = integer(numHeightfieldRows, "numHeightfieldRows")
+        columns = integer(numHeightfieldColumns, "numHeightfieldColumns")
+        replaced = integer(replaceHeightfieldIndex, "replaceHeightfieldIndex")
+        shape = _heightfield(client, name, heightfieldData, rows, columns, meshScale, replaced)
+        if shape is None:
+            return replaced
+    else:
+        fail(_FAILED, f"There is no type of shape {kind}.")
+    _check_pieces(shape, _FAILED)
+    return client.shapes.collisions.add(shape)
+
+
+@exported
+def createCollisionShapeArray(
+    shapeTypes: Sequence[int],
+    radii: Vector | None = None,
+    halfExtents: Vectors | None = None,
+    lengths: Vector | None = None,
+    fileNames: Iterable[str] | None = None,
+    meshScales: Vectors | None = None,
+    planeNormals: Vectors | None = None,
+    flags: Indices | None = None,
+    collisionFramePositions: Vectors | None = None,
+    collisionFrameOrientations: Vectors | None = None,
+    physicsClientId: int = 0,
+) -> int:
+    """Makes one collision shape of several parts.
+
+    The lists hold a value for each part, whether its type needs it or not. Parts that cannot be made are
+    left out, with a warning.
+
+    Args:
+        shapeTypes: `GEOM_*` of each part.
+        radii: As `radius` of `createCollisionShape`.
+        halfExtents: As `halfExtents`; 1 m if not given.
+        lengths: As `height`.
+        fileNames: As `fileName`.
+        meshScales: As `meshScale`.
+        planeNormals: As `planeNormal`.
+        flags: As `flags`.
+        collisionFramePositions: As `collisionFramePosition`.
+        collisionFrameOrientations: As `collisionFrameOrientation`.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the shape.
+
+    Raises:
+        pybullet.error: Not connected, an argument is not a sequence, or no part can be made.
+
+    Examples:
+        >>> shape = p.createCollisionShapeArray(
+        ...     [p.GEOM_SPHERE, p.GEOM_SPHERE],
+        ...     radii=[0.1, 0.2],
+        ...     collisionFramePositions=[[0, 0, 0], [0, 0, 0.3]],
+        ... )
+        >>> snowman = p.createMultiBody(1, shape, basePosition=[0, 2, 1])
+    """
+    client = client_of(physicsClientId)
+    columns = ShapeColumns(
+        "createCollisionShapeArray",
+        "collision",
+        kinds=shapeTypes,
+        radii=radii,
+        half_extents=halfExtents,
+        lengths=lengths,
+        file_names=fileNames,
+        mesh_scales=meshScales,
+        plane_normals=planeNormals,
+        flags=flags,
+        positions=collisionFramePositions,
+        orientations=collisionFrameOrientations,
+    )
+    is_part = len(columns.kinds) > 1 or columns.is_framed
+
+    def part(index: int, kind: int) -> CollisionShape:
+        pose, problem = columns.frame(index), columns.problem
+        if kind in PRIMITIVES:
+            return _placed(columns.primitive(index), pose)
+        file = columns.files.item(index)
+        if kind != GEOM_MESH or file is None:
+            fail(problem, f"type {kind} cannot be made here.")
+        name, bits = text(file, "fileNames"), integer(columns.flags.item(index, 0), "flags")
+        scale = columns.scales.item(index)
+        shape = _mesh_from_file(client, name, scale, bits, pose, is_part=is_part, problem=problem)
+        _check_pieces(shape, problem)
+        return shape
+
+    parts = columns.each(part)
+    return client.shapes.collisions.add(
+        CollisionShape(
+            tuple(collision for shape in parts for collision in shape.collisions),
+            tuple(visual for shape in parts for visual in shape.visuals),
+        )
+    )
+
+
+@exported
+def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> None:
+    """Forgets a collision shape. Nothing happens if there is none, or if a body has been made of it.
+
+    Its id is given to the shape that is made next.
+
+    Args:
+        collisionShapeId: The shape.
+        physicsClientId: The connection.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+        >>> p.removeCollisionShape(shape)
+    """
+    client = client_of(physicsClientId)
+    number = integer(collisionShapeId, "collisionShapeId")
+    shape = client.shapes.collisions.get(number)
+    if shape is None:
+        logger.warning("removeCollisionShape: there is no shape %d.", number)
+    elif shape.used:
+        logger.warning("removeCollisionShape: a body has been made of shape %d, so it stays.", number)
+    else:
+        client.shapes.collisions.remove(number)
+
+
+def _placed(geometry: Geometry, pose: Pose) -> CollisionShape:
+    return CollisionShape((Collision(geometry, pose),), (Visual(geometry, pose),))
+
+
+def _mesh_from_data(
+    vertices: Any, indices: Any, scale: tuple[float, float, float], pose: Pose
+) -> CollisionShape:
+    positions = points(vertices, _FAILED, "vertices")
+    if not len(positions):
+        fail(_FAILED, "vertices is empty.")
+    scaled = positions * scale
+    corners = triangles(() if indices is None else indices, len(positions), _FAILED)
+    if len(corners):
+        return _placed(TriangleMesh(scaled, corners, _MARGIN, scale), pose)
+    return _placed(ConvexHull(scaled, scale), pose)
+
+
+def _mesh_from_file(
+    client: Client, name: str, mesh_scale: Any, flags: int, pose: Pose, *, is_part: bool, problem: str
+) -> CollisionShape:
+    """A mesh file; `is_part` says whether PyBullet would make it part of a compound."""
+    from carom.errors import DescriptionError
+    from carom.model.shape_pieces import mesh_geometries
+
+    mesh = Mesh(
+        find_file(client, name, problem),
+        scale_of(mesh_scale, problem),
+        concave=bool(flags & GEOM_FORCE_CONCAVE_TRIMESH),
+        asked_for=name,
+    )
+    try:
+        geometries = mesh_geometries(mesh)
+    except DescriptionError as reason:
+        fail(problem, str(reason))
+    collisions = []
+    for geometry in geometries:
+        if is_part and isinstance(geometry, TriangleMesh):
+            geometry = replace(geometry, margin=_MARGIN)
+        collisions.append(Collision(geometry, pose))
+    return CollisionShape(tuple(collisions), (Visual(replace(mesh, concave=False), pose),))
+
+
+def _heightfield(
+    client: Client,
+    name: str | None,
+    data: Any,
+    rows: int,
+    columns: int,
+    mesh_scale: Any,
+    replaced: int,
+) -> CollisionShape | None:
+    """A landscape; None if it went into the shape `replaced`."""
+    from pybullet._shapes.heightfields import (
+        heightfield,
+        heights_from_data,
+        heights_from_file,
+        replace_heights,
+    )
+
+    if name is not None:
+        heights = heights_from_file(find_file(client, name, _FAILED), _FAILED)
+    elif data is not None and rows > 0 and columns > 0:
+        heights = heights_from_data(data, rows, columns, _FAILED)
+    else:
+        fail(_FAILED, "A heightfield needs fileName, or heightfieldData and its numbers of rows and columns.")
+    if replaced >= 0:
+        replace_heights(client, replaced, heights, _FAILED)
+        return None
+    return _placed(heightfield(heights, scale_of(mesh_scale, _FAILED), _FAILED), IDENTITY)
+
+
+def _check_pieces(shape: CollisionShape, problem: str) -> None:
+    """Makes what collision detection needs now, so that what is wrong with it comes out now."""
+    from carom.errors import DescriptionError
+    from carom.model.shape_pieces import shape_pieces
+
+    for collision in shape.collisions:
+        try:
+            shape_pieces(collision.geometry, implicit_cylinder=True)
+        except DescriptionError as reason:
+            fail(problem, str(reason))

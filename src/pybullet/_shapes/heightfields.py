@@ -1,0 +1,152 @@
+"""Landscapes: heights from arrays and files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Collision, Heightfield, Visual
+from carom.description.pose import Vector3
+from pybullet._calls.arguments import sequence
+from pybullet._calls.errors import fail
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from pybullet._clients.clients import Client
+
+
+_WRONG_SIZE = "Size of heightfieldData doesn't match numHeightfieldColumns*numHeightfieldRows"
+
+
+def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDArray[np.float64]:
+    """Heights given one by one, x fastest.
+
+    Args:
+        values: rows * columns numbers.
+        rows: Points along x.
+        columns: Points along y.
+        problem: PyBullet's text when they cannot be used.
+
+    Returns:
+        (columns, rows) heights, rounded to single precision as PyBullet's are.
+    """
+    import numpy as np
+
+    try:
+        flat = np.array(sequence(values, problem, "heightfieldData"), dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        fail(problem, "heightfieldData has to be a sequence of numbers.")
+    if len(flat) != rows * columns:
+        fail(_WRONG_SIZE, f"It has {len(flat)} numbers instead of {columns} * {rows}.")
+    return _checked(flat.reshape(columns, rows), problem)
+
+
+def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
+    """Heights from a text file of comma-separated numbers, or from the red of an image, from 0 to 1.
+
+    The lines of a text are rows along y, with PyBullet's transposition: what comes first in the text comes
+    first along y. An image is seen from above, mirrored along x.
+
+    Returns:
+        (points along y, points along x) heights.
+    """
+    import numpy as np
+
+    from carom.errors import DescriptionError
+
+    if path.suffix.lower() != ".txt":
+        from carom.render.images import read_image
+
+        try:
+            red = read_image(path)[:, ::-1, 0]
+        except DescriptionError as reason:
+            fail(problem, str(reason))
+        return _checked((red * (1.0 / 255.0)).astype(np.float64), problem)
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        rows = [[float(word) for word in line.split(",") if word.strip()] for line in lines if line.strip()]
+    except (OSError, ValueError) as reason:
+        fail(problem, f"{path}: {reason}.")
+    if len({len(row) for row in rows}) != 1:
+        fail(problem, f"{path}: the lines do not all hold equally many numbers.")
+    values = np.array(rows)
+    height, width = values.shape
+    # PyBullet lays the numbers out the other way round than it reads them.
+    return _checked(values.T.reshape(height, width), problem, rounded=False)
+
+
+def _checked(heights: NDArray[np.float64], problem: str, *, rounded: bool = True) -> NDArray[np.float64]:
+    import numpy as np
+
+    if min(heights.shape) < 2:
+        columns, rows = heights.shape
+        fail(problem, f"A heightfield needs at least 2 x 2 points, not {rows} x {columns}.")
+    if rounded:
+        with np.errstate(over="ignore"):
+            heights = heights.astype(np.float32).astype(np.float64)
+    if not np.isfinite(heights).all():
+        fail(problem, "A height is not finite.")
+    return heights
+
+
+def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> Heightfield:
+    """A landscape whose middle height lies at the origin."""
+    if 0.0 in scale[:2]:
+        fail(problem, f"meshScale is {list(scale)}, which leaves no area.")
+    return Heightfield(heights, scale, 0.5 * float(heights.min() + heights.max()))
+
+
+def replace_heights(client: Client, number: int, heights: NDArray[np.float64], problem: str) -> None:
+    """Gives a landscape, and all bodies made of it, new heights; where it lies stays as it was.
+
+    Args:
+        client: The connection.
+        number: Id of the collision shape.
+        heights: As many as before.
+        problem: PyBullet's text when that is not possible.
+    """
+    shape = client.shapes.collisions.get(number)
+    if shape is None:
+        fail(problem, f"replaceHeightfieldIndex: there is no shape {number}.")
+    old = shape.collisions[0].geometry
+    if not isinstance(old, Heightfield):
+        fail(problem, f"replaceHeightfieldIndex: shape {number} is no heightfield.")
+    if heights.shape != old.heights.shape:
+        (columns, rows), (new_columns, new_rows) = old.heights.shape, heights.shape
+        fail(problem, f"The heightfield has {rows} x {columns} points, not {new_rows} x {new_columns}.")
+    new = Heightfield(heights, old.scale, old.middle)
+    shape.collisions = (Collision(new, shape.collisions[0].frame),)
+    shape.visuals = (Visual(new, shape.visuals[0].frame),)
+    with client.lock:
+        _renew_bodies(client, old, new)
+
+
+def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
+    from dataclasses import replace
+
+    from carom.layouts.flags import LoadFlags
+    from carom.render.appearance import appearance_of
+
+    appearance = appearance_of(client.world)
+    for body in client.world.bodies.values():
+        implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        for link in range(-1, body.joint_count):
+            spec = body.link_spec(link)
+            if all(collision.geometry is not old for collision in spec.collisions):
+                continue
+            spec.collisions = tuple(
+                replace(it, geometry=new) if it.geometry is old else it for it in spec.collisions
+            )
+            spec.visuals = tuple(
+                replace(it, geometry=new) if it.geometry is old else it for it in spec.visuals
+            )
+            client.world.touch.shapes.replace_pieces(
+                body.first_link + 1 + link, spec, implicit_cylinder=implicit
+            )
+            client.bodies.forget(body.id)
+            for look in appearance.shapes(body, link):
+                if look.geometry is old:
+                    look.geometry = new
+                    appearance.changes += 1

@@ -1,0 +1,62 @@
+"""The corners of convex hulls, for getMeshData."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description import Collision, ConvexHull, Cylinder, Geometry, Mesh
+from carom.description.pose import Pose, Vector3
+from carom.geometry.hull import extreme_points
+from carom.layouts.flags import LoadFlags
+from carom.model.inertia import is_in_place, placement
+from carom.model.shape_pieces import mesh_geometries, shape_pieces
+from carom.scene.body import Body
+
+Corners = NDArray[np.float64]
+
+
+def hull_corners(body: Body, link: int, index: int) -> tuple[Vector3, ...]:
+    """Corners of a link's hulls in its inertial frame.
+
+    Args:
+        body: The body.
+        link: The link; -1 is the base.
+        index: Which shape of a link with several, and which group of an OBJ file; negative for all.
+    """
+    spec = body.link_spec(link)
+    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    if is_in_place(spec.collisions, spec.inertial_frame):
+        chosen = list(spec.collisions)
+    else:
+        chosen = [it for place, it in enumerate(spec.collisions) if index < 0 or index == place]
+    corners = [
+        _placed(points, spec.inertial_frame, collision)
+        for collision in chosen
+        for points in _hulls(collision.geometry, index, implicit)
+    ]
+    rows = np.concatenate(corners) if corners else np.empty((0, 3))
+    return tuple((x, y, z) for x, y, z in rows.tolist())
+
+
+def _hulls(geometry: Geometry, index: int, implicit_cylinder: bool) -> Iterator[Corners]:
+    match geometry:
+        case ConvexHull(points=points):
+            yield extreme_points(points)
+        case Cylinder() if not implicit_cylinder:
+            for piece in shape_pieces(geometry, implicit_cylinder=False):
+                if piece.polyhedron is not None:
+                    yield piece.polyhedron.vertices
+        case Mesh(concave=False):
+            groups = mesh_geometries(geometry)
+            is_compound = geometry.path.suffix.lower() == ".obj"
+            for place, group in enumerate(groups):
+                if index < 0 or not is_compound or index == place:
+                    yield from _hulls(group, index, implicit_cylinder)
+
+
+def _placed(points: Corners, inertial_frame: Pose, collision: Collision) -> Corners:
+    rotation, position = placement(inertial_frame, collision.frame)
+    return points @ np.array(rotation).T + position

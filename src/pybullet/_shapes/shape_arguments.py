@@ -1,0 +1,146 @@
+"""From the arguments of createCollisionShape and createVisualShape to shapes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Pose, Sphere
+from carom.description.pose import IDENTITY, Vector3
+from carom.description.transform import quaternion_from_matrix, rotation_matrix
+from carom.formats.shipped import advice
+from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real, sequence
+from pybullet._calls.constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
+from pybullet._calls.errors import fail
+from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from pybullet._clients.clients import Client
+
+
+PRIMITIVES = (GEOM_SPHERE, GEOM_BOX, GEOM_CYLINDER, GEOM_PLANE, GEOM_CAPSULE)
+
+_GREATEST_SIZE = 1e15
+
+
+def primitive(
+    kind: int, problem: str, *, radius: Any, length: Any, half_extents: Any, normal: Any, length_name: str
+) -> Geometry:
+    """A sphere, box, cylinder, plane or capsule.
+
+    Args:
+        kind: `GEOM_*`, one of `PRIMITIVES`.
+        problem: PyBullet's text when it cannot be made.
+        radius: Of a sphere, cylinder or capsule.
+        length: Of a cylinder, or of the straight part of a capsule.
+        half_extents: Of a box; None is not enough.
+        normal: Of a plane; None for the z axis.
+        length_name: Name of the argument `length`.
+
+    Raises:
+        pybullet.error: A size is missing, negative or not finite.
+        TypeError: A size is not a number.
+    """
+    if kind == GEOM_BOX:
+        if half_extents is None:
+            fail(problem, "A box needs halfExtents.")
+        x, y, z = optional_vector3(half_extents, problem, "halfExtents") or (1.0, 1.0, 1.0)
+        _check_size(min(x, y, z) >= 0.0, max(x, y, z), problem, f"halfExtents is {[x, y, z]}.")
+        return Box((x, y, z))
+    if kind == GEOM_PLANE:
+        x, y, z = optional_vector3(normal, problem, "planeNormal") or (0.0, 0.0, 1.0)
+        norm = (x * x + y * y + z * z) ** 0.5
+        if norm == 0.0:
+            fail(problem, "planeNormal has no length.")
+        return Plane((x / norm, y / norm, z / norm))
+    size = real(radius, "radius", problem)
+    if size == 0.0:
+        fail(problem, "radius is 0. Without one there is no shape.")
+    _check_size(size >= 0.0, size, problem, f"radius is {size}.")
+    if kind == GEOM_SPHERE:
+        return Sphere(size)
+    height = real(length, length_name, problem)
+    _check_size(height >= 0.0, height, problem, f"{length_name} is {height}.")
+    return Capsule(size, height) if kind == GEOM_CAPSULE else Cylinder(size, height)
+
+
+def _check_size(is_allowed: bool, greatest: float, problem: str, particulars: str) -> None:
+    if not is_allowed or greatest > _GREATEST_SIZE:
+        fail(problem, f"{particulars} It has to be from 0 to {_GREATEST_SIZE:g} m.")
+
+
+def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
+    """The frame of a shape in its link; None stands for the origin and for no rotation.
+
+    Args:
+        position: Three numbers or None.
+        orientation: Four numbers or None.
+        problem: PyBullet's text for what is neither.
+        prefix: Of the names of both arguments.
+    """
+    if position is None and orientation is None:
+        return IDENTITY
+    place = optional_vector3(position, problem, f"{prefix}Position") or IDENTITY.position
+    turn = optional_rotation(orientation, problem, f"{prefix}Orientation")
+    if turn is None:
+        return Pose(place)
+    return Pose(place, quaternion_from_matrix(rotation_matrix(turn)))
+
+
+def scale_of(values: Any, problem: str) -> Vector3:
+    """`meshScale`; None for 1."""
+    scale = optional_vector3(values, problem, "meshScale") or (1.0, 1.0, 1.0)
+    for factor in scale:
+        moderate(factor, problem, "A factor of meshScale")
+    return scale
+
+
+def find_file(client: Client, name: str, problem: str) -> Path:
+    """A file named by a script; raises `pybullet.error` if there is none."""
+    search = client.search()
+    path = search.find(name)
+    if path is None:
+        hint = advice(Path(name), search.places)
+        fail(problem, f"There is no file {name!r}{hint}{'' if hint.endswith('?') else '.'}")
+    return path
+
+
+def points(values: Any, problem: str, name: str, columns: int = 3) -> NDArray[np.float64]:
+    """Rows of finite numbers from any sequence of them; raises `pybullet.error` for anything else."""
+    import numpy as np
+
+    try:
+        rows = np.array(sequence(values, problem, name), dtype=np.float64)
+    except (TypeError, ValueError):
+        fail(problem, f"{name} has to be a sequence of {columns} numbers each.")
+    if rows.size == 0:
+        return rows.reshape(0, columns)
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        fail(problem, f"{name} has to be a sequence of {columns} numbers each.")
+    if not np.isfinite(rows).all():
+        fail(problem, f"{name} holds a number that is not finite.")
+    if np.abs(rows).max() > MAX_MAGNITUDE:
+        fail(problem, f"{name} holds a number greater than {MAX_MAGNITUDE:g}.")
+    return rows
+
+
+def triangles(values: Any, vertex_count: int, problem: str) -> NDArray[np.int32]:
+    """`indices` as rows of three; raises `pybullet.error` if they do not fit the vertices."""
+    import numpy as np
+
+    try:
+        flat = np.array(sequence(values, problem, "indices"))
+    except ValueError:
+        fail(problem, "indices has to be a flat sequence of integers.")
+    if flat.size == 0:
+        return np.empty((0, 3), dtype=np.int32)
+    if flat.ndim != 1 or flat.dtype.kind not in "iu":
+        fail(problem, "indices has to be a flat sequence of integers.")
+    if len(flat) % 3:
+        fail(problem, f"indices has {len(flat)} items, which does not make triangles.")
+    if flat.min() < 0 or flat.max() >= vertex_count:
+        fail(problem, f"indices names a vertex outside 0..{vertex_count - 1}.")
+    return flat.reshape(-1, 3).astype(np.int32)

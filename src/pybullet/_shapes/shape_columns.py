@@ -1,0 +1,140 @@
+"""The lists of createCollisionShapeArray and createVisualShapeArray."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+from carom.description import Geometry, Pose
+from pybullet._calls.arguments import integer, sequence
+from pybullet._calls.errors import error, fail, logger
+from pybullet._shapes.shape_arguments import frame, primitive
+
+Made = TypeVar("Made")
+
+
+class Column:
+    """One of the lists.
+
+    Args:
+        values: The list; None if it is not given.
+        name: Of the argument.
+        words: What its items are, in PyBullet's text for what is no sequence.
+    """
+
+    def __init__(self, values: Any, name: str, words: str) -> None:
+        self.is_given = values is not None
+        self._items: Sequence[Any] = (
+            () if values is None else sequence(values, f"expected a sequence of {words}", name)
+        )
+
+    def item(self, index: int, default: Any = None) -> Any:
+        """An entry; the default where the list is too short or not given."""
+        return self._items[index] if index < len(self._items) else default
+
+
+class ShapeColumns:
+    """The lists that both functions have.
+
+    Args:
+        function: Name of the function.
+        frame_of: `collision` or `visual`.
+        kinds: `shapeTypes`.
+        radii: The argument of that name, as the following.
+        half_extents: `halfExtents`.
+        lengths: The argument of that name.
+        file_names: `fileNames`.
+        mesh_scales: `meshScales`.
+        plane_normals: `planeNormals`.
+        flags: The argument of that name.
+        positions: `...FramePositions`.
+        orientations: `...FrameOrientations`.
+
+    Attributes:
+        problem: PyBullet's text when nothing can be made.
+        kinds: `GEOM_*` of each shape.
+        files: Names of mesh files.
+        scales: Factors on meshes.
+        flags: Bits of each shape.
+
+    Raises:
+        pybullet.error: One of them is no sequence.
+        TypeError: A shape type is no integer.
+    """
+
+    def __init__(
+        self,
+        function: str,
+        frame_of: str,
+        *,
+        kinds: Any,
+        radii: Any,
+        half_extents: Any,
+        lengths: Any,
+        file_names: Any,
+        mesh_scales: Any,
+        plane_normals: Any,
+        flags: Any,
+        positions: Any,
+        orientations: Any,
+    ) -> None:
+        self.problem = f"{function} failed."
+        self._function = function
+        self._frame = f"{frame_of}Frame"
+        self.kinds = [
+            integer(kind, "shapeTypes")
+            for kind in sequence(kinds, "expected a sequence of shape types", "shapeTypes")
+        ]
+        self._radii = Column(radii, "radii", "radii")
+        self._half_extents = Column(half_extents, "halfExtents", "half extents")
+        self._lengths = Column(lengths, "lengths", "lengths")
+        self.files = Column(file_names, "fileNames", "filename")
+        self.scales = Column(mesh_scales, "meshScales", "mesh scale")
+        self._normals = Column(plane_normals, "planeNormals", "plane normal")
+        self.flags = Column(flags, "flags", "flags")
+        self._positions = Column(positions, f"{self._frame}Positions", f"{frame_of} frame positions")
+        self._orientations = Column(
+            orientations, f"{self._frame}Orientations", f"{frame_of} frame orientations"
+        )
+
+    @property
+    def is_framed(self) -> bool:
+        """Frames are given."""
+        return self._positions.is_given or self._orientations.is_given
+
+    def frame(self, index: int) -> Pose:
+        """The frame of a shape in its link."""
+        return frame(self._positions.item(index), self._orientations.item(index), self.problem, self._frame)
+
+    def primitive(self, index: int) -> Geometry:
+        """A shape whose type is one of `PRIMITIVES`."""
+        return primitive(
+            self.kinds[index],
+            self.problem,
+            radius=self._radii.item(index, 0.0),
+            length=self._lengths.item(index, 0.0),
+            half_extents=self._half_extents.item(index, (1.0, 1.0, 1.0)),
+            normal=self._normals.item(index),
+            length_name="lengths",
+        )
+
+    def each(self, make: Callable[[int, int], Made]) -> list[Made]:
+        """Makes every shape; like PyBullet it leaves out those that cannot be made, with a warning.
+
+        Args:
+            make: Makes a shape from its index and kind.
+
+        Raises:
+            pybullet.error: None can be made.
+        """
+        made, reasons = [], []
+        for index, kind in enumerate(self.kinds):
+            try:
+                made.append(make(index, kind))
+            except error as reason:
+                reasons.append(f"shape {index}: {str(reason).removeprefix(self.problem).strip()}")
+        if not made:
+            fail(self.problem, "; ".join(reasons) or "shapeTypes is empty.")
+        for reason in reasons:
+            logger.warning("%s: %s It is left out.", self._function, reason)
+        return made

@@ -1,0 +1,275 @@
+"""What scripts can read of the shapes of bodies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from carom.description import (
+    Box,
+    Capsule,
+    ConvexHull,
+    Cylinder,
+    Geometry,
+    Heightfield,
+    Mesh,
+    Plane,
+    SignedDistanceField,
+    Sphere,
+    TriangleMesh,
+)
+from carom.description.pose import Quaternion, Vector3
+from carom.description.transform import quaternion_from_matrix
+from pybullet._calls.arguments import integer
+from pybullet._calls.builtin import exported
+from pybullet._calls.constants import (
+    GEOM_BOX,
+    GEOM_CAPSULE,
+    GEOM_CYLINDER,
+    GEOM_HEIGHTFIELD,
+    GEOM_MESH,
+    GEOM_PLANE,
+    GEOM_SPHERE,
+    VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS,
+)
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import Client, client_of, clients
+from pybullet._clients.lookup import BASE, body_of, no_body, no_joint
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+__all__ = ["getAABB", "getCollisionShapeData", "getMeshData", "getVisualShapeData"]
+
+CollisionData = tuple[int, int, int, Vector3, bytes, Vector3, Quaternion]
+
+_NO_COLLISION_DATA = "Error receiving collision shape info"
+_NO_AABB = "getAABB failed."
+_NO_MESH = "getMeshData failed"
+# What PyBullet calls meshes whose file it does not remember, and their dimensions.
+_UNKNOWN_FILE = (b"unknown_file", (1.0, 1.0, 1.0))
+
+
+@exported
+def getCollisionShapeData(
+    objectUniqueId: int, linkIndex: int, physicsClientId: int = 0
+) -> tuple[CollisionData, ...]:
+    """The collision shapes of a link.
+
+    Args:
+        objectUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        physicsClientId: The connection.
+
+    Returns:
+        For each shape 7 fields: 0 body; 1 link; 2 type, `GEOM_*`; 3 dimensions: edges of a box, length and
+        radius of a capsule or cylinder, radius of a sphere three times, normal of a plane, scale of a
+        mesh; 4 file of a mesh, as bytes; 5 position [m] and 6 orientation (x, y, z, w) in the inertial
+        frame of the link. Meshes made by `createCollisionShape`, and cylinders of a file, which are hulls,
+        have the file `b"unknown_file"`. Heightfields are left out.
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> shape = p.getCollisionShapeData(cube, -1)[0]
+        >>> shape[2] == p.GEOM_BOX, shape[3]
+        (True, (0.05, 0.05, 0.05))
+    """
+    client = client_of(physicsClientId)
+    body, link = _body_and_link(client, objectUniqueId, linkIndex, _NO_COLLISION_DATA)
+
+    from carom.layouts.flags import LoadFlags
+    from carom.model.inertia import placement
+
+    spec = body.link_spec(link)
+    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    result = []
+    for collision in spec.collisions:
+        described = _collision_geometry(collision.geometry, implicit)
+        if described is not None:
+            kind, dimensions, file = described
+            rotation, position = placement(spec.inertial_frame, collision.frame)
+            orientation = quaternion_from_matrix(rotation)
+            result.append((body.id, link, kind, dimensions, file, position, orientation))
+    return tuple(result)
+
+
+@exported
+def getVisualShapeData(
+    objectUniqueId: int, flags: int = 0, physicsClientId: int = 0
+) -> tuple[tuple[Any, ...], ...]:
+    """The visual shapes of a body, or the collision shapes of links that have none.
+
+    Args:
+        objectUniqueId: The body.
+        flags: `VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS` for a ninth field.
+        physicsClientId: The connection.
+
+    Returns:
+        For each shape 8 fields: 0 body; 1 link, -1 for the base; 2 type, `GEOM_*`; 3 dimensions: edges of
+        a box, length and radius of a capsule or cylinder, radius of a sphere, scale of a mesh; 4 file of
+        a mesh, as bytes; 5 position [m] and 6 orientation (x, y, z, w) in the link frame; 7 colour; and,
+        if asked for, 8 the id of the texture, -1 for none. Empty when there is no such body.
+
+    Raises:
+        pybullet.error: Not connected.
+
+    Examples:
+        >>> look = p.getVisualShapeData(cube)[0]
+        >>> look[2] == p.GEOM_MESH, look[4].decode().endswith("cube.obj")
+        (True, True)
+    """
+    client = client_of(physicsClientId)
+    number, bits = integer(objectUniqueId, "objectUniqueId"), integer(flags, "flags")
+    body = client.world.bodies.get(number)
+    if body is None:
+        return ()
+
+    from carom.render.appearance import appearance_of
+
+    result = []
+    with client.lock:
+        appearance = appearance_of(client.world)
+        appearance.number_textures(client.world)
+        for link in range(BASE, body.joint_count):
+            for look in appearance.shapes(body, link):
+                described = _visual_geometry(look.geometry)
+                frame = look.frame
+                data = (body.id, link, *described, frame.position, frame.orientation, look.rgba)
+                result.append((*data, look.texture) if bits & VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS else data)
+    return tuple(result)
+
+
+@exported
+def getMeshData(
+    bodyUniqueId: int,
+    linkIndex: int = -1,
+    collisionShapeIndex: int = -1,
+    flags: int = -1,
+    physicsClientId: int = 0,
+) -> tuple[int, tuple[Vector3, ...]]:
+    """The corners of the convex hulls a link collides with. Other shapes have none.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        collisionShapeIndex: Which of several shapes; -1 for all.
+        flags: For deformable bodies.
+        physicsClientId: The connection.
+
+    Returns:
+        (how many, (x, y, z) of each [m] in the inertial frame of the link).
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> count, corners = p.getMeshData(arm, 3)
+        >>> count == len(corners)
+        True
+    """
+    client = client_of(physicsClientId)
+    body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_MESH)
+    index = integer(collisionShapeIndex, "collisionShapeIndex")
+    integer(flags, "flags")
+
+    from pybullet._shapes.mesh_data import hull_corners
+
+    corners = hull_corners(body, link, index)
+    return len(corners), corners
+
+
+@exported
+def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) -> tuple[Vector3, Vector3]:
+    """A box along the world's axes around the collision shapes of a link.
+
+    Like PyBullet's it is the box around the turned box of the shapes, which for anything but boxes and
+    spheres is larger than need be, and it includes collision margins.
+
+    Args:
+        bodyUniqueId: The body.
+        linkIndex: The link, from 0; -1 for the base.
+        physicsClientId: The connection.
+
+    Returns:
+        (lowest corner, highest corner) [m].
+
+    Raises:
+        pybullet.error: Not connected, or there is no such body or link.
+
+    Examples:
+        >>> lower, upper = p.getAABB(cube)
+        >>> [round(x, 3) for x in lower], [round(x, 3) for x in upper]
+        ([0.475, -0.025, 0.0], [0.525, 0.025, 0.05])
+    """
+    try:
+        return clients[physicsClientId].bodies[bodyUniqueId].boxes[linkIndex].corners()
+    except (KeyError, TypeError, ValueError):
+        client = client_of(physicsClientId)
+        if integer(bodyUniqueId, "bodyUniqueId") < 0:
+            fail("getAABB failed; invalid bodyUniqueId", no_body(bodyUniqueId))
+        if integer(linkIndex, "linkIndex") < BASE:
+            fail("getAABB failed; invalid linkIndex", f"{linkIndex} is less than -1, the base.")
+        body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_AABB)
+        return client.bodies[body.id].boxes[link].corners()
+
+
+def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) -> tuple[Body, int]:
+    body, link = body_of(client, body_id, problem), integer(link_index, "linkIndex")
+    if not BASE <= link < body.joint_count:
+        fail(problem, no_joint(body, link))
+    return body, link
+
+
+def _collision_geometry(geometry: Geometry, implicit_cylinder: bool) -> tuple[int, Vector3, bytes] | None:
+    """Type, dimensions and file of a collision shape; None for one that is not reported."""
+    match geometry:
+        case Sphere(radius):
+            return GEOM_SPHERE, (radius, radius, radius), b""
+        case Box((x, y, z)):
+            return GEOM_BOX, (2.0 * x, 2.0 * y, 2.0 * z), b""
+        case Capsule(radius, length):
+            return GEOM_CAPSULE, (length, radius, 0.0), b""
+        case Cylinder(radius, length) if implicit_cylinder:
+            return GEOM_CYLINDER, (length, radius, 0.0), b""
+        case Plane(normal):
+            return GEOM_PLANE, normal, b""
+        case Mesh(_, scale):
+            return GEOM_MESH, scale, _file_name(geometry)
+        case Cylinder() | ConvexHull() | TriangleMesh():
+            file, dimensions = _UNKNOWN_FILE
+            return GEOM_MESH, dimensions, file
+        case Heightfield() | SignedDistanceField():
+            return None
+
+
+def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
+    """Type, dimensions and file of a visual shape."""
+    match geometry:
+        case Sphere(radius):
+            return GEOM_SPHERE, (radius, 0.0, 0.0), b""
+        case Box((x, y, z)):
+            return GEOM_BOX, (2.0 * x, 2.0 * y, 2.0 * z), b""
+        case Capsule(radius, length):
+            return GEOM_CAPSULE, (length, radius, 0.0), b""
+        case Cylinder(radius, length):
+            return GEOM_CYLINDER, (length, radius, 0.0), b""
+        case Plane():
+            return GEOM_PLANE, (0.0, 0.0, 0.0), b""
+        case Mesh(_, scale):
+            return GEOM_MESH, scale, _file_name(geometry)
+        case ConvexHull(scale=scale) | TriangleMesh(scale=scale):
+            return GEOM_MESH, scale, b""
+        case Heightfield():
+            return GEOM_HEIGHTFIELD, (0.0, 0.0, 0.0), b""
+        case SignedDistanceField(path):
+            return _SIGNED_DISTANCE_FIELD, (0.0, 0.0, 0.0), str(path).encode()
+
+
+_SIGNED_DISTANCE_FIELD = 8
+"""What PyBullet calls the type of a signed distance field; it has no name for it."""
+
+
+def _file_name(mesh: Mesh) -> bytes:
+    """The file of a mesh: as a script asked for it, or where a robot file's reference was found."""
+    return (mesh.asked_for or str(mesh.path)).encode()

@@ -1,0 +1,147 @@
+"""Convex decomposition of mesh files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pybullet._calls.arguments import integer, real, text
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail, logger
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["vhacd"]
+
+_FAILED = "vhacd failed."
+
+# What V-HACD takes by default, and what of CoACD's options stands for it.
+_DEFAULT_CONCAVITY, _DEFAULT_THRESHOLD = 0.001, 0.05
+_DEFAULT_RESOLUTION, _DEFAULT_GRID = 1_000_000, 50
+_DEFAULT_VERTICES = 64
+_THRESHOLDS, _GRIDS, _LEAST_VERTICES = (0.01, 1.0), (20, 100), 4
+
+
+@exported
+def vhacd(
+    fileNameIn: str,
+    fileNameOut: str,
+    fileNameLogging: str,
+    concavity: float = -1,
+    alpha: float = -1,
+    beta: float = -1,
+    gamma: float = -1,
+    minVolumePerCH: float = -1,
+    resolution: int = -1,
+    maxNumVerticesPerCH: int = -1,
+    depth: int = -1,
+    planeDownsampling: int = -1,
+    convexhullDownsampling: int = -1,
+    pca: int = -1,
+    mode: int = -1,
+    convexhullApproximation: int = -1,
+    physicsClientId: int = 0,
+) -> None:
+    """Cuts the mesh of an OBJ file into convex pieces, each a group of another OBJ file.
+
+    `createCollisionShape` then makes a hull of each. It needs no connection, but the library CoACD:
+    `pip install carom[decompose]`. CoACD cuts differently from V-HACD, usually into fewer pieces; arguments
+    that it has no counterpart for are checked and have no effect.
+
+    Args:
+        fileNameIn: The OBJ file.
+        fileNameOut: The OBJ file to write.
+        fileNameLogging: A text file to write, which says what was done.
+        concavity: Concavity that may be left; 0.001 at first, which stands for CoACD's threshold 0.05.
+        alpha: Of V-HACD only.
+        beta: Of V-HACD only.
+        gamma: Of V-HACD only.
+        minVolumePerCH: Of V-HACD only.
+        resolution: Number of voxels; 1000000 at first, which stands for 50 cells along a side in CoACD.
+        maxNumVerticesPerCH: Most vertices of a piece; 64 at first.
+        depth: Of V-HACD only.
+        planeDownsampling: Of V-HACD only.
+        convexhullDownsampling: Of V-HACD only.
+        pca: 1 turns the mesh into its principal axes before cutting.
+        mode: Of V-HACD only.
+        convexhullApproximation: Of V-HACD only.
+        physicsClientId: Nothing here.
+
+    Raises:
+        pybullet.error: CoACD is not installed, or a file cannot be read or written.
+
+    Examples:
+        >>> import pybullet_data
+        >>> duck = pybullet_data.getDataPath() + "/duck.obj"
+        >>> p.vhacd(duck, folder + "/pieces.obj", folder + "/log.txt")  # doctest: +SKIP
+    """
+    source, target = text(fileNameIn, "fileNameIn"), text(fileNameOut, "fileNameOut")
+    log = text(fileNameLogging, "fileNameLogging")
+    softness, voxels = real(concavity, "concavity"), integer(resolution, "resolution")
+    corners, aligned = integer(maxNumVerticesPerCH, "maxNumVerticesPerCH"), integer(pca, "pca")
+    without_effect = {
+        "alpha": real(alpha, "alpha"),
+        "beta": real(beta, "beta"),
+        "gamma": real(gamma, "gamma"),
+        "minVolumePerCH": real(minVolumePerCH, "minVolumePerCH"),
+        "depth": integer(depth, "depth"),
+        "planeDownsampling": integer(planeDownsampling, "planeDownsampling"),
+        "convexhullDownsampling": integer(convexhullDownsampling, "convexhullDownsampling"),
+        "mode": integer(mode, "mode"),
+        "convexhullApproximation": integer(convexhullApproximation, "convexhullApproximation"),
+    }
+    integer(physicsClientId, "physicsClientId")
+    named = [name for name, value in without_effect.items() if value >= 0]
+    if named:
+        logger.warning("vhacd: %s: no effect here.", ", ".join(named))
+
+    from carom.errors import CaromError
+    from carom.formats.mesh import read_mesh
+    from carom.geometry.decomposition import DecompositionOptions, decompose
+    from carom.model.shape_pieces import joined_parts
+
+    options = DecompositionOptions(
+        threshold=_DEFAULT_THRESHOLD
+        if softness < 0.0
+        else _within(softness / _DEFAULT_CONCAVITY * _DEFAULT_THRESHOLD, _THRESHOLDS),
+        grid=_DEFAULT_GRID
+        if voxels < 0
+        else round(_within((voxels / _DEFAULT_RESOLUTION) ** (1 / 3) * _DEFAULT_GRID, _GRIDS)),
+        most_vertices=_DEFAULT_VERTICES if corners < 0 else max(corners, _LEAST_VERTICES),
+        align=aligned > 0,
+    )
+    try:
+        vertices, triangles = joined_parts(read_mesh(Path(source)), (1.0, 1.0, 1.0))
+        pieces = decompose(vertices, triangles, options)
+        Path(target).write_text(_obj(pieces), encoding="utf-8")
+        report = f"{source}: {len(vertices)} vertices, {len(triangles)} triangles\n{options}\n"
+        report += "".join(
+            f"{_name(number)}: {len(points)} vertices, {len(faces)} triangles\n"
+            for number, (points, faces) in enumerate(pieces)
+        )
+        Path(log).write_text(report, encoding="utf-8")
+    except (CaromError, OSError) as problem:
+        fail(_FAILED, str(problem))
+
+
+def _within(value: float, bounds: tuple[float, float]) -> float:
+    return min(max(value, bounds[0]), bounds[1])
+
+
+def _name(number: int) -> str:
+    return f"convex_{number}"
+
+
+def _obj(pieces: list[tuple[NDArray[np.float64], NDArray[np.int32]]]) -> str:
+    """An OBJ file with a group for each piece."""
+    lines = []
+    known = 0
+    for number, (points, faces) in enumerate(pieces):
+        lines.append(f"o {_name(number)}")
+        lines.extend(f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in points.tolist())
+        first = known + 1
+        lines.extend(f"f {first + a} {first + b} {first + c}" for a, b, c in faces.tolist())
+        known += len(points)
+    return "\n".join(lines) + "\n"

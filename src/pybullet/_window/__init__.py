@@ -1,0 +1,1 @@
+"""The window: sliders, keys, drawings, its camera."""

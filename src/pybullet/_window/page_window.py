@@ -1,0 +1,249 @@
+"""The window as a page in the browser."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import fields
+from math import isfinite
+from pathlib import Path
+from tempfile import gettempdir
+from threading import main_thread
+from typing import TYPE_CHECKING, Any
+
+from carom.description.pose import Vector3
+from pybullet._calls.errors import fail
+from pybullet._window.window import DebugCamera, DebugItem, RecordingWindow, Slider, VisualizerOptions
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from carom.queries.ray_cast import Points, RayHit
+    from carom.viewer.viewer import Viewer
+    from pybullet._clients.clients import Client
+
+# Options that are whole numbers, and the least they can be.
+_COUNTS = {"width": 1, "height": 1, "port": 0}
+_PAUSED = (
+    "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
+)
+_GOES_ON = "The simulation continues."
+# A colour component that is not stated, or is no number.
+_DEFAULT_SHADE = 0.8
+
+
+class PageWindow(RecordingWindow):
+    """A window that keeps what the script shows, like its base, and has a viewer show it.
+
+    Args:
+        viewer: The viewer.
+        client: Whose world it shows.
+    """
+
+    def __init__(self, viewer: Viewer, client: Client) -> None:
+        super().__init__(viewer.camera.orbit.width, viewer.camera.orbit.height)
+        self._viewer = viewer
+        self._client = client
+        self.items = viewer.drawings.items
+        self.sliders = viewer.controls.sliders
+        # Simulated time at which the script last asked what the user does.
+        self._asked = -1.0
+        self.held = viewer.held
+        viewer.on_hold = self._hold
+        viewer.on_pause = self._say_pause
+        viewer.on_profile = self._profile
+        self._profiles = 0
+        self._profile_log: int | None = None
+
+    @property
+    def viewer(self) -> Viewer:
+        """The viewer behind it."""
+        return self._viewer
+
+    def is_open(self) -> bool:
+        return self._viewer.is_open
+
+    def close(self) -> None:
+        self._viewer.close()
+
+    @property
+    def speed(self) -> float | None:
+        return self._viewer.gate.speed
+
+    def wait_for_turn(self) -> bool:
+        return self._viewer.wait_for_turn(listening=self._asked == self._viewer.time)
+
+    def has_turn(self) -> bool:
+        return self._viewer.has_turn()
+
+    def draw(self, item: DebugItem, replaced: int) -> int:
+        self._viewer.drawings.expire()
+        identifier = super().draw(item, replaced)
+        self._viewer.drawings.draw(identifier, item)
+        return identifier
+
+    def add_slider(self, slider: Slider) -> int:
+        identifier = super().add_slider(slider)
+        self._viewer.controls.add(identifier, slider)
+        return identifier
+
+    def remove(self, item: int) -> None:
+        self._viewer.drawings.remove(item)
+        self._viewer.controls.remove(item)
+
+    def remove_drawings(self) -> None:
+        self._viewer.drawings.clear()
+        super().remove_drawings()
+
+    def remove_sliders(self) -> None:
+        for item in list(self.sliders):
+            self._viewer.controls.remove(item)
+
+    def colour_link(self, body: int, link: int, colour: Vector3 | None) -> None:
+        super().colour_link(body, link, colour)
+        self._show_options()
+
+    def slider_value(self, item: int) -> float | None:
+        self._asked = self._viewer.time
+        return super().slider_value(item)
+
+    def key_events(self) -> dict[int, int]:
+        self._asked = self._viewer.time
+        return self._viewer.key_events()
+
+    def mouse_events(self) -> Sequence[tuple[int, float, float, int, int]]:
+        self._asked = self._viewer.time
+        return self._viewer.mouse.events()
+
+    def configure(self, changes: VisualizerOptions) -> None:
+        super().configure(changes)
+        self._show_options()
+
+    def draw_now(self) -> None:
+        self._viewer.draw_now()
+
+    def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
+        self._viewer.camera.move(distance, yaw, pitch, target)
+
+    def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
+        if self._viewer.rays.wanted:
+            self._viewer.rays.tell(starts, ends, hits)
+
+    def show_image(
+        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+    ) -> None:
+        if self._viewer.page_count:
+            self._viewer.previews.show(rgba, depth, labels)
+
+    def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
+        orbit = self._viewer.camera.orbit
+        return DebugCamera(
+            orbit.width,
+            orbit.height,
+            orbit.distance,
+            orbit.yaw,
+            orbit.pitch,
+            orbit.target,
+            self.camera.up_axis,
+        ).info()
+
+    def _hold(self, held: bool) -> None:
+        self.held = held
+
+    def _profile(self, running: bool) -> None:
+        """Writes a trace of where the time goes for as long as the key p is held."""
+        from pybullet._logs.log_files import TimingLog
+
+        client = self._client
+        with client.lock:
+            if running and self._profile_log is None:
+                self._profiles += 1
+                path = Path(gettempdir(), f"timings_{self._profiles}")
+                self._profile_log = client.logs.start(client, TimingLog(path))
+            elif not running and self._profile_log is not None:
+                client.logs.stop(client, self._profile_log)
+                self._profile_log = None
+                print(f"Wrote {Path(gettempdir(), f'timings_{self._profiles}_0.json')}", flush=True)
+
+    def _say_pause(self, paused: bool) -> None:
+        # When a script that was paused has been ended by Ctrl-C, its pages go, and nothing goes on.
+        if main_thread().is_alive():
+            print(_PAUSED if paused else _GOES_ON, flush=True)
+
+    def _show_options(self) -> None:
+        options = {field.name: getattr(self.options, field.name) for field in fields(self.options)}
+        colours = [[body, link + 1, colour] for (body, link), colour in self.colours.items()]
+        self._viewer.configure({**options, "up_axis": self.camera.up_axis, "colours": colours})
+
+
+def open_window(client: Client, options: str) -> PageWindow:
+    """Shows the world of a client.
+
+    Args:
+        client: The connection.
+        options: What `connect` was told of the window.
+
+    Raises:
+        pybullet.error: The address asked for cannot be listened on, or the video asked for not be written.
+    """
+    from carom.viewer.display import tunnel_command
+    from carom.viewer.viewer import Viewer
+
+    values: dict[str, str] = {}
+    for option in options.split():
+        name, _, value = option.lstrip("-").partition("=")
+        if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
+            values[name] = value
+    arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
+    arguments |= {name: values[name] for name in ("host", "token") if values.get(name)}
+    if "names" in values:
+        arguments["names"] = values["names"].split(",")
+    try:
+        viewer = Viewer(client.world, client.lock, title=_title(), **arguments)
+    except OSError as problem:
+        fail("Cannot open the window:", f"{problem}.")
+    client.window = window = PageWindow(viewer, client)
+    background = [values.get(f"background_color_{name}") for name in ("red", "green", "blue")]
+    if any(background):
+        window.configure(VisualizerOptions(background=_colour(background)))
+    if "mp4" in values:
+        _film(client, values["mp4"].strip("\"'"), values.get("mp4fps", ""))
+    print(f"The simulation is shown at {viewer.address}", flush=True)
+    if tunnel := tunnel_command(viewer.address):
+        print(
+            f"You are connected by SSH: run '{tunnel}' on your own machine, and open {viewer.address} there."
+        )
+    viewer.open_browser()
+    return window
+
+
+def _title() -> str:
+    """The name of the script."""
+    from carom.viewer.notebook import in_notebook
+
+    return "Carom" if in_notebook() else Path(sys.argv[0]).stem or "Carom"
+
+
+def _film(client: Client, file: str, fps: str) -> None:
+    from pybullet._cameras.film import PICTURES_PER_SECOND, film_of
+
+    rate = int(fps) if fps.isdecimal() and int(fps) > 0 else PICTURES_PER_SECOND
+    try:
+        client.logs.start(client, film_of(client, Path(file), rate))
+    except (ImportError, OSError) as problem:
+        client.window.close()
+        fail(f"Cannot write {file}:", f"{problem}.")
+
+
+def _colour(parts: Sequence[str | None]) -> Vector3:
+    red, green, blue = (_DEFAULT_SHADE if part is None else _number(part) for part in parts)
+    return (red, green, blue)
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        return _DEFAULT_SHADE
+    return value if isfinite(value) else _DEFAULT_SHADE
