@@ -19,6 +19,7 @@ FLOORS = (
         "carom.checks",
         "carom.description",
         "carom.errors",
+        "carom.logger",
         "carom.suggestions",
         "carom.version",
         "eglRenderer",

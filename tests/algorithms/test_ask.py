@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.algorithms.ask import asking
-from carom.layouts.types import NUMPY_REAL
-from carom.native.tables import numbers_of
+from carom.native.tables import NUMPY_REAL, numbers_of
 
 NUMBERS = st.floats(-1e6, 1e6)
 

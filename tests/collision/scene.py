@@ -18,7 +18,6 @@ from carom.layouts.contacts import Contacts, Pairs, Shapes
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, Settings, State
 from carom.layouts.queries import Places, Rays, Searches
 from carom.layouts.status import OVERFLOW, STATUS
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import (
     abandon_step_kernel,
     begin_step_kernel,
@@ -30,7 +29,7 @@ from carom.native.kernels import (
     rays_kernel,
 )
 from carom.native.launch import Launch
-from carom.native.tables import ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 

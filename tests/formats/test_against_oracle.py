@@ -11,7 +11,7 @@ from pybullet_view import dynamics_infos, joint_infos
 from tests.differences import differences
 
 from carom.errors import DescriptionError
-from carom.formats import read_urdf
+from carom.formats.urdf import read_urdf
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from carom.formats import AssetSearch
+from carom.formats.search import AssetSearch
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ from test_scenes_against_oracle import differences
 import pybullet as p
 import pybullet_data
 from carom.errors import DescriptionError
-from carom.formats import read_urdf
 from carom.formats.any_file import read_robots
+from carom.formats.urdf import read_urdf
 from carom.formats.urdf_writer import urdf_text
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from load_cases import DATA
 
 from carom.errors import DescriptionError
-from carom.formats import AssetSearch
 from carom.formats.mesh.collada import read_collada
 from carom.formats.mesh.obj import read_obj
 from carom.formats.mesh.stl import read_stl
+from carom.formats.search import AssetSearch
 from carom.formats.urdf.reader import parse_urdf
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble

@@ -25,8 +25,9 @@ from carom.description import (
     Sphere,
 )
 from carom.errors import DescriptionError
-from carom.formats import AssetSearch, read_urdf
 from carom.formats.robot.file import MAX_FILE_BYTES
+from carom.formats.search import AssetSearch
+from carom.formats.urdf import read_urdf
 
 Read = Callable[..., Robot]
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'

@@ -18,10 +18,10 @@ from carom.cli.convert import convert
 from carom.description import Link, Pose, Robot, Visual
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
-from carom.formats import read_urdf
 from carom.formats.mjcf import read_mjcf
 from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
+from carom.formats.urdf import read_urdf
 from carom.formats.urdf_writer import roll_pitch_yaw, urdf_text
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble

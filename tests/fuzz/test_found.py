@@ -41,6 +41,11 @@ def arm(client: int) -> int:
     return p.loadURDF("kuka_iiwa/model.urdf")
 
 
+def test_a_fraction_beyond_all_angles_is_refused() -> None:
+    with pytest.raises(p.error, match=r"interpolationFraction is 1\.7e\+308"):
+        p.getQuaternionSlerp([0.1, 0.2, 0.3, 0.9], [0.4, -0.2, 0.1, 0.7], 1.7e308)
+
+
 def test_a_motor_is_left_alone_by_arguments_that_are_refused(arm: int) -> None:
     p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, targetPosition=0.3)
     motors = _motors(arm)

@@ -14,7 +14,8 @@ import warp as wp
 import carom.layouts
 from carom.kernels.types import RealRows, Vector3, func, kernel, real
 from carom.kernels.warp_types import warp_type
-from carom.layouts.types import NUMPY_REAL, Struct
+from carom.layouts.types import Struct
+from carom.native.tables import NUMPY_REAL
 
 
 @func

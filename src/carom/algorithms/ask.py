@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from carom.layouts.types import NUMPY_REAL
+from carom.native.tables import NUMPY_REAL
 
 Ask = Callable[..., tuple[float, ...]]
 

@@ -14,10 +14,9 @@ import numpy as np
 from carom.algorithms.chain import BodyChain
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE, Search
 from carom.layouts.codes import BASE_POSITIONS
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import inverse_kinematics_kernel
 from carom.native.launch import Launch
-from carom.native.tables import ArrayTable, numbers_of
+from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

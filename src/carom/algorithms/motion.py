@@ -9,10 +9,9 @@ import numpy as np
 from carom.algorithms.ask import Ask, asking
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.moving_tree import POSE
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import motion_kernel
 from carom.native.launch import Launch
-from carom.native.tables import array_view, numbers_of
+from carom.native.tables import NUMPY_REAL, array_view, numbers_of
 
 if TYPE_CHECKING:
     from carom.algorithms.moving_tree import MovingTree

@@ -14,10 +14,9 @@ from carom.algorithms.motion import forces_of_motion
 from carom.algorithms.nodes import End, Node, body_nodes
 from carom.layouts.codes import BASE_VELOCITIES, POSITION_COUNT
 from carom.layouts.moving_tree import BASE_MOTION, Tree, TreeSizes
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import Kernel, inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
 from carom.native.launch import Launch
-from carom.native.tables import ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

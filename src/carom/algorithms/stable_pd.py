@@ -18,10 +18,9 @@ from carom.algorithms.extended_nodes import extended_nodes
 from carom.algorithms.moving_tree import MovingTree
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.moving_tree import BASE_MOTION, Control
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import stable_pd_kernel
 from carom.native.launch import Launch
-from carom.native.tables import ArrayTable, numbers_of
+from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

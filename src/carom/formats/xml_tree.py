@@ -12,7 +12,6 @@ from xml.parsers import expat
 
 from carom.errors import DescriptionError
 from carom.formats.xml_element import DOCTYPE_REFUSED, Element, TreeBuilder
-from carom.formats.xml_tolerant import read_tolerantly
 
 
 def parse_xml(data: bytes, file: Path) -> list[Element]:
@@ -42,6 +41,9 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     try:
         _run_expat(text, builder)
     except expat.ExpatError:
+        # Few files need it, and its expressions take long to compile.
+        from carom.formats.xml_tolerant import read_tolerantly
+
         builder = TreeBuilder(file)
         read_tolerantly(text, builder)
     return builder.roots

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import logging
-
 from carom.description import Joint, JointType, Link, Robot
 from carom.description.pose import Pose, Vector3
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
+from carom.logger import Logger
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
 from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
 
-_log = logging.getLogger(__name__)
+_log = Logger(__name__)
 
 
 def assemble(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from functools import reduce
 from math import sqrt
@@ -33,10 +32,11 @@ from carom.description.transform import (
     transposed,
 )
 from carom.layouts.contacts import MARGIN
+from carom.logger import Logger
 from carom.model.bounds import Bounds, placed_bounds, shape_bounds
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends, is_swept
 
-_log = logging.getLogger(__name__)
+_log = Logger(__name__)
 
 TWELFTH = 0.08333333
 """The twelfth PyBullet uses for capsules and hulls, so that figures agree to the last digit."""

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import sqrt
 
 from carom.description import Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
+from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, is_swept
 
-_log = logging.getLogger(__name__)
+_log = Logger(__name__)
 
 AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""

@@ -22,6 +22,9 @@ from carom.layouts.types import ArrayType, ArrayView, Struct, Type
 from carom.native.undo import Undo
 from carom.native.zeros import zeros
 
+NUMPY_REAL = np.float64
+"""What kernels reckon with."""
+
 _FIRST_CAPACITY = 16
 
 

@@ -12,10 +12,9 @@ import numpy as np
 from carom.description.pose import Vector3
 from carom.engine.touch_arrays import TouchArrays
 from carom.layouts.queries import Searches
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import closest_points_kernel
 from carom.native.launch import KernelStructs
-from carom.native.tables import ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.question import Question
 
 _ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")

@@ -15,11 +15,10 @@ from carom.engine.places import places_struct
 from carom.engine.touch_arrays import TouchArrays
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
-from carom.layouts.types import NUMPY_REAL
 from carom.model.bounds import Bounds, turned_box
 from carom.native.kernels import place_shapes_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
-from carom.native.tables import ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
 from carom.queries.ray_cast import Points, RayCast, RayHit

@@ -10,10 +10,9 @@ import numpy as np
 
 from carom.description.pose import Vector3
 from carom.layouts.queries import Rays
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import rays_kernel
 from carom.native.launch import KernelStructs
-from carom.native.tables import ArrayTable, numbers_of
+from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
 from carom.queries.question import Question
 
 Points = np.ndarray | Sequence[Sequence[float]]

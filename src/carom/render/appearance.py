@@ -6,7 +6,6 @@ of a shape asks here.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
@@ -17,6 +16,7 @@ from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.layouts.flags import LoadFlags
+from carom.logger import Logger
 from carom.model.body_spec import BASE, LinkSpec
 from carom.render.images import read_image
 from carom.render.lights import Light
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
-_log = logging.getLogger("carom")
+_log = Logger("carom")
 
 WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 GREY: Rgba = (0.8, 0.8, 0.8, 1.0)

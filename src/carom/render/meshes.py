@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import logging
 from dataclasses import replace
 
 import numpy as np
@@ -22,11 +21,12 @@ from carom.formats.mesh.part import cut_into_fans
 from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
+from carom.logger import Logger
 from carom.render.mesh_visuals import read_mesh_visual
 from carom.render.primitives import primitive_mesh
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
 
-_log = logging.getLogger("carom")
+_log = Logger("carom")
 
 _NOTHING = mesh_of([], [], [], [])
 _TEXTURE_SIDE = 2.0

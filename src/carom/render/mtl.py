@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -10,8 +9,9 @@ from pathlib import Path
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
+from carom.logger import Logger
 
-_log = logging.getLogger("carom")
+_log = Logger("carom")
 
 MAX_FILE_BYTES = 16 << 20
 """Largest material file that is read."""

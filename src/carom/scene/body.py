@@ -19,9 +19,9 @@ from carom.layouts.codes import (
     POSITION_COUNT,
     Activity,
 )
-from carom.layouts.types import NUMPY_REAL
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
+from carom.native.tables import NUMPY_REAL
 from carom.scene.dynamics_changes import change_dynamics, write_link
 from carom.scene.link_dynamics import LinkDynamics
 

@@ -20,10 +20,9 @@ from carom.layouts.motor_commands import (
     VELOCITY,
     MotorCommands,
 )
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import command_motors_kernel
 from carom.native.launch import Launch
-from carom.native.tables import ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable
 
 if TYPE_CHECKING:
     from carom.world.world import World

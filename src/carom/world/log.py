@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import TracebackType
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,31 +13,6 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _FIRST_ROOM = 256
-
-
-class Observer(Protocol):
-    """What `World.observers` holds: something that is told of every step."""
-
-    def before_step(self) -> None:
-        """A step is about to be made."""
-        ...
-
-    def after_step(self) -> None:
-        """It has been made."""
-        ...
-
-
-@runtime_checkable
-class SubstepObserver(Protocol):
-    """What `World.watch_substeps` takes: something that is told of every substep."""
-
-    def after_substep(self) -> None:
-        """A substep has been made, or a step that has no substeps."""
-        ...
-
-    def step_repeated(self) -> None:
-        """The step is made again from its beginning, since something did not fit into its arrays."""
-        ...
 
 
 class Log:

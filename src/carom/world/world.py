@@ -30,12 +30,13 @@ from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
 from carom.scene.joint_constraints import JointConstraints
+from carom.scene.observers import Observer, SubstepObserver
 from carom.scene.snapshot import Layout, Snapshot, layout, return_to, take
 from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
 from carom.world.loading import DescriptionLoading
-from carom.world.log import Log, Observer, SubstepObserver
+from carom.world.log import Log
 from carom.world.recordable import Recordable
 from carom.world.solver_report import solver_report
 

@@ -12,10 +12,9 @@ from carom.checks import Array, finite
 from carom.engine.engine import Engine
 from carom.engine.places import places_struct
 from carom.layouts.queries import Rays
-from carom.layouts.types import NUMPY_REAL
 from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
 from carom.native.launch import KernelStructs, Launch
-from carom.native.tables import ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable
 
 
 class RayHits(NamedTuple):

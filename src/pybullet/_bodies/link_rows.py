@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -13,8 +10,7 @@ if TYPE_CHECKING:
 Place = tuple[int, int]
 
 
-def places(world: World, rows: np.ndarray | Sequence[int]) -> list[Place | None]:
-    """Body and link, -1 for the base, that each row of link arrays stands for; None for negative rows."""
+def places(world: World, rows: list[int]) -> list[Place | None]:
+    """Body and link, -1 for the base, that rows of link arrays stand for; None for negative rows."""
     table = world.link_places
-    numbers = rows if isinstance(rows, list) else np.asarray(rows).tolist()
-    return [table[row] if row >= 0 else None for row in numbers]
+    return [table[row] if row >= 0 else None for row in rows]

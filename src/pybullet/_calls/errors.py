@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import logging
 from functools import cache
 from typing import NoReturn
 
-logger = logging.getLogger("pybullet")
+from carom.logger import Logger
 
 
 class error(Exception):
@@ -23,6 +22,9 @@ error.__module__ = "pybullet"
 def fail(text: str, particulars: str = "") -> NoReturn:
     """Raises `error` with PyBullet's text first and the particulars after it."""
     raise error(f"{text} {particulars}" if particulars else text)
+
+
+logger = Logger("pybullet")
 
 
 @cache

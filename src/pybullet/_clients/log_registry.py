@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from carom.world.log import SubstepObserver
+from carom.scene.observers import SubstepObserver
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client

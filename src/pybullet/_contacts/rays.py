@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import chain
-from struct import error as StructError
-from struct import pack
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
-from carom.description.transform import rotation_matrix
-from pybullet._calls.arguments import MAX_MAGNITUDE, integer, real, sequence, vector3
+from pybullet._calls.arguments import integer, real, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import MAX_RAY_INTERSECTION_BATCH_SIZE
 from pybullet._calls.errors import fail
@@ -112,8 +106,10 @@ def rayTestBatch(
     client = client_of(physicsClientId)
     if rayFromPositions is None or rayToPositions is None:
         fail(_NO_POSITIONS)
-    starts = _points(rayFromPositions, "rayFromPositions")
-    ends = _points(rayToPositions, "rayToPositions")
+    from pybullet._contacts.ray_points import in_world, ray_points
+
+    starts = ray_points(rayFromPositions, _BAD_ITEM, "rayFromPositions")
+    ends = ray_points(rayToPositions, _BAD_ITEM, "rayToPositions")
     if len(starts) != len(ends):
         fail(_UNEQUAL, f"They are {len(starts)} and {len(ends)}.")
     if len(starts) > MAX_RAY_INTERSECTION_BATCH_SIZE:
@@ -130,35 +126,12 @@ def rayTestBatch(
         integer(parentLinkIndex, "parentLinkIndex"),
     )
     if frame is not None:
-        rotation = np.array(rotation_matrix(frame.orientation))
-        starts = starts @ rotation.T + frame.position
-        ends = ends @ rotation.T + frame.position
+        starts, ends = in_world(starts, frame), in_world(ends, frame)
     hits = client.world.queries().cast_rays(
         starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
     )
     client.window.show_rays(starts, ends, hits)
     return hits
-
-
-def _points(values: Any, name: str) -> np.ndarray:
-    """Points as rows; arrays of numbers are taken as they are."""
-    items = values if isinstance(values, np.ndarray) else sequence(values, _BAD_ITEM, name)
-    if isinstance(items, np.ndarray) and not items.ndim:
-        fail(_BAD_ITEM, f"{name} is {values!r}.")
-    try:
-        if not isinstance(items, np.ndarray) and set(map(len, items)) == {3}:
-            # Four times as fast as to let NumPy find out how deep the lists are.
-            points = np.frombuffer(pack(f"{3 * len(items)}d", *chain.from_iterable(items))).reshape(-1, 3)
-        else:
-            points = np.asarray(items, dtype=float).reshape(len(items), -1)
-    except (TypeError, ValueError, StructError):
-        points = np.empty((len(items), 0))
-    if len(items) and (points.shape[1] != 3 or not np.isfinite(points).all()):
-        each = [vector3(item, _BAD_ITEM, f"{name}[{number}]") for number, item in enumerate(items)]
-        return np.array(each)
-    if len(items) and np.abs(points).max() > MAX_MAGNITUDE:
-        fail(_BAD_ITEM, f"{name} holds a number greater than {MAX_MAGNITUDE:g}.")
-    return points
 
 
 def _frame_of(client: Client, body_id: int, link: int) -> Pose | None:

@@ -18,7 +18,7 @@ from carom.description.transform import (
     transposed,
     turns_about_axes,
 )
-from pybullet._calls.arguments import Vector, real, rotation, vector3, vector4
+from pybullet._calls.arguments import Vector, quantity, real, rotation, vector3, vector4
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
 from pybullet._maths.rotations import canonical, turned, unit
@@ -331,7 +331,7 @@ def getQuaternionSlerp(
     """
     a = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     b = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
-    fraction = real(interpolationFraction, "interpolationFraction")
+    fraction = quantity(interpolationFraction, "interpolationFraction")
     cosine = _dot4(a, b) / sqrt(_dot4(a, a) * _dot4(b, b))
     if abs(cosine) >= 1.0:
         return a

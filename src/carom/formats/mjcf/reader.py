@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from pathlib import Path
 
 from carom.formats.files import read_bounded
@@ -16,8 +15,9 @@ from carom.formats.robot.includes import Includes
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import MAX_ELEMENTS, Element
 from carom.formats.xml_tree import parse_root
+from carom.logger import Logger
 
-_log = logging.getLogger(__name__)
+_log = Logger(__name__)
 
 _ROOTS = ("mujoco", "mujocoinclude")
 _READ = ("compiler", "default", "asset", "worldbody", "body")

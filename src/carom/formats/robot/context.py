@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import re
 from math import isfinite
 from pathlib import Path
@@ -13,8 +12,9 @@ from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
+from carom.logger import Logger
 
-_log = logging.getLogger(__name__)
+_log = Logger(__name__)
 _LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _LEADING_BITS = re.compile(r"[+-]?0[xX][0-9a-fA-F]+|" + _LEADING_NUMBER.pattern)
 _LEAST_BITS = -(1 << 31)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import logging
 from pathlib import Path
 
 from carom.errors import DescriptionError
 from carom.formats.robot.context import MAX_MAGNITUDE, FileContext
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import advice
+from carom.logger import Logger
 
-_log = logging.getLogger(__name__)
+_log = Logger(__name__)
 
 MAX_FILE_BYTES = 16 << 20
 """Largest robot file that is read."""

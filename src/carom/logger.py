@@ -1,0 +1,40 @@
+"""Loggers made when they are first used: importing `logging` takes as long as ten modules of ours."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import logging
+
+
+class Logger:
+    """A logger of the module `logging`, by its name.
+
+    Args:
+        name: The logger's name.
+    """
+
+    __slots__ = ("_name",)
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def info(self, message: str, *values: object) -> None:
+        """As `logging.Logger.info`; nobody listens if `logging` has not been imported."""
+        if "logging" in sys.modules:
+            self._logger().info(message, *values, stacklevel=2)
+
+    def warning(self, message: str, *values: object) -> None:
+        """As `logging.Logger.warning`."""
+        self._logger().warning(message, *values, stacklevel=2)
+
+    def exception(self, message: str, *values: object) -> None:
+        """As `logging.Logger.exception`."""
+        self._logger().exception(message, *values, stacklevel=2)
+
+    def _logger(self) -> logging.Logger:
+        from logging import getLogger
+
+        return getLogger(self._name)

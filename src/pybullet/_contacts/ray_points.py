@@ -1,0 +1,41 @@
+"""The points of many rays as arrays."""
+
+from __future__ import annotations
+
+from itertools import chain
+from struct import error as StructError
+from struct import pack
+from typing import Any
+
+import numpy as np
+
+from carom.description.pose import Pose
+from carom.description.transform import rotation_matrix
+from pybullet._calls.arguments import MAX_MAGNITUDE, sequence, vector3
+from pybullet._calls.errors import fail
+
+
+def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
+    """Points as rows; arrays of numbers are taken as they are."""
+    items = values if isinstance(values, np.ndarray) else sequence(values, problem, name)
+    if isinstance(items, np.ndarray) and not items.ndim:
+        fail(problem, f"{name} is {values!r}.")
+    try:
+        if not isinstance(items, np.ndarray) and set(map(len, items)) == {3}:
+            # Four times as fast as to let NumPy find out how deep the lists are.
+            points = np.frombuffer(pack(f"{3 * len(items)}d", *chain.from_iterable(items))).reshape(-1, 3)
+        else:
+            points = np.asarray(items, dtype=float).reshape(len(items), -1)
+    except (TypeError, ValueError, StructError):
+        points = np.empty((len(items), 0))
+    if len(items) and (points.shape[1] != 3 or not np.isfinite(points).all()):
+        each = [vector3(item, problem, f"{name}[{number}]") for number, item in enumerate(items)]
+        return np.array(each)
+    if len(items) and np.abs(points).max() > MAX_MAGNITUDE:
+        fail(problem, f"{name} holds a number greater than {MAX_MAGNITUDE:g}.")
+    return points
+
+
+def in_world(points: np.ndarray, frame: Pose) -> np.ndarray:
+    """Points that are given in a frame, in world axes; shape (count, 3) both."""
+    return points @ np.array(rotation_matrix(frame.orientation)).T + frame.position
