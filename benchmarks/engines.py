@@ -77,9 +77,25 @@ class Engine:
             yield Worker(self.name, process)
             process.communicate()
 
-    def time_first_step(self) -> tuple[float, float]:
-        """Seconds of `import pybullet`, and from the start of a process to its first finished step."""
-        return self._first_step(self._environment())
+    def time_start(self, thing: str) -> float:
+        """Seconds from the start of a process until it has done one of the things in start.py."""
+        command = [str(self.interpreter), str(HERE / "start.py"), thing]
+        start = time.perf_counter()
+        with subprocess.Popen(
+            command,
+            env=self._environment(),
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        ) as process:
+            assert process.stdout is not None
+            for line in process.stdout:
+                if line == "done\n":
+                    finished = time.perf_counter() - start
+                    process.stdout.read()
+                    return finished
+        raise RuntimeError(f"{self.name} did not get to {thing}")
 
     def time_cold_build(self) -> float:
         """Seconds that building all kernels into an empty cache takes."""
@@ -97,22 +113,10 @@ class Engine:
             )
             return time.perf_counter() - start
 
-    def _first_step(self, environment: dict[str, str]) -> tuple[float, float]:
-        command = [str(self.interpreter), str(HERE / "first_step.py")]
-        start = time.perf_counter()
-        with subprocess.Popen(
-            command, env=environment, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        ) as process:
-            assert process.stdout is not None
-            for line in process.stdout:
-                if line.startswith("import "):
-                    finished = time.perf_counter() - start
-                    process.stdout.read()
-                    return float(line.split()[1]), finished
-        raise RuntimeError(f"{self.name} did not finish its first step")
-
     def _environment(self) -> dict[str, str]:
-        inherited = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        # Users' processes find the bytecode of the modules they import.
+        left_out = ("PYTHONPATH", "PYTHONDONTWRITEBYTECODE")
+        inherited = {name: value for name, value in os.environ.items() if name not in left_out}
         return inherited | self.environment
 
 

@@ -18,7 +18,7 @@ from collections import defaultdict
 from contextlib import ExitStack
 from pathlib import Path
 
-from cases import COLD_BUILD, FIRST_STEP, IMPORT, IN_PROCESS, Case
+from cases import COLD_BUILD, IN_PROCESS, STARTS, Case
 from engines import ROOT, Engine, original_data_directory
 
 OURS, REFERENCE = "Carom", "PyBullet"
@@ -42,11 +42,10 @@ def measure(engines: list[Engine], cases: list[str], repetitions: int, seconds: 
                     value = worker.time(key)
                     if value is not None:
                         samples[key][name].append(value)
-        for engine in engines:
-            if engine.runs_scripts and {IMPORT.key, FIRST_STEP.key} & set(cases):
-                imported, stepped = engine.time_first_step()
-                samples[IMPORT.key][engine.name].append(imported)
-                samples[FIRST_STEP.key][engine.name].append(stepped)
+        for case in STARTS:
+            for engine in engines:
+                if engine.runs_scripts and case.key in cases:
+                    samples[case.key][engine.name].append(engine.time_start(case.key))
     return {
         key: {name: statistics.median(values) for name, values in by_engine.items()}
         for key, by_engine in samples.items()
@@ -59,6 +58,9 @@ def verdict(case: Case, times: dict[str, float]) -> tuple[str, str]:
     if case.seconds is not None:
         met = None if ours is None else ours <= case.seconds
         return f"≤ {case.seconds:g} s", "" if met is None else "PASS" if met else "FAIL"
+    if case.slowdown is not None:
+        met = None if ours is None or theirs is None else ours <= case.slowdown * theirs
+        return f"≤ {case.slowdown:g}× PyBullet", "" if met is None else "PASS" if met else "FAIL"
     if case.speedup is not None:
         met = None if ours is None or theirs is None else theirs / ours >= case.speedup
         wanted = f"≥ {case.speedup:g}×"
@@ -87,7 +89,7 @@ def table(engines: list[Engine], medians: Medians) -> str:
     ratios = [name for name in names if name != OURS]
     header = ["case", *names, *(f"{name} : {OURS}" for name in ratios), "wanted", ""]
     rows = [header, ["---"] + ["---:"] * (len(header) - 2) + ["---"]]
-    for case in (*IN_PROCESS, IMPORT, FIRST_STEP, COLD_BUILD):
+    for case in (*IN_PROCESS, *STARTS, COLD_BUILD):
         times = medians.get(case.key)
         if times is None:
             continue
@@ -113,7 +115,7 @@ def put_between_marks(page: Path, figures: str, marks: tuple[str, str] = MARKS) 
 
 def main() -> None:
     """Measure and print."""
-    known = [case.key for case in (*IN_PROCESS, IMPORT, FIRST_STEP, COLD_BUILD)]
+    known = [case.key for case in (*IN_PROCESS, *STARTS, COLD_BUILD)]
     parser = argparse.ArgumentParser(description="Time Carom against PyBullet.")
     parser.add_argument("--oracle", type=Path, default=ROOT / ".oracle" / "bin" / "python")
     parser.add_argument("--mujoco", type=Path, default=ROOT / ".mujoco" / "bin" / "python")
@@ -136,7 +138,8 @@ def main() -> None:
         engines.append(Engine("MuJoCo", arguments.mujoco.absolute(), "mujoco_cases", runs_scripts=False))
     cases = [key for key in arguments.only if data or key != "load_original_panda"]
 
-    engines[0].time_first_step()
+    for case in STARTS:
+        engines[0].time_start(case.key)
     medians = measure(engines, cases, arguments.repetitions, arguments.seconds, data)
     if COLD_BUILD.key in cases and not arguments.without_cold_build:
         print("building all kernels in an empty cache", file=sys.stderr, flush=True)

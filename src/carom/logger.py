@@ -30,6 +30,10 @@ class Logger:
         """As `logging.Logger.warning`."""
         self._logger().warning(message, *values, stacklevel=2)
 
+    def log(self, level: int, message: str, *values: object) -> None:
+        """As `logging.Logger.log`."""
+        self._logger().log(level, message, *values, stacklevel=2)
+
     def exception(self, message: str, *values: object) -> None:
         """As `logging.Logger.exception`."""
         self._logger().exception(message, *values, stacklevel=2)

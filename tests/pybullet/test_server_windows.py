@@ -7,7 +7,7 @@ from tests.pybullet.test_servers import ARM, another, until
 
 import pybullet as p
 from pybullet._clients.clients import clients
-from pybullet._window.window import RecordingWindow
+from pybullet._window.recording_window import RecordingWindow
 
 
 @pytest.mark.parametrize("method", [p.GUI_SERVER, p.GRAPHICS_SERVER, p.GRAPHICS_SERVER_MAIN_THREAD])

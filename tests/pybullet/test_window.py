@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import pybullet as p
+from carom.viewer.items import DebugLine, DebugPoints, DebugText
 from pybullet._clients.clients import clients
-from pybullet._window.window import DebugLine, DebugPoints, DebugText, RecordingWindow
+from pybullet._window.recording_window import RecordingWindow
 
 
 @pytest.fixture

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
 
 
 class Threads:
@@ -26,6 +29,8 @@ class Threads:
             first()
             return
         if self._pool is None or self._process != os.getpid():
+            from concurrent.futures import ThreadPoolExecutor
+
             # The threads of a process do not come along when it forks.
             self._pool = ThreadPoolExecutor(self._count - 1, "carom-worlds")
             self._process = os.getpid()

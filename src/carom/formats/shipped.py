@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -50,5 +49,7 @@ def _near(name: Path, folder: Path, prefix: Path | None = None) -> str:
         names = [path.name for path in folder.iterdir() if path.suffix.lower() == name.suffix.lower()]
     except (OSError, ValueError):
         return ""
+    from difflib import get_close_matches
+
     found = get_close_matches(name.name, names, 1, _LIKENESS)
     return str((prefix if prefix is not None else folder) / found[0]) if found else ""

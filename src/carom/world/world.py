@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -24,8 +24,6 @@ from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
-from carom.queries.present_poses import PresentPoses
-from carom.queries.queries import Queries
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
@@ -36,9 +34,12 @@ from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
 from carom.world.loading import DescriptionLoading
-from carom.world.log import Log
 from carom.world.recordable import Recordable
-from carom.world.solver_report import solver_report
+
+if TYPE_CHECKING:
+    from carom.queries.present_poses import PresentPoses
+    from carom.queries.queries import Queries
+    from carom.world.log import Log
 
 
 @dataclass(slots=True)
@@ -308,6 +309,8 @@ class World(DescriptionLoading, Recordable, StateViews):
         unknown = [name for name in names if name not in VIEWS]
         if unknown or every < 1:
             raise ValueError(f"there is no array {unknown[0]!r}" if unknown else f"every is {every}")
+        from carom.world.log import Log
+
         return Log(self, names, every)
 
     # Parameters
@@ -504,6 +507,8 @@ class World(DescriptionLoading, Recordable, StateViews):
     def queries(self) -> Queries:
         """Rays, nearest points and overlaps for the present coordinates."""
         if self._derived.queries is None:
+            from carom.queries.queries import Queries
+
             self._derived.queries = Queries(
                 self._kernel_structs(),
                 self.position_memory,
@@ -531,6 +536,8 @@ class World(DescriptionLoading, Recordable, StateViews):
             Dictionaries with `islandId`, `numBodies` (links), `numIterationsUsed` and
             `remainingResidual` (greatest squared change of a row's velocity in the last sweep).
         """
+        from carom.world.solver_report import solver_report
+
         return solver_report(self)
 
     # Poses
@@ -538,6 +545,8 @@ class World(DescriptionLoading, Recordable, StateViews):
     def present_poses(self) -> PresentPoses:
         """A context in which `link_pose` is up to date with the coordinates of all bodies."""
         if self._derived.present_poses is None:
+            from carom.queries.present_poses import PresentPoses
+
             poses = self.arrays.state.bytes_of("link_pose")
             self._derived.present_poses = PresentPoses(poses, self._kernel_structs())
         return self._derived.present_poses

@@ -10,7 +10,6 @@ from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
 from pybullet._calls.optional_vectors import optional_vector3
 from pybullet._clients.clients import client_of
-from pybullet._window.window import DebugLine, DebugPoints, DebugText
 
 __all__ = [
     "addUserDebugLine",
@@ -59,6 +58,8 @@ def addUserDebugLine(
     Examples:
         >>> line = p.addUserDebugLine([0, 0, 0], [1, 0, 0], lineColorRGB=[1, 0, 0], lineWidth=3)
     """
+    from carom.viewer.items import DebugLine
+
     client = client_of(physicsClientId)
     line = DebugLine(
         start=vector3(lineFromXYZ, "Error converting lineFrom[3]", "lineFromXYZ"),
@@ -109,6 +110,8 @@ def addUserDebugText(
     Examples:
         >>> label = p.addUserDebugText("goal", [0, 0, 1], textColorRGB=[1, 0, 0])
     """
+    from carom.viewer.items import DebugText
+
     client = client_of(physicsClientId)
     orientation = None
     if textOrientation is not None:
@@ -159,6 +162,8 @@ def addUserDebugPoints(
     Examples:
         >>> points = p.addUserDebugPoints([[0, 0, 1], [0, 1, 1]], [[1, 0, 0], [0, 1, 0]], pointSize=5)
     """
+    from carom.viewer.items import DebugPoints
+
     client = client_of(physicsClientId)
     positions = _vectors(pointPositions, "pointPositions")
     colours = _vectors(pointColorsRGB, "pointColorsRGB")

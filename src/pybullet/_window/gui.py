@@ -10,7 +10,6 @@ from pybullet._calls.constants import COV_ENABLE_SINGLE_STEP_RENDERING
 from pybullet._calls.errors import fail
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
 from pybullet._clients.clients import client_of
-from pybullet._window.window import Slider, VisualizerOptions
 
 __all__ = [
     "addUserDebugParameter",
@@ -52,6 +51,8 @@ def addUserDebugParameter(
     Examples:
         >>> slider = p.addUserDebugParameter("speed", 0, 2, 1)
     """
+    from carom.viewer.items import Slider
+
     slider = Slider(
         text(paramName, "paramName"),
         real(rangeMin, "rangeMin"),
@@ -176,6 +177,8 @@ def configureDebugVisualizer(
     Examples:
         >>> p.configureDebugVisualizer(p.COV_ENABLE_SHADOWS, 0)
     """
+    from pybullet._window.options import VisualizerOptions
+
     client = client_of(physicsClientId)
     number, on = integer(flag, "flag"), integer(enable, "enable")
     options = VisualizerOptions(flags={number: on != 0} if number >= 0 else {})

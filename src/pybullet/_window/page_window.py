@@ -12,8 +12,10 @@ from threading import main_thread
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
+from carom.viewer.items import DebugItem, Slider
 from pybullet._calls.errors import fail
-from pybullet._window.window import DebugCamera, DebugItem, RecordingWindow, Slider, VisualizerOptions
+from pybullet._window.options import DebugCamera, VisualizerOptions
+from pybullet._window.recording_window import RecordingWindow
 
 if TYPE_CHECKING:
     import numpy as np
