@@ -26,7 +26,7 @@ def test_a_profiled_world_moves_as_any_other(substeps: int, touching: bool) -> N
     other.step(40)
     assert profiled.time == pytest.approx(40 / 240)
     np.testing.assert_allclose(profiled.position, other.position, rtol=0, atol=1e-12)
-    assert profiled.touch.contact_count == other.touch.contact_count
+    assert profiled.contact_arrays.contact_count == other.contact_arrays.contact_count
 
 
 def test_every_stage_is_named_and_takes_its_time() -> None:

@@ -61,7 +61,7 @@ def machines() -> World:
     world.tie(UserConstraintKind.FIXED, third, -1, None, -1, child_frame=Pose((0.3, 0.4, 0.5)))
     world.tie(UserConstraintKind.FIXED, second, -1, third, -1).enabled = False
     world.remove(4)
-    world.touch.shapes.filters.set(second.first_link, third.first_link, enabled=False)
+    world.contact_arrays.shapes.filters.set(second.first_link, third.first_link, enabled=False)
     world.user_data.add(1, -1, -1, "owner", "nobody")
     return world
 

@@ -15,7 +15,7 @@ from tests.servers import environment
 
 import pybullet as p
 from carom.cli.command_line import main
-from carom.remote.meeting import find
+from carom.remote.rendezvous import find
 from pybullet._connections.server_options import KEY_VARIABLE
 
 ARM = str(Path(__file__).parent / "pybullet" / "robots" / "arm.urdf")

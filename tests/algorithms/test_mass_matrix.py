@@ -67,9 +67,9 @@ def test_a_double_pendulum():
     m, length, bend = 2.0, 1.0, 0.7
     own = m * length**2 / 12.0
     elbow = own + m * length**2 / 4.0
-    coupling = elbow + m * length * (length / 2.0) * math.cos(bend)
+    row = elbow + m * length * (length / 2.0) * math.cos(bend)
     shoulder = elbow + own + m * length**2 / 4.0 + m * length**2 + m * length**2 * math.cos(bend)
-    expected = [[shoulder, coupling], [coupling, elbow]]
+    expected = [[shoulder, row], [row, elbow]]
     assert_allclose(mass_matrix(body, [0.3, bend]), expected, rtol=1e-14)
 
 

@@ -225,7 +225,7 @@ class Scene:
         """What became of the last collision detection: columns of `carom.layouts.status`."""
         return self.numpy("state")["status_entry"][0]
 
-    def closest(self, pairs: Sequence[tuple[int, int]], reach: float = 1e6) -> np.ndarray:
+    def closest(self, pairs: Sequence[tuple[int, int]], max_distance: float = 1e6) -> np.ndarray:
         """Nearest points: (n, 8) point on b, normal on b, distance, 1 if within reach."""
         structs = self.structs()
         Launch(
@@ -239,7 +239,7 @@ class Scene:
         Launch(
             closest_points_kernel,
             1,
-            [structs["shapes"], structs["pairs"], table.struct(), count, NUMPY_REAL(reach)],
+            [structs["shapes"], structs["pairs"], table.struct(), count, NUMPY_REAL(max_distance)],
         )()
         found = table.numpy["search_count"][0, 0]
         nearest = np.zeros((count, 8))

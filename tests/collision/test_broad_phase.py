@@ -12,13 +12,13 @@ from carom.layouts.flags import LoadFlags
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 
-def brute_force_pairs(scene: Scene, count: int, reach: float) -> list[tuple[int, int]]:
+def brute_force_pairs(scene: Scene, count: int, max_distance: float) -> list[tuple[int, int]]:
     arrays = scene.numpy("pairs")
     lower, upper = arrays["shape_lower"][0], arrays["shape_upper"][0]
     return [
         (a, b)
         for a, b in itertools.combinations(range(count), 2)
-        if (lower[a] <= upper[b] + reach).all() and (lower[b] <= upper[a] + reach).all()
+        if (lower[a] <= upper[b] + max_distance).all() and (lower[b] <= upper[a] + max_distance).all()
     ]
 
 

@@ -41,6 +41,6 @@ def test_bodies_can_touch_unless_all_of_them_are_scenery(
         if filtered and len(solid) > 1:
             p.setCollisionFilterPair(solid[0], solid[-1], -1, -1, 1)
         several = len(solid) > 1 and ("loose" in kinds or filtered)
-        assert client_of(client).world.engine.can_touch == (several or "folding" in kinds)
+        assert client_of(client).world.engine.can_collide == (several or "folding" in kinds)
     finally:
         p.disconnect(client)

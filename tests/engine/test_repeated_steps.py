@@ -33,7 +33,11 @@ def drop_balls(world: World) -> None:
 def assert_same_state(ours: World, theirs: World) -> None:
     for table, other, rows in (
         (ours.arrays.state, theirs.arrays.state, ours.arrays.used),
-        (ours.touch.contacts, theirs.touch.contacts, {"contact": ours.touch.contact_count}),
+        (
+            ours.contact_arrays.contacts,
+            theirs.contact_arrays.contacts,
+            {"contact": ours.contact_arrays.contact_count},
+        ),
     ):
         for name, array in table.numpy.items():
             axis = name.partition("_")[0]
@@ -49,9 +53,9 @@ def test_a_world_without_room_is_the_same_as_a_roomy_one(substeps: int, settling
     small.step(settling)
     drop_balls(small)
     roomy = small.copy()
-    roomy.touch.contacts.reserve({"contact": 1000})
+    roomy.contact_arrays.contacts.reserve({"contact": 1000})
     roomy.engine.workspace.pairs.reserve({"pair": 1000})
-    roomy.engine.workspace.couplings.reserve({"coupling": 5000, "jacobian": 10000, "run": 5000})
+    roomy.engine.workspace.pair_rows.reserve({"row": 5000, "jacobian": 10000, "run": 5000})
     roomy.scene_changed()
     growths = small.engine.growths
     for _ in range(40):

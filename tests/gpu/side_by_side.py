@@ -8,8 +8,8 @@ import numpy as np
 from tests.gpu.native_device import NativeDevice
 
 from carom import World
+from carom.engine.can_collide import can_sleep
 from carom.engine.program import Plan
-from carom.engine.prospects import can_sleep
 from carom.engine.workspace import Workspace
 from carom.gpu.parallel_step import Extent, ParallelStep
 from carom.native.tables import ArrayTable
@@ -30,14 +30,14 @@ class SideBySide:
             world.prepare()
         first = worlds[0]
         arrays = first.arrays.repeated(len(worlds))
-        touch = first.touch.repeated(arrays)
-        touch.contacts.reserve({"contact": contacts})
-        touch.reserve()
-        self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": touch.contacts}
+        contact_arrays = first.contact_arrays.repeated(arrays)
+        contact_arrays.contacts.reserve({"contact": contacts})
+        contact_arrays.reserve()
+        self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": contact_arrays.contacts}
         self._parameters: dict[str, ArrayTable] = {
             "model": arrays.model,
-            "shapes": touch.shapes.table,
-            "users": touch.users,
+            "shapes": contact_arrays.shapes.table,
+            "users": contact_arrays.users,
         }
         for table in self._parameters.values():
             for name in [name for name in table.numpy if table.is_per_world(name)]:
@@ -46,23 +46,23 @@ class SideBySide:
             for ours, theirs in (*self._beside(world), *self._parameters_beside(world)):
                 ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
         workspace = Workspace(len(worlds))
-        workspace.fit(arrays, touch)
+        workspace.fit(arrays, contact_arrays)
         workspace.pairs.reserve({"pair": 256})
-        workspace.couplings.reserve({"coupling": rows, "jacobian": 8 * rows, "run": 8 * rows})
+        workspace.pair_rows.reserve({"row": rows, "jacobian": 8 * rows, "run": 8 * rows})
         shared = {
             "settings": first.engine.structs()["settings"],
             **arrays.structs(),
-            **touch.structs(),
+            **contact_arrays.structs(),
         }
-        touching, sleeping = first.engine.can_touch, can_sleep(first.arrays)
-        self.coupled = touching or sleeping or touch.user_count > 0
+        touching, sleeping = first.engine.can_collide, can_sleep(first.arrays)
+        self.coupled = touching or sleeping or contact_arrays.user_count > 0
         self.step = ParallelStep(
             workspace.bind(shared),
             Extent(
                 len(worlds),
                 arrays.used["tree"],
-                touch.shapes.shape_count,
-                touch.contacts.capacity["contact"],
+                contact_arrays.shapes.shape_count,
+                contact_arrays.contacts.capacity["contact"],
                 workspace.pairs.capacity["pair"],
             ),
             max(1, first.parameters.substeps),
@@ -72,7 +72,7 @@ class SideBySide:
 
     def differences(self, number: int, world: World) -> list[str]:
         """Names of the arrays of which a bit differs between one of these worlds and a lone one."""
-        contacts = world.touch.contact_count
+        contacts = world.contact_arrays.contact_count
         found = []
         for name, (ours, theirs) in zip(self._names, self._beside(world), strict=True):
             if name == "status_entry":
@@ -85,8 +85,8 @@ class SideBySide:
     def _parameters_beside(self, world: World) -> list[tuple[np.ndarray, np.ndarray]]:
         lone = {
             "model": world.arrays.model,
-            "shapes": world.touch.shapes.table,
-            "users": world.touch.users,
+            "shapes": world.contact_arrays.shapes.table,
+            "users": world.contact_arrays.users,
         }
         return [
             (values, lone[name].numpy[field])
@@ -100,7 +100,7 @@ class SideBySide:
         return [name for table in self.tables.values() for name in table.numpy]
 
     def _beside(self, world: World) -> list[tuple[np.ndarray, np.ndarray]]:
-        lone = {"state": world.arrays.state, "contacts": world.touch.contacts}
+        lone = {"state": world.arrays.state, "contacts": world.contact_arrays.contacts}
         return [
             (values, lone[name].numpy[field])
             for name, table in self.tables.items()

@@ -12,7 +12,7 @@ SPILLS = {
     "pair_candidates_kernel": 12_000,
     "island_contacts_kernel": 11_000,
     "restless_sweeps_kernel": 1_500,
-    "calm_sweeps_kernel": 200,
+    "resting_sweeps_kernel": 200,
     "closest_points_kernel": 5_000,
     "rays_kernel": 1_600,
 }

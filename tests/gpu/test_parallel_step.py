@@ -30,7 +30,7 @@ def test_worlds_side_by_side_are_each_what_they_are_alone(build: str, steps: int
                 world.step()
         for number, world in enumerate(alone):
             assert worlds.differences(number, world) == []
-            assert world.touch.contact_count >= touches
+            assert world.contact_arrays.contact_count >= touches
         assert np.abs(alone[0].position - start).max() > 1e-4
         assert not np.array_equal(alone[0].position, alone[1].position)
 
@@ -82,7 +82,7 @@ def test_contacts_that_do_not_fit_are_counted_and_those_there_were_are_put_back(
                 world.step()
             if status[:, STATUS].any():
                 break
-        wanted = np.array([world.touch.contact_count for world in alone])
+        wanted = np.array([world.contact_arrays.contact_count for world in alone])
         short = status[:, STATUS] == OVERFLOW
         np.testing.assert_array_equal(short, wanted > room)
         assert short.any()

@@ -116,9 +116,10 @@ def look() -> dict[str, Any]:
             for number, datum in world.user_data._by_id.items()
         ],
         "free texts": world.user_data._free,
-        "rules": world.touch.shapes.filters.all,
+        "rules": world.contact_arrays.shapes.filters.all,
         "shapes of bodies": [
-            (link, body.rows, body.first, body.count) for link, body in world.touch.shapes._bodies.items()
+            (link, body.rows, body.first, body.count)
+            for link, body in world.contact_arrays.shapes._bodies.items()
         ],
         "parameters": p.getPhysicsEngineParameters(),
         "collision shapes": list(client.shapes.collisions._shapes),
@@ -135,8 +136,10 @@ def look() -> dict[str, Any]:
     used = {axis: count for axis, count in world.arrays.used.items() if axis not in ("constraint", "row")}
     seen |= _rows("model", world.arrays.model, used)
     seen |= _rows("state", world.arrays.state, used)
-    seen |= _rows("shapes", world.touch.shapes.table, world.touch.shapes.used)
-    seen |= _rows("contacts", world.touch.contacts, {"count": 1, "contact": world.touch.contact_count})
+    seen |= _rows("shapes", world.contact_arrays.shapes.table, world.contact_arrays.shapes.used)
+    seen |= _rows(
+        "contacts", world.contact_arrays.contacts, {"count": 1, "contact": world.contact_arrays.contact_count}
+    )
     return seen
 
 

@@ -41,7 +41,7 @@ class Element:
     subspace: Matrix = field(default_factory=lambda: np.zeros((6, 0)))
     centripetal: np.ndarray = field(default_factory=lambda: np.zeros(6))
     drive: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    coupling: Matrix = field(default_factory=lambda: np.zeros((6, 0)))
+    row: Matrix = field(default_factory=lambda: np.zeros((6, 0)))
     acceleration: np.ndarray = field(default_factory=lambda: np.zeros(6))
 
 
@@ -186,10 +186,10 @@ def inward_inertias(elements: list[Element]) -> None:
     """Second pass: articulated-body inertias and bias forces, from the tips to the base."""
     for element in reversed(elements[1:]):
         subspace = element.subspace
-        element.coupling = element.inertia @ subspace
+        element.row = element.inertia @ subspace
         element.drive = element.drive - subspace.T @ element.bias
-        share = element.coupling @ np.linalg.inv(subspace.T @ element.coupling)
-        apparent = element.inertia - share @ element.coupling.T
+        share = element.row @ np.linalg.inv(subspace.T @ element.row)
+        apparent = element.inertia - share @ element.row.T
         bias = element.bias + apparent @ element.centripetal + share @ element.drive
         parent = elements[element.parent]
         parent.inertia = parent.inertia + element.to_link.T @ apparent @ element.to_link
@@ -201,8 +201,8 @@ def outward_accelerations(elements: list[Element]) -> np.ndarray:
     rates = [np.zeros(0)]
     for element in elements[1:]:
         carried = element.to_link @ elements[element.parent].acceleration + element.centripetal
-        pivot = element.subspace.T @ element.coupling
-        rates.append(np.linalg.solve(pivot, element.drive - element.coupling.T @ carried))
+        pivot = element.subspace.T @ element.row
+        rates.append(np.linalg.solve(pivot, element.drive - element.row.T @ carried))
         element.acceleration = carried + element.subspace @ rates[-1]
     return np.concatenate(rates)
 

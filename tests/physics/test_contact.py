@@ -56,7 +56,7 @@ def test_the_contacts_of_a_box_at_rest_bear_its_weight() -> None:
     add_floor(world)
     add_box(world, (0.0, 0.0, HALF + 0.01))
     world.step(480)
-    assert world.touch.contact_count == 4
+    assert world.contact_arrays.contact_count == 4
     total = impulses(world).sum(axis=0) / DEFAULT_TIME_STEP
     assert total[0] == pytest.approx(WEIGHT, rel=1e-3)
 
@@ -221,10 +221,10 @@ def test_contacts_vanish_when_bodies_part() -> None:
     add_floor(world)
     box = add_box(world, (0.0, 0.0, HALF))
     world.step(20)
-    assert world.touch.contact_count == 4
+    assert world.contact_arrays.contact_count == 4
     box.set_base_pose((0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0))
     world.step()
-    assert world.touch.contact_count == 0
+    assert world.contact_arrays.contact_count == 0
 
 
 def test_a_removed_body_no_longer_bears_others() -> None:
@@ -233,10 +233,10 @@ def test_a_removed_body_no_longer_bears_others() -> None:
     lower, upper = add_box(world, (0.0, 0.0, HALF)), add_box(world, (0.0, 0.0, 3 * HALF))
     world.step(60)
     world.remove(lower.id)
-    assert world.touch.contact_count == 0
+    assert world.contact_arrays.contact_count == 0
     world.step(480)
     np.testing.assert_allclose(place(upper), (0.0, 0.0, HALF), atol=1e-3)
-    assert world.touch.contact_count == 4
+    assert world.contact_arrays.contact_count == 4
 
 
 def test_two_bodies_that_do_not_touch_a_third_move_as_if_alone() -> None:

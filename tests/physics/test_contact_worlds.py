@@ -28,7 +28,7 @@ def test_two_runs_give_the_same_bits() -> None:
     for world in (first, second):
         heap(world, 20)
         world.step(240)
-    assert first.touch.contact_count > 40
+    assert first.contact_arrays.contact_count > 40
     np.testing.assert_array_equal(first.position, second.position)
     np.testing.assert_array_equal(first.velocity, second.velocity)
     np.testing.assert_array_equal(impulses(first), impulses(second))
@@ -39,14 +39,14 @@ def test_contacts_beyond_the_room_there_was_change_nothing(substeps: int) -> Non
     small, roomy = earth(substeps=substeps), earth(substeps=substeps)
     few = heap(small)
     roomy.engine.workspace.pairs.reserve({"pair": 5000})
-    roomy.touch.contacts.reserve({"contact": 5000})
-    roomy.engine.workspace.couplings.reserve({"coupling": 20000, "jacobian": 40000})
+    roomy.contact_arrays.contacts.reserve({"contact": 5000})
+    roomy.engine.workspace.pair_rows.reserve({"row": 20000, "jacobian": 40000})
     many = heap(roomy)
-    room = small.touch.contacts.capacity["contact"]
+    room = small.contact_arrays.contacts.capacity["contact"]
     for world in (small, roomy):
         world.step(100)
-    assert small.touch.contact_count > room
-    assert small.touch.contacts.capacity["contact"] < 5000
+    assert small.contact_arrays.contact_count > room
+    assert small.contact_arrays.contacts.capacity["contact"] < 5000
     for ours, theirs in zip(few, many, strict=True):
         for values, expected in zip(coordinates(ours), coordinates(theirs), strict=True):
             np.testing.assert_array_equal(values, expected)
@@ -62,9 +62,9 @@ def test_a_body_elsewhere_does_not_notice_that_contacts_outgrow_the_arrays() -> 
     for i in range(40):
         for j in range(5):
             add_box(world, (0.5 * i, 0.5 * j, HALF + 0.02 + drop * (1.0 + 0.02 * i)))
-    room = world.touch.contacts.capacity["contact"]
+    room = world.contact_arrays.contacts.capacity["contact"]
     world.step(steps)
-    assert world.touch.contact_count > room
+    assert world.contact_arrays.contact_count > room
     h, n = world.parameters.substep_time, steps * substeps
     assert place(faller)[2] == pytest.approx(50.0 - GRAVITY * h * h * n * (n + 1) / 2.0, abs=1e-9)
 
@@ -86,7 +86,7 @@ def test_contacts_of_a_spoiled_body_spoil_no_other() -> None:
     with pytest.raises(SimulationError):
         world.step()
     np.testing.assert_array_equal(coordinates(lower)[0], before)
-    assert world.touch.contact_count == 0
+    assert world.contact_arrays.contact_count == 0
     coordinates(upper)[1][:] = 0.0
     world.step(240)
     np.testing.assert_allclose(place(upper), (0.0, 0.0, 3 * HALF), atol=1e-3)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import pybullet as p
 from carom.remote.connection import Connection
 from carom.remote.errors import ServerGone
-from carom.remote.meeting import find
+from carom.remote.rendezvous import find
 from carom.remote.values import pack
 from pybullet._calls.detours import functions
 from pybullet._clients.clients import clients

@@ -22,7 +22,7 @@ GRID = {"numHeightfieldRows": 2, "numHeightfieldColumns": 2}
 
 
 def shapes_of(client: int) -> Any:
-    return clients[client].world.touch.shapes
+    return clients[client].world.contact_arrays.shapes
 
 
 @pytest.mark.parametrize(

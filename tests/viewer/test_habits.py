@@ -80,9 +80,9 @@ def test_a_paused_script_sees_sliders_and_escape(viewer: Viewer):
 
     with Watcher(viewer.address) as page:
         page.tell("pause", paused=True)
-        until(lambda: viewer.gate.closed)
+        until(lambda: viewer.pause_control.closed)
         thread = in_background(script)
-        until(lambda: viewer.gate.listeners)
+        until(lambda: viewer.pause_control.listeners)
         page.tell("slider", slider=gain, value=0.5)
         until(lambda: seen[-1] == 0.5)
         assert viewer.time == 0.0
@@ -97,7 +97,7 @@ def test_a_paused_script_that_asks_for_nothing_loses_no_step(viewer: Viewer):
     done: list[int] = []
     with Watcher(viewer.address) as page:
         page.tell("pause", paused=True)
-        until(lambda: viewer.gate.closed)
+        until(lambda: viewer.pause_control.closed)
         thread = in_background(lambda: done.extend(len(p.stepSimulation()) for _ in range(3)))
         page.tell("slider", slider=gain, value=0.5)
         page.tell("pause", paused=False)
@@ -108,11 +108,11 @@ def test_a_paused_script_that_asks_for_nothing_loses_no_step(viewer: Viewer):
 def test_a_pause_ends_with_the_last_page(viewer: Viewer, capsys: pytest.CaptureFixture[str]):
     with Watcher(viewer.address) as page:
         page.tell("pause", paused=True)
-        until(lambda: viewer.gate.closed)
+        until(lambda: viewer.pause_control.closed)
         assert "paused" in capsys.readouterr().out
         thread = in_background(p.stepSimulation)
     thread.join(PATIENCE)
-    assert not viewer.gate.closed
+    assert not viewer.pause_control.closed
     assert "continues" in capsys.readouterr().out
 
 
@@ -156,10 +156,10 @@ while True:
 def test_a_pause_lasts_while_a_page_is_loaded_again(viewer: Viewer):
     with Watcher(viewer.address) as page:
         page.tell("pause", paused=True)
-        until(lambda: viewer.gate.closed)
+        until(lambda: viewer.pause_control.closed)
     with Watcher(viewer.address):
         time.sleep(2.0)
-        assert viewer.gate.closed
+        assert viewer.pause_control.closed
 
 
 def test_key_d_keeps_bodies_awake(viewer: Viewer):

@@ -124,13 +124,13 @@ def test_a_mark_can_be_gone_back_to(page: Page, ball: int):
 
 def test_slow_motion(page: Page, viewer: Viewer, ball: int):
     page.page.locator("#speed").select_option("0.1")
-    wait_for(lambda: viewer.gate.speed == 0.1, page)
+    wait_for(lambda: viewer.pause_control.speed == 0.1, page)
     began = time.monotonic()
     for _ in range(24):
         p.stepSimulation()
     assert time.monotonic() - began > 0.8
     page.page.locator("#speed").select_option("")
-    wait_for(lambda: viewer.gate.speed is None, page)
+    wait_for(lambda: viewer.pause_control.speed is None, page)
     began = time.monotonic()
     for _ in range(24):
         p.stepSimulation()
@@ -189,7 +189,7 @@ def test_the_modern_viewer_pauses_and_pulls_without_a_lock_of_its_own():
     try:
         with Watcher(viewer.address) as page:
             page.tell("pause", paused=True)
-            until(lambda: viewer.gate.closed)
+            until(lambda: viewer.pause_control.closed)
             thread = threading.Thread(target=lambda: world.step(3))
             thread.start()
             time.sleep(0.3)

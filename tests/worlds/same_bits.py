@@ -42,9 +42,9 @@ def assert_same_bits(worlds: Worlds, number: int, lone: World) -> None:
     engine = worlds._engine
     used = lone.arrays.used
     compare(engine.arrays.state, number, lone.arrays.state, used)
-    count = lone.touch.contact_count
-    assert int(engine.touch.contacts.numpy["count_contacts"][number, THERE]) == count
-    compare(engine.touch.contacts, number, lone.touch.contacts, {"contact": count})
+    count = lone.contact_arrays.contact_count
+    assert int(engine.contact_arrays.contacts.numpy["count_contacts"][number, THERE]) == count
+    compare(engine.contact_arrays.contacts, number, lone.contact_arrays.contacts, {"contact": count})
 
 
 def compare(table: ArrayTable, number: int, alone: ArrayTable, rows: dict[str, int]) -> None:

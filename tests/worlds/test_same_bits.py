@@ -62,10 +62,10 @@ def falling_heap() -> World:
 def test_any_number_of_worlds_and_threads(count: int, threads: int) -> None:
     scene = falling_heap()
     worlds = stirred_worlds(scene, count, threads)
-    room = worlds._engine.touch.contacts.capacity["contact"]
+    room = worlds._engine.contact_arrays.contacts.capacity["contact"]
     for _ in range(10):
         worlds.step(6)
-    assert worlds._engine.touch.contacts.capacity["contact"] > room
+    assert worlds._engine.contact_arrays.contacts.capacity["contact"] > room
     for number in range(count):
         lone = stirred(scene, number)
         lone.step(60)
@@ -139,7 +139,7 @@ def test_what_is_left_in_the_workspace_changes_nothing() -> None:
         clean.step()
         dirty.step()
         workspace = dirty.engine.workspace
-        for table in (workspace.scratch, workspace.pairs, workspace.couplings):
+        for table in (workspace.scratch, workspace.pairs, workspace.pair_rows):
             for array in table.numpy.values():
                 array.fill(-7 if array.dtype.kind == "i" else np.nan)
     np.testing.assert_array_equal(clean.position, dirty.position)

@@ -25,21 +25,21 @@ def test_links_that_touch_are_those_that_contacts_name():
     heights = np.array([0.5, 5.0, 0.6])
     worlds[robot].base_poses[:, 2] = heights
     worlds.step(60)
-    touching = worlds.links_touching(robot, floor)
+    touching = worlds.links_in_contact(robot, floor)
     links = range(-1, len(worlds[robot].link_names))
     expected = [worlds.contacts(robot, floor, link=link).number > 0 for link in links]
     assert (touching == np.array(expected).T).all()
     assert touching[0].sum() >= 2
     assert not touching[1].any()
     # Of the floor it is the base, the only link there is.
-    assert (worlds.links_touching(floor, robot)[:, 0] == touching.any(axis=1)).all()
-    assert (worlds.links_touching(robot, floor, -1) == touching).all()
+    assert (worlds.links_in_contact(floor, robot)[:, 0] == touching.any(axis=1)).all()
+    assert (worlds.links_in_contact(robot, floor, -1) == touching).all()
 
 
 def test_without_contacts_nothing_touches():
     world, floor, robot = scene()
     worlds = Worlds(world, 2)
-    assert not worlds.links_touching(robot, floor).any()
+    assert not worlds.links_in_contact(robot, floor).any()
 
 
 def test_only_the_worlds_asked_for_are_stepped():

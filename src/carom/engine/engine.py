@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from carom.engine.can_collide import can_collide, can_sleep
+from carom.engine.contact_arrays import ContactArrays
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.parameters import EngineParameters
 from carom.engine.program import Plan, Program, detection_program, step_program
-from carom.engine.prospects import can_sleep, can_touch
 from carom.engine.settings import EngineSettings
 from carom.engine.threads import Threads
-from carom.engine.touch_arrays import TouchArrays
 from carom.engine.workspace import Workspace
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
@@ -40,7 +40,7 @@ class Engine:
 
     Attributes:
         arrays: Model and state of all bodies.
-        touch: Shapes, contacts and user constraints.
+        contact_arrays: Shapes, contacts and user constraints.
         status: What became of the last step of each world, (worlds, columns); see `carom.layouts.status`.
         due: Substeps of each of the steps that are asked for at once.
         changes: How often launches have had to be renewed.
@@ -50,13 +50,13 @@ class Engine:
 
     Args:
         arrays: Model and state.
-        touch: Shapes, contacts and user constraints.
+        contact_arrays: Shapes, contacts and user constraints.
         threads: How many threads share the worlds.
     """
 
-    def __init__(self, arrays: WorldArrays, touch: TouchArrays, threads: int = 1) -> None:
+    def __init__(self, arrays: WorldArrays, contact_arrays: ContactArrays, threads: int = 1) -> None:
         self.arrays = arrays
-        self.touch = touch
+        self.contact_arrays = contact_arrays
         self.status: np.ndarray = arrays.state.numpy["status_entry"]
         self._first_status = memoryview(self.status[0])
         self._settings = EngineSettings()
@@ -86,9 +86,9 @@ class Engine:
         return self._workspaces[0]
 
     @property
-    def can_touch(self) -> bool:
+    def can_collide(self) -> bool:
         """Whether two shapes could ever touch."""
-        return can_touch(self.arrays, self.touch) if self._plan is None else self._plan.touching
+        return can_collide(self.arrays, self.contact_arrays) if self._plan is None else self._plan.touching
 
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or what can happen has changed."""
@@ -104,18 +104,18 @@ class Engine:
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Bring the settings that kernels get up to date, those of launches that are there as well."""
-        if self._settings.update(parameters, self.arrays, self.touch):
+        if self._settings.update(parameters, self.arrays, self.contact_arrays):
             for workspace in self._workspaces:
                 workspace.structs.changed("settings")
 
     def _bind(self, workspaces: Sequence[Workspace]) -> list[KernelStructs]:
-        self.touch.reserve()
+        self.contact_arrays.reserve()
         for workspace in workspaces:
-            workspace.fit(self.arrays, self.touch)
+            workspace.fit(self.arrays, self.contact_arrays)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
             **self.arrays.structs(),
-            **self.touch.structs(),
+            **self.contact_arrays.structs(),
         }
         return [workspace.bind(shared) for workspace in workspaces]
 
@@ -144,10 +144,10 @@ class Engine:
 
     def _find_plan(self) -> Plan:
         """What steps have to look for now."""
-        touching, sleeping = can_touch(self.arrays, self.touch), can_sleep(self.arrays)
+        touching, sleeping = can_collide(self.arrays, self.contact_arrays), can_sleep(self.arrays)
         if not touching:
-            self.touch.forget_contacts()
-        coupled = touching or sleeping or self._watched or self.touch.user_count > 0
+            self.contact_arrays.forget_contacts()
+        coupled = touching or sleeping or self._watched or self.contact_arrays.user_count > 0
         self._plan = Plan(touching, sleeping, coupled)
         return self._plan
 
@@ -213,7 +213,7 @@ class Engine:
         """Make room for what did not fit in some worlds."""
         pairs, contacts = self.status[short, PAIRS_WANTED], self.status[short, CONTACTS_WANTED]
         growth = 2.0 if self.arrays.world_count == 1 else _GROWTH_OF_MANY
-        self.touch.contacts.reserve({"contact": int(contacts.max())}, growth)
+        self.contact_arrays.contacts.reserve({"contact": int(contacts.max())}, growth)
         for workspace in self._workspaces:
             workspace.grow(int(pairs.max()), rows=bool(((pairs == 0) & (contacts == 0)).any()))
         self.growths += 1
@@ -241,7 +241,11 @@ class Engine:
             table: "model", "shapes" or "users".
             field: The field in it.
         """
-        tables = {"model": self.arrays.model, "shapes": self.touch.shapes.table, "users": self.touch.users}
+        tables = {
+            "model": self.arrays.model,
+            "shapes": self.contact_arrays.shapes.table,
+            "users": self.contact_arrays.users,
+        }
         if tables[table].spread(field, self.arrays.world_count):
             self.changed()
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.engine.contact_arrays import ContactArrays
 from carom.engine.parameters import EngineParameters
-from carom.engine.touch_arrays import TouchArrays
 from carom.layouts.model import Settings
 from carom.model.builder import WorldArrays
 
@@ -22,13 +22,15 @@ class EngineSettings:
         self._written: dict[str, Any] = {}
         self._gravity = (0.0, 0.0, 0.0)
 
-    def update(self, parameters: EngineParameters, arrays: WorldArrays, touch: TouchArrays) -> bool:
+    def update(
+        self, parameters: EngineParameters, arrays: WorldArrays, contact_arrays: ContactArrays
+    ) -> bool:
         """Bring the struct up to date, and the gravity of all worlds; true if the struct has changed."""
         if parameters.gravity != self._gravity:
             arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
             self._gravity = parameters.gravity
         changed = False
-        for name, value in _values(parameters, arrays, touch).items():
+        for name, value in _values(parameters, arrays, contact_arrays).items():
             # Writing a field of a struct takes a hundred times as long as comparing.
             if self._written.get(name) != value:
                 setattr(self.struct, name, value)
@@ -37,7 +39,9 @@ class EngineSettings:
         return changed
 
 
-def _values(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArrays) -> dict[str, Any]:
+def _values(
+    parameters: EngineParameters, arrays: WorldArrays, contact_arrays: ContactArrays
+) -> dict[str, Any]:
     substep_time = parameters.substep_time
     return {
         "time_step": substep_time,
@@ -50,7 +54,7 @@ def _values(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArray
         "feedback_in_world": parameters.joint_feedback_mode & 1,
         "feedback_in_joint": parameters.joint_feedback_mode >> 1 & 1,
         "tree_count": arrays.used["tree"],
-        "user_count": touch.user_count,
+        "user_count": contact_arrays.user_count,
         "constraint_count": arrays.used["constraint"],
         "contact_erp": parameters.contact_erp,
         "friction_erp": parameters.friction_erp,
@@ -59,8 +63,8 @@ def _values(parameters: EngineParameters, arrays: WorldArrays, touch: TouchArray
         "contact_warm_starting": parameters.contact_warm_starting,
         "restitution_threshold": parameters.restitution_velocity_threshold,
         "cone_friction": int(parameters.cone_friction),
-        "shape_count": touch.shapes.shape_count,
-        "filter_count": touch.shapes.filter_count,
-        "looks_ahead": int(touch.shapes.looks_ahead),
+        "shape_count": contact_arrays.shapes.shape_count,
+        "filter_count": contact_arrays.shapes.filter_count,
+        "looks_ahead": int(contact_arrays.shapes.looks_ahead),
         "filter_both": int(parameters.collision_filter_mode == 0),
     }

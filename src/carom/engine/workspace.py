@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
-from carom.engine.touch_arrays import TouchArrays
-from carom.layouts.contacts import COUPLING_ENTRY_VIEWS, ROWS_PER_PAIR, Couplings, Pairs
+from carom.layouts.contacts import ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
@@ -22,7 +22,7 @@ class Workspace:
     Attributes:
         scratch: Of single trees.
         pairs: Of collision detection.
-        couplings: Of the solver.
+        pair_rows: Of the solver.
         structs: Structs over these and all other arrays, by the name kernels give them.
 
     Args:
@@ -32,21 +32,21 @@ class Workspace:
     def __init__(self, world_count: int = 1) -> None:
         self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.pairs: ArrayTable = ArrayTable(Pairs, world_count)
-        self.couplings: ArrayTable = ArrayTable(Couplings, world_count, COUPLING_ENTRY_VIEWS)
+        self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
         self.structs: KernelStructs = KernelStructs()
 
-    def fit(self, arrays: WorldArrays, touch: TouchArrays) -> None:
+    def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Bring arrays that go with others to the length of those."""
-        contacts, users = touch.contacts.capacity["contact"], touch.users.capacity["user"]
+        contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
         self.scratch.reserve(arrays.used)
-        self.pairs.reserve(scratch_capacity(touch.shapes.shape_count, contacts))
-        self.couplings.reserve(
+        self.pairs.reserve(scratch_capacity(contact_arrays.shapes.shape_count, contacts))
+        self.pair_rows.reserve(
             {
                 "tree": arrays.model.capacity["tree"],
                 "contact": contacts,
                 "unit": contacts,
                 "run": contacts,
-                "patch": contacts // 2,
+                "manifold": contacts // 2,
                 "constraint": arrays.model.capacity["constraint"],
                 "visit": self.scratch.capacity["row"] + ROWS_PER_PAIR * users,
                 "user": users,
@@ -57,8 +57,8 @@ class Workspace:
         """Make room for so many pairs of shapes, and if asked for twice as many rows over two trees."""
         self.pairs.reserve({"pair": pairs})
         if rows:
-            capacity = self.couplings.capacity
-            self.couplings.reserve({axis: 2 * capacity[axis] for axis in ("coupling", "jacobian", "run")})
+            capacity = self.pair_rows.capacity
+            self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in ("row", "jacobian", "run")})
 
     def bind(self, shared: Mapping[str, Any]) -> KernelStructs:
         """Structs over the present arrays, and over those that all workspaces share."""
@@ -66,6 +66,6 @@ class Workspace:
             shared,
             scratch=self.scratch.struct(),
             pairs=self.pairs.struct(),
-            couplings=self.couplings.struct(),
+            pair_rows=self.pair_rows.struct(),
         )
         return self.structs

@@ -72,7 +72,7 @@ class ParallelStep:
     Args:
         structs: Structs over arrays on the device, by the names kernels give them: `settings`, `model`,
             `state`, `shapes`, `contacts`, `users`, and the workspace of every world: `scratch`, `pairs`,
-            `couplings`.
+            `pair_rows`.
         extent: How many of everything there are.
         substeps: Substeps of a step, at least 1.
         device: Where they run.
@@ -111,16 +111,14 @@ class ParallelStep:
         for _substep in range(substeps):
             yield from self._detection(plan)
             if plan.sleeping:
-                yield self._launch(
-                    "solver.slumber", "settle_kernel", self._worlds, touching=int(plan.touching)
-                )
+                yield self._launch("solver.sleep", "settle_kernel", self._worlds, touching=int(plan.touching))
             yield self._launch("parallel.trees", "world_islands_kernel", self._worlds)
             yield self._launch("parallel.trees", "tree_free_motion_kernel", self._trees)
             yield from self._solver()
             yield self._launch("parallel.trees", "tree_motion_kernel", self._trees)
             yield self._launch("parallel.trees", "faults_kernel", self._worlds)
             if plan.sleeping:
-                yield self._launch("solver.slumber", "watch_kernel", self._worlds)
+                yield self._launch("solver.sleep", "watch_kernel", self._worlds)
         yield self._launch("parallel.trees", "end_kernel", self._trees)
         yield self._launch("parallel.trees", "restore_kernel", self._worlds)
 
@@ -135,8 +133,8 @@ class ParallelStep:
     def _solver(self) -> Iterator[Callable[[], None]]:
         yield self._launch("parallel.joint_rows", "island_rows_kernel", self._trees)
         yield self._launch("parallel.contact_rows", "island_contacts_kernel", self._trees)
-        yield self._launch("parallel.sweeps", "calm_sweeps_kernel", self._trees)
-        # Those of islands that are calm but could not be solved so are written once more.
+        yield self._launch("parallel.sweeps", "resting_sweeps_kernel", self._trees)
+        # Those of islands at rest that could not be solved so are written once more.
         yield self._launch("parallel.contact_rows", "island_contacts_kernel", self._trees)
         yield self._launch("parallel.restless_sweeps", "restless_sweeps_kernel", self._trees)
         yield self._launch("parallel.joint_rows", "island_impulses_kernel", self._trees)

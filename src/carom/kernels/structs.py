@@ -10,10 +10,10 @@ if TYPE_CHECKING:
     from carom.layouts.contacts import (
         Contacts,
         ContactTerms,
-        Couplings,
+        ManifoldBlock,
+        ManifoldBlocks,
+        PairRows,
         Pairs,
-        Patch,
-        Patches,
         Shapes,
         TermsRows,
         UserConstraints,
@@ -35,11 +35,11 @@ else:
     Pairs = warp_type(contacts.Pairs)
     Contacts = warp_type(contacts.Contacts)
     UserConstraints = warp_type(contacts.UserConstraints)
-    Patch = warp_type(contacts.Patch)
+    ManifoldBlock = warp_type(contacts.ManifoldBlock)
     ContactTerms = warp_type(contacts.ContactTerms)
-    Patches = warp_type(contacts.Patches)
+    ManifoldBlocks = warp_type(contacts.ManifoldBlocks)
     TermsRows = warp_type(contacts.TermsRows)
-    Couplings = warp_type(contacts.Couplings)
+    PairRows = warp_type(contacts.PairRows)
     Scene = warp_type(images.Scene)
     View = warp_type(images.View)
     Lighting = warp_type(images.Lighting)

@@ -40,9 +40,9 @@ class Activity(IntEnum):
     """Whether a tree takes part in the simulation."""
 
     ACTIVE = 0
-    DROWSY = 1  # takes part, but will not as soon as nobody of its island is active
+    WANTS_SLEEP = 1  # takes part, but will not as soon as nobody of its island is active
     ASLEEP = 2
-    STIRRED = 3  # was asleep until this substep; else as DROWSY
+    WOKEN = 3  # was asleep until this substep; else as DROWSY
 
 
 class ShapeKind(IntEnum):
@@ -97,11 +97,11 @@ MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 
-# Columns of the numbers of a row over two trees (`Couplings.coupling_terms`); ROW_SHARE is the impulse
+# Columns of the numbers of a row over two trees (`PairRows.row_terms`); ROW_SHARE is the impulse
 # that would bring about the whole change of velocity if nothing else pushed.
 ROW_SHARE, ROW_EFFECTIVE_MASS, ROW_INVERSE_MASS, ROW_LOWER, ROW_UPPER, ROW_IMPULSE = 0, 1, 2, 3, 4, 5
 ROW_SOFTNESS, ROW_FRICTION = 6, 7
-# Columns of a contact's rows (`Couplings.contact_rows`); -1 where there is none.
+# Columns of a contact's rows (`PairRows.contact_rows`); -1 where there is none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
 # Columns of a contact candidate (`Pairs.candidate_terms`): point on shape b, normal on b, distance.
@@ -119,9 +119,9 @@ SPHERICAL_MOTOR = int(ConstraintKind.SPHERICAL_MOTOR)
 SPHERICAL_LIMIT = int(ConstraintKind.SPHERICAL_LIMIT)
 USER = int(ConstraintKind.USER)
 ACTIVE = int(Activity.ACTIVE)
-DROWSY = int(Activity.DROWSY)
+WANTS_SLEEP = int(Activity.WANTS_SLEEP)
 ASLEEP = int(Activity.ASLEEP)
-STIRRED = int(Activity.STIRRED)
+WOKEN = int(Activity.WOKEN)
 SPHERE = int(ShapeKind.SPHERE)
 BOX = int(ShapeKind.BOX)
 CAPSULE = int(ShapeKind.CAPSULE)

@@ -179,7 +179,7 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    # Of the last substep: normal, along directions 1 and 2; then what `calm.next_trust` says.
+    # Of the last substep: normal, along directions 1 and 2; then what `resting.next_warm_start` says.
     contact_impulse: Vector4Rows
     count_contacts: IntRows  # its column is THERE
 
@@ -207,8 +207,8 @@ class UserConstraints:
 
 
 @struct
-class Patch:
-    """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.patches`.
+class ManifoldBlock:
+    """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.manifold_blocks`.
 
     Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
     response is what an impulse does to the velocities of the dofs of a tree, one of a gain by how much it
@@ -216,7 +216,7 @@ class Patch:
     its velocity lowers these impulses.
     """
 
-    place: Index4  # as `coupling_place`
+    place: Index4  # as `row_place`
     run: Int32  # where in `run_block` the matrices of trees that are not small are, or -1
     members: Index4  # its contacts, -1 for none
     count: Int32
@@ -276,21 +276,21 @@ class ContactTerms:
 
 
 if TYPE_CHECKING:
-    Patches = Any
+    ManifoldBlocks = Any
     TermsRows = Any
 else:
-    Patches = ArrayType(Patch, 2)
+    ManifoldBlocks = ArrayType(ManifoldBlock, 2)
     TermsRows = ArrayType(ContactTerms, 2)
 
 
 @struct
-class Couplings:
+class PairRows:
     """Constraint rows over up to two trees, and the islands they join: intermediate results."""
 
-    coupling_place: Index4Rows  # first block in `delta_velocity` and number of blocks, of a and of b
-    coupling_start: IntRows  # first block of the row in `jacobian_row`: those of a, then those of b
-    coupling_terms: Vector8Rows  # see the ROW_ columns in `codes`
-    coupling_bound: IntRows  # row whose impulse bounds this one, -1 for none
+    row_place: Index4Rows  # first block in `delta_velocity` and number of blocks, of a and of b
+    row_start: IntRows  # first block of the row in `jacobian_row`: those of a, then those of b
+    row_terms: Vector8Rows  # see the ROW_ columns in `codes`
+    row_bound: IntRows  # row whose impulse bounds this one, -1 for none
     jacobian_row: Vector4Rows
     jacobian_response: Vector4Rows  # inverse mass matrix times the row
     entry_row: RealRows
@@ -298,8 +298,10 @@ class Couplings:
 
     tree_first_constraint: IntRows  # islands as linked lists that start at their root
     tree_first_contact: IntRows
-    tree_touches: IntRows  # whether it has contacts itself, and which: see `kernels.solver.calm`
-    tree_calm: IntRows  # of the root of an island: how calm that is, see `kernels.solver.calm`
+    tree_contacts: IntRows  # whether it has contacts itself, and which: see `kernels.solver.warm_starting`
+    tree_rest: (
+        IntRows  # of the root of an island: how much at rest that is, see `kernels.solver.warm_starting`
+    )
     constraint_next: IntRows
     contact_next: IntRows
     run_first: IntRows  # first contact of each manifold, in the order in which they are relaxed
@@ -307,11 +309,11 @@ class Couplings:
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )
-    unit_code: IntRows  # what an island's sweep relaxes, in order: a contact, or -1 - patch
+    unit_code: IntRows  # what an island's sweep relaxes, in order: a contact, or -1 - manifold block
 
     terms: TermsRows  # of the contacts of the manifold whose rows are being written
-    patch: Patches
-    run_block: Vector4Rows  # see `kernels.solver.long_patches`
+    manifold_block: ManifoldBlocks
+    run_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
     entry_run: RealRows
 
     user_first_row: IntRows
@@ -319,7 +321,7 @@ class Couplings:
 
 
 # Couplings that show another array's blocks entry by entry.
-COUPLING_ENTRY_VIEWS = {
+ROW_ENTRY_VIEWS = {
     "entry_row": "jacobian_row",
     "entry_response": "jacobian_response",
     "entry_run": "run_block",

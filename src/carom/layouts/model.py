@@ -176,7 +176,7 @@ class State:
     tree_iterations: IntRows
     tree_residual: RealRows
     tree_activity: IntRows  # see `codes.Activity`
-    tree_tired: IntRows  # 1: it sleeps as soon as all of its island are
+    tree_wants_sleep: IntRows  # 1: it sleeps as soon as all of its island are
     tree_idle_time: RealRows  # for how long it has hardly moved [s]
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
     status_entry: IntRows  # what became of the last step: see `layouts.status`
@@ -211,7 +211,7 @@ class TreeScratch:
     """Whether a tree slept at the start of the step."""
 
     start_activity: Int32
-    start_tired: Int32
+    start_wants_sleep: Int32
     start_idle_time: real
 
 

@@ -31,8 +31,8 @@ class IslandProgress:
 
     made: Index4  # what `solver.island_rows` returned
     units: Index4  # what `units.write_units` returned
-    calm: Int32  # 1: its contacts start from their last impulses
-    outcome: Int32  # see `calm.NOT_CALM`
+    resting: Int32  # 1: its contacts start from their last impulses
+    outcome: Int32  # see `resting.NOT_RESTING`
     stage: Int32  # see `UNWRITTEN`
     residual: real
     sweeps: Int32

@@ -15,7 +15,7 @@ KERNEL_MODULES = (
     "carom.kernels.queries.closest",
     "carom.kernels.queries.contact_report",
     "carom.kernels.queries.rays",
-    "carom.kernels.solver.slumber",
+    "carom.kernels.solver.sleeping",
     "carom.kernels.solver.stages",
 )
 # Those of steps in fine launches, for GPUs; what takes longest to compile comes first.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.description.pose import Vector3
-from carom.engine.touch_arrays import TouchArrays
+from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.queries import Searches
 from carom.native.kernels import closest_points_kernel
 from carom.native.launch import KernelStructs
@@ -47,11 +47,11 @@ class PairSearch:
 
     Args:
         structs: Warp structs by the name kernels give them.
-        touch: The arrays of shapes.
+        contact_arrays: The arrays of shapes.
     """
 
-    def __init__(self, structs: KernelStructs, touch: TouchArrays) -> None:
-        self._shapes = touch.shapes.table.numpy
+    def __init__(self, structs: KernelStructs, contact_arrays: ContactArrays) -> None:
+        self._shapes = contact_arrays.shapes.table.numpy
         self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
         self._asked: ShapePairs | None = None
         self._search = Question(
@@ -59,7 +59,7 @@ class PairSearch:
             structs,
             "searches",
             ArrayTable(Searches, 1),
-            {"reach": NUMPY_REAL(0.0)},
+            {"max_distance": NUMPY_REAL(0.0)},
         )
         self._view()
 
@@ -72,8 +72,8 @@ class PairSearch:
             known = self._remembered[first, second] = self._find_pairs(first, second)
         return known
 
-    def __call__(self, pairs: ShapePairs, reach: float) -> list[NearestPoints]:
-        """The nearest points of pairs of shapes that are no farther apart than `reach` [m]."""
+    def __call__(self, pairs: ShapePairs, max_distance: float) -> list[NearestPoints]:
+        """The nearest points of pairs of shapes that are no farther apart than `max_distance` [m]."""
         count = len(pairs.links)
         if pairs is not self._asked:
             if count > self._search.room:
@@ -82,7 +82,7 @@ class PairSearch:
             size = count * _INDEX.itemsize
             self._first[:size], self._second[:size] = pairs.first, pairs.second
             self._asked = pairs
-        self._search(count, reach)
+        self._search(count, max_distance)
         found = self._count[0]
         if not found:
             return []

@@ -11,8 +11,8 @@ import numpy as np
 
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
-from carom.engine.places import places_struct
-from carom.engine.touch_arrays import TouchArrays
+from carom.engine.contact_arrays import ContactArrays
+from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
 from carom.model.bounds import Bounds, turned_box
@@ -36,7 +36,7 @@ class Queries:
         positions: The memory of the coordinates of all bodies.
         places: Body and link that each row of the link arrays stands for.
         present_poses: `World.present_poses`.
-        touch: The arrays of shapes.
+        contact_arrays: The arrays of shapes.
         pairs: Room for the intermediate results of collision detection.
     """
 
@@ -46,21 +46,21 @@ class Queries:
         positions: memoryview[float],
         places: Sequence[tuple[int, int]],
         present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
-        touch: TouchArrays,
+        contact_arrays: ContactArrays,
         pairs: ArrayTable,
     ) -> None:
         self._structs = structs
-        structs["places"] = places_struct(places)
+        structs["places"] = row_map_struct(places)
         self._link_count = len(places)
-        self._touch = touch
+        self._touch = contact_arrays
         self._positions = positions
         self._present_poses = present_poses
-        self._all_shapes = touch.shapes
-        self._shape_count = touch.shapes.shape_count
-        self._shapes = touch.shapes.table.numpy
+        self._all_shapes = contact_arrays.shapes
+        self._shape_count = contact_arrays.shapes.shape_count
+        self._shapes = contact_arrays.shapes.table.numpy
         self._pairs = pairs.numpy
         self._counts = memoryview(pairs.numpy["count_pairs"][0])
-        self._contact_counts = memoryview(touch.contacts.numpy["count_contacts"][0])
+        self._contact_counts = memoryview(contact_arrays.contacts.numpy["count_contacts"][0])
         self._ready_for: tuple[int, bytes] | None = None
 
     @cached_property
@@ -124,13 +124,15 @@ class Queries:
         self._prepare(IN_HIERARCHY)
         return self._cast.one(start, end, mask, hit_number, separation)
 
-    def nearest(self, first: Sequence[int], second: Sequence[int], reach: float) -> list[NearestPoints]:
-        """The nearest points of all shapes of some links and of others, up to `reach` apart.
+    def nearest(
+        self, first: Sequence[int], second: Sequence[int], max_distance: float
+    ) -> list[NearestPoints]:
+        """The nearest points of all shapes of some links and of others, up to `max_distance` apart.
 
         Args:
             first: Rows of links in the world's arrays, as a range or tuple.
             second: Rows of the other links.
-            reach: Largest distance [m].
+            max_distance: Largest distance [m].
 
         Returns:
             The points, in the order of `first`, then of `second`, then of the shapes of each.
@@ -139,7 +141,7 @@ class Queries:
         if not pairs.links:
             return []
         self._prepare(PLACED)
-        return self._search(pairs, min(reach, _FAR))
+        return self._search(pairs, min(max_distance, _FAR))
 
     def contacts(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float

@@ -135,7 +135,7 @@ class Body:
             self.first_position * _NUMBER.itemsize,
             *position, x * scale, y * scale, z * scale, w * scale,
         )  # fmt: skip
-        self.world.touch.distrust_contacts()
+        self.world.contact_arrays.forget_warm_start()
         self.update_link_poses()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:

@@ -34,7 +34,7 @@ def note_additions(world: World, undo: Undo) -> None:
     """Note what takes away all bodies and constraints that are added from now on."""
     for part in (
         world.arrays,
-        world.touch.shapes,
+        world.contact_arrays.shapes,
         world.constraints,
         world.user_constraints,
         world.user_data,
@@ -74,7 +74,7 @@ def append(world: World, spec: BodySpec, pose: Pose) -> Body:
     *free_ids, body_id = world.free_ids or [world.next_id]
     body = Body(world, body_id, spec, rows)
     surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
-    world.touch.shapes.append(spec, rows, surfaces)
+    world.contact_arrays.shapes.append(spec, rows, surfaces)
     world.free_ids, world.next_id = free_ids, max(world.next_id, body_id + 1)
     world.bodies[body_id] = body
     world.constraints.add_body(body)
@@ -91,8 +91,8 @@ def remove_body(world: World, body: Body) -> None:
             world.constraints.removal(body),
             world.user_constraints.removal(body),
             world.user_data.removal(body.id),
-            world.touch.forget_contacts,
-            world.touch.shapes.removal(body.rows),
+            world.contact_arrays.forget_contacts,
+            world.contact_arrays.shapes.removal(body.rows),
             world.arrays.removal(body.rows, [other.rows for other in later]),
         )
 

@@ -40,9 +40,9 @@ def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     if surface:
         for name in surface:
             setattr(dynamics, name, changes[name])
-        looks_ahead = world.touch.shapes.looks_ahead
-        world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics, surface)
-        if looks_ahead != world.touch.shapes.looks_ahead:
+        looks_ahead = world.contact_arrays.shapes.looks_ahead
+        world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics, surface)
+        if looks_ahead != world.contact_arrays.shapes.looks_ahead:
             world.scene_changed()
         if len(surface) == len(changes):
             return
@@ -75,9 +75,9 @@ def _change_activation(body: Body, change: ActivationChange) -> None:
     model, state = body.world.arrays.model.numpy, body.world.arrays.state.numpy
     tree = body.rows.tree
     if change & ActivationChange.WAKE_UP:
-        state["tree_tired"][0, tree], state["tree_idle_time"][0, tree] = False, 0.0
+        state["tree_wants_sleep"][0, tree], state["tree_idle_time"][0, tree] = False, 0.0
     if change & ActivationChange.SLEEP:
-        state["tree_tired"][0, tree] = True
+        state["tree_wants_sleep"][0, tree] = True
     if model["tree_can_wake"][tree]:
         if change & ActivationChange.ENABLE_SLEEPING:
             model["tree_can_sleep"][tree] = True
@@ -105,7 +105,7 @@ def write_link(body: Body, link: int) -> None:
     _write(body, link)
     if link != BASE:
         _set_joint_damping(body, link, dynamics.joint_damping)
-    body.world.touch.shapes.write_surface(body.first_link + 1 + link, dynamics)
+    body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
 def _set_mass(body: Body, link: int, mass: float, inertia: Vector3 | None) -> None:
@@ -116,7 +116,7 @@ def _set_mass(body: Body, link: int, mass: float, inertia: Vector3 | None) -> No
     _write(body, link)
     if link == BASE and (mass > 0.0) == body.fixed_base:
         body.world.set_base_freedom(body, free=mass > 0.0)
-        body.world.touch.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
+        body.world.contact_arrays.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
 
 
 def shape_inertia(body: Body, link: int, mass: float) -> Vector3:

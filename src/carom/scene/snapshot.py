@@ -102,7 +102,7 @@ class Layout:
 
 def layout(world: World) -> Layout:
     """The layout of a world as it is."""
-    shape_count = world.touch.shapes.table.numpy["link_shape_count"]
+    shape_count = world.contact_arrays.shapes.table.numpy["link_shape_count"]
     bodies = []
     for body in world.bodies.values():
         rows = body.rows
@@ -123,8 +123,12 @@ def take(world: World, layout: Layout) -> Snapshot:
     if islands.size and islands.max() >= len(islands):
         # Those of the last step, since which a body has gone. The next step makes others.
         islands[:] = np.arange(len(islands))
-    snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, world.touch.contact_count)}
-    snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][0, : world.touch.user_count].copy()
+    snapshot.contacts = {
+        name: rows.copy() for name, rows in _contact_rows(world, world.contact_arrays.contact_count)
+    }
+    snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][
+        0, : world.contact_arrays.user_count
+    ].copy()
     return snapshot
 
 
@@ -148,7 +152,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
     same = layout == snapshot.layout
     if not same:
         snapshot = _reordered(snapshot, layout)
-    elif world.touch.contacts.reserve({_CONTACT: int(snapshot.contacts["count_contacts"][THERE])}):
+    elif world.contact_arrays.contacts.reserve({_CONTACT: int(snapshot.contacts["count_contacts"][THERE])}):
         world.scene_changed()
 
     def put_back() -> None:
@@ -156,10 +160,10 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         if same:
             _write_contacts(world, snapshot)
         else:
-            world.touch.forget_contacts()
+            world.contact_arrays.forget_contacts()
         impulses = world.arrays.state.numpy["user_impulse"][0]
-        if len(snapshot.user_impulses) == world.touch.user_count:
-            impulses[: world.touch.user_count] = snapshot.user_impulses
+        if len(snapshot.user_impulses) == world.contact_arrays.user_count:
+            impulses[: world.contact_arrays.user_count] = snapshot.user_impulses
         world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
         if snapshot.state["tree_activity"].any():
             world.scene_changed()
@@ -176,7 +180,7 @@ def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.nda
 
 
 def _contact_rows(world: World, count: int) -> Iterator[tuple[str, np.ndarray]]:
-    for name, array in world.touch.contacts.numpy.items():
+    for name, array in world.contact_arrays.contacts.numpy.items():
         yield name, array[0, :count] if name.startswith(_CONTACT) else array[0]
 
 

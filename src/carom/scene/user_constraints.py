@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.engine.touch_arrays import TouchArrays
+from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
 from carom.native.tables import ArrayTable
 
@@ -162,11 +162,11 @@ class UserConstraints:
         """Row of each constraint in the arrays of the engine, by number."""
         return {number: row for row, number in enumerate(self._by_id)}
 
-    def write(self, touch: TouchArrays) -> None:
+    def write(self, contact_arrays: ContactArrays) -> None:
         """Write all constraints to the arrays of the engine."""
-        touch.user_count = len(self._by_id)
-        touch.users.reserve({"user": touch.user_count})
-        users = touch.users.numpy
+        contact_arrays.user_count = len(self._by_id)
+        contact_arrays.users.reserve({"user": contact_arrays.user_count})
+        users = contact_arrays.users.numpy
         for row, constraint in enumerate(self._by_id.values()):
             child = constraint.child
             users["user_kind"][row] = constraint.kind

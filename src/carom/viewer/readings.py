@@ -41,15 +41,15 @@ def contacts(world: World) -> Columns:
         (contacts, 16): body a, link a (0: the base), body b, link b, point on b (3) [m], normal on b
         towards a (3), force along it on a [N], friction on a (3) [N], friction coefficient, distance [m].
     """
-    table = world.touch.contacts.numpy
-    count = min(world.touch.contact_count, _MOST_CONTACTS)
+    table = world.contact_arrays.contacts.numpy
+    count = min(world.contact_arrays.contact_count, _MOST_CONTACTS)
     links = table["contact_shapes"][0, :count, 2:4].copy()
     places = np.array(world.link_places, dtype=np.float32).reshape(-1, 2)
     places[:, 1] += 1.0
     if count == 0 or links.max(initial=-1) >= len(places) or links.min(initial=0) < 0:
         return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     forces = table["contact_impulse"][0, :count] / world.parameters.substep_time
-    lateral = world.touch.shapes.table.numpy["link_lateral_friction"][0]
+    lateral = world.contact_arrays.shapes.table.numpy["link_lateral_friction"][0]
     coefficient = np.minimum(lateral[links[:, 0]] * lateral[links[:, 1]], _GREATEST_FRICTION)
     directions = (table["contact_direction1"][0, :count], table["contact_direction2"][0, :count])
     friction = sum(forces[:, 1 + i, None] * directions[i] for i in range(2))

@@ -18,10 +18,10 @@ from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import drive
-from carom.viewer.input.hands import Hands
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
+from carom.viewer.input.picking import Picking
 from carom.viewer.items import Slider
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
@@ -30,10 +30,10 @@ from carom.viewer.rays import Rays
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
 from carom.viewer.steps.chores import Chores
-from carom.viewer.steps.gate import Gate
 from carom.viewer.steps.moments import Moments
+from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.sleeping import Sleeping
-from carom.viewer.steps.turnstile import Turnstile
+from carom.viewer.steps.step_lock import StepLock
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -75,7 +75,7 @@ class Viewer:
         mouse: Mouse events.
         camera: The camera.
         previews: What the last camera image of a script shows.
-        gate: Whether the simulation is paused.
+        pause_control: Whether the simulation is paused.
         is_open: False once a user has closed the viewer.
         held: Steps have to ask `wait_for_turn` or `has_turn` first: the simulation is paused or slowed
             down, its start has yet to be kept, or the viewer is closed.
@@ -110,7 +110,7 @@ class Viewer:
         self.camera: SharedCamera = SharedCamera(self._board, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
-        self.gate: Gate = Gate()
+        self.pause_control: PauseControl = PauseControl()
         self._pictures = Pictures()
         self.lock: Any = RLock() if lock is None else lock
         self._world = world
@@ -119,7 +119,7 @@ class Viewer:
         self._leaving = Leaving(self._close_by_user)
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
-        self._hands = Hands(world, self.lock)
+        self._picking = Picking(world, self.lock)
         self._details = Details(world, self.lock, self._board)
         self._sleeping = Sleeping(world)
         self._values: dict[str, float] = {}
@@ -139,10 +139,10 @@ class Viewer:
             "sleep": lambda page, told: self._chores.add(self._sleeping.toggle),
             "profile": lambda page, told: self.on_profile(bool(told["running"])),
             "grasp": self._take_grasp,
-            "pull": lambda page, told: self._hands.move(page, _vector(told["target"])),
-            "let go": lambda page, told: self._hands.release(page),
+            "pull": lambda page, told: self._picking.move(page, _vector(told["target"])),
+            "let go": lambda page, told: self._picking.release(page),
             "pause": lambda page, told: self.pause(bool(told["paused"])),
-            "step": lambda page, told: self.gate.let_through(),
+            "step": lambda page, told: self.pause_control.let_through(),
             "speed": self._take_speed,
             "reset": lambda page, told: self._chores.add(self._moments.reset),
             "mark": lambda page, told: self._chores.add(self._moments.mark),
@@ -150,10 +150,10 @@ class Viewer:
             "close": lambda page, told: self._close_by_user(),
         }
         if lock is None:
-            self._turnstile: Turnstile | None = Turnstile(self)
-            world.observers.append(self._turnstile)
+            self._step_lock: StepLock | None = StepLock(self)
+            world.observers.append(self._step_lock)
         else:
-            self._turnstile = None
+            self._step_lock = None
         boards[world] = self._board
         named = frozenset(name.lower() for name in names)
         access = Access(host, names=named) if token is None else Access(host, token, named)
@@ -180,11 +180,11 @@ class Viewer:
 
     def pause(self, paused: bool) -> None:
         """Holds the simulation, or lets it go on."""
-        changed = self.gate.closed != paused
+        changed = self.pause_control.closed != paused
         if paused:
-            self.gate.close()
+            self.pause_control.close()
         else:
-            self.gate.open()
+            self.pause_control.open()
         self._update_hold()
         self._board.put("pause", {"type": "pause", "paused": paused})
         if changed:
@@ -196,7 +196,7 @@ class Viewer:
         Args:
             speed: Simulated time by real time; None for as fast as the script goes.
         """
-        self.gate.set_speed(speed)
+        self.pause_control.set_speed(speed)
         self._update_hold()
         self._board.put("speed", {"type": "speed", "speed": speed})
 
@@ -210,18 +210,18 @@ class Viewer:
         Returns:
             Whether to make the step.
         """
-        if not self.gate.wait(listening=listening):
+        if not self.pause_control.wait(listening=listening):
             return False
         if not self._moments.start_is_known:
             with self.lock:
                 self._moments.keep_start()
             self._update_hold()
-        self.gate.keep_pace(float(self._world.time))
+        self.pause_control.keep_pace(float(self._world.time))
         return True
 
     def has_turn(self) -> bool:
         """Whether a step may be made now; it then counts as made."""
-        if not self.gate.passes():
+        if not self.pause_control.passes():
             return False
         if not self._moments.start_is_known:
             with self.lock:
@@ -237,8 +237,8 @@ class Viewer:
 
     def _update_hold(self) -> None:
         held = (
-            self.gate.closed
-            or self.gate.speed is not None
+            self.pause_control.closed
+            or self.pause_control.speed is not None
             or not self._moments.start_is_known
             or not self.is_open
             or self._leaving.pending
@@ -310,14 +310,14 @@ class Viewer:
         """Ends it: pages say that the simulation is over."""
         self.is_open = False
         self._leaving.cancel()
-        self.gate.open()
-        if self._turnstile in self._world.observers:
-            self._world.observers.remove(self._turnstile)
+        self.pause_control.open()
+        if self._step_lock in self._world.observers:
+            self._world.observers.remove(self._step_lock)
         self._server.stop()
 
     def _frame(self) -> bytes | None:
         self.drawings.expire()
-        self._hands.apply()
+        self._picking.apply()
         self._chores.do()
         if not self.held and not self._moments.start_is_known:
             self._update_hold()
@@ -333,16 +333,16 @@ class Viewer:
         self.keyboard.release_all(page)
         self._pictures.forget(page)
         self._want(page, NOTHING)
-        self._hands.release(page)
-        self._hands.apply(_PATIENCE)
-        if not self.page_count and self.gate.closed:
+        self._picking.release(page)
+        self._picking.apply(_PATIENCE)
+        if not self.page_count and self.pause_control.closed:
             go_on = Timer(_RECONNECTION, self._go_on_unwatched)
             go_on.daemon = True
             go_on.start()
 
     def _go_on_unwatched(self) -> None:
         """Nobody is left who could end a pause; a page that is loaded again is back by now."""
-        if self.is_open and not self.page_count and self.gate.closed:
+        if self.is_open and not self.page_count and self.pause_control.closed:
             self.pause(False)
 
     def _take_key(self, page: int, told: dict[str, Any]) -> None:
@@ -350,9 +350,9 @@ class Viewer:
         change = self.keyboard.press if down else self.keyboard.release
         change(page, key, code)
         if down and key_code(key, code) == ESCAPE:
-            self._leaving.escape(listening=self.keyboard.is_asked or self.gate.listeners > 0)
+            self._leaving.escape(listening=self.keyboard.is_asked or self.pause_control.listeners > 0)
             self._update_hold()
-        self.gate.call_back()
+        self.pause_control.call_back()
 
     def _take_speed(self, page: int, told: dict[str, Any]) -> None:
         speed = told["speed"]
@@ -361,11 +361,11 @@ class Viewer:
 
     def _take_slider(self, page: int, told: dict[str, Any]) -> None:
         self.controls.move(int(told["slider"]), float(told["value"]))
-        self.gate.call_back()
+        self.pause_control.call_back()
 
     def _take_press(self, page: int, told: dict[str, Any]) -> None:
         self.controls.press(int(told["slider"]))
-        self.gate.call_back()
+        self.pause_control.call_back()
 
     def _take_mouse(self, page: int, told: dict[str, Any]) -> None:
         x, y = float(told["x"]), float(told["y"])
@@ -392,16 +392,16 @@ class Viewer:
 
     def _take_drive(self, page: int, told: dict[str, Any]) -> None:
         body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])
-        self._chores.add(lambda: drive(self._world, body, joint, target, place=self.gate.closed))
+        self._chores.add(lambda: drive(self._world, body, joint, target, place=self.pause_control.closed))
 
     def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
         point, target = _vector(told["point"]), _vector(told["target"])
-        self._hands.take(page, int(told["body"]), int(told["link"]), point, target)
+        self._picking.take(page, int(told["body"]), int(told["link"]), point, target)
 
     def _close_by_user(self) -> None:
         self.is_open = False
         self._leaving.cancel()
-        self.gate.open()
+        self.pause_control.open()
         self._update_hold()
 
 

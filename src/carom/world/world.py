@@ -12,9 +12,9 @@ import numpy as np
 
 from carom.checks import vector
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
-from carom.engine.touch_arrays import TouchArrays
 from carom.errors import SimulationError
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
@@ -89,7 +89,7 @@ class World(DescriptionLoading, Recordable, StateViews):
 
     def _start_empty(self) -> None:
         arrays = WorldArrays()
-        self._take_arrays(arrays, TouchArrays(arrays))
+        self._take_arrays(arrays, ContactArrays(arrays))
         self.bodies.clear()
         self.constraints: JointConstraints = JointConstraints()
         self.user_constraints: UserConstraints = UserConstraints()
@@ -98,10 +98,10 @@ class World(DescriptionLoading, Recordable, StateViews):
         self.next_id: int = 0
         self.unspent_time = 0.0
 
-    def _take_arrays(self, arrays: WorldArrays, touch: TouchArrays) -> None:
+    def _take_arrays(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         self.arrays: WorldArrays = arrays
-        self.touch: TouchArrays = touch
-        self.engine: Engine = Engine(arrays, touch)
+        self.contact_arrays: ContactArrays = contact_arrays
+        self.engine: Engine = Engine(arrays, contact_arrays)
         self._status: memoryview[int] = memoryview(self.engine.status[0])
         self._growths = 0
         self.scene_changed()
@@ -328,7 +328,7 @@ class World(DescriptionLoading, Recordable, StateViews):
 
     def apply_parameters(self) -> None:
         """Make changes of `parameters` take effect."""
-        shapes, breaking = self.touch.shapes, self.parameters.contact_breaking_threshold
+        shapes, breaking = self.contact_arrays.shapes, self.parameters.contact_breaking_threshold
         if breaking != shapes.breaking_fraction or self._structure() != self._made_for:
             shapes.set_breaking_fraction(breaking)
             self.scene_changed()
@@ -436,7 +436,7 @@ class World(DescriptionLoading, Recordable, StateViews):
         cause = cause_in(body)
         self.joint_reaction[:] = 0.0
         self.motor_impulse[:] = 0.0
-        self.touch.forget_contacts()
+        self.contact_arrays.forget_contacts()
         for other in self.bodies.values():
             other.update_link_poses()
         raise SimulationError(
@@ -456,7 +456,7 @@ class World(DescriptionLoading, Recordable, StateViews):
         """Write constraints and settings to the arrays; returns what performs a step."""
         self.undo.settle()
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
-        self.user_constraints.write(self.touch)
+        self.user_constraints.write(self.contact_arrays)
         self._derived.queries = None
         self._made_for = self._structure()
         self.engine.update_settings(self.parameters)
@@ -500,7 +500,7 @@ class World(DescriptionLoading, Recordable, StateViews):
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
         self.prepare()
-        if self.engine.can_touch:
+        if self.engine.can_collide:
             self.engine.detect()
             self._renew_after_growth()
 
@@ -514,7 +514,7 @@ class World(DescriptionLoading, Recordable, StateViews):
                 self.position_memory,
                 self.link_places,
                 self.present_poses,
-                self.touch,
+                self.contact_arrays,
                 self.engine.workspace.pairs,
             )
         return self._derived.queries

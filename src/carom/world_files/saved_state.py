@@ -128,7 +128,7 @@ def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: b
     for name, rows in others.state.items():
         if not name.startswith("tree"):
             rows[len(rows) - len(snapshot.state[name]) :] = snapshot.state[name]
-    world.touch.forget_contacts()
+    world.contact_arrays.forget_contacts()
     return_to(world, present, others)()
 
 
@@ -167,7 +167,7 @@ def _check_contacts(world: World, snapshot: Snapshot) -> None:
     shapes, links = np.hsplit(snapshot.contacts["contact_shapes"], 2)
     if not shapes.size:
         return
-    if shapes.min() < 0 or shapes.max() >= world.touch.shapes.shape_count:
+    if shapes.min() < 0 or shapes.max() >= world.contact_arrays.shapes.shape_count:
         raise ValueError("a contact is one of shapes that do not exist")
-    if (world.touch.shapes.table.numpy["shape_link"][shapes] != links).any():
+    if (world.contact_arrays.shapes.table.numpy["shape_link"][shapes] != links).any():
         raise ValueError("a contact is one of other links")

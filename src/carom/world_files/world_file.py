@@ -236,7 +236,8 @@ def _saved(world: World) -> SavedWorld:
         ties=[_saved_tie(tie) for tie in world.user_constraints.all],
         next_tie=world.user_constraints.next_id,
         filters=[
-            SavedFilter(*owners[a], *owners[b], enabled) for a, b, enabled in world.touch.shapes.filters.all
+            SavedFilter(*owners[a], *owners[b], enabled)
+            for a, b, enabled in world.contact_arrays.shapes.filters.all
         ],
         user_data=[datum for body in bodies for datum in world.user_data.of_body(body.id)],
     )
@@ -244,7 +245,7 @@ def _saved(world: World) -> SavedWorld:
 
 def _saved_body(body: Body, spec: int) -> SavedBody:
     model = body.world.arrays.model.numpy
-    shapes = body.world.touch.shapes.table.numpy
+    shapes = body.world.contact_arrays.shapes.table.numpy
     tree, links = body.rows.tree, slice(body.first_link, body.first_link + 1 + body.joint_count)
     return SavedBody(
         body.id,
@@ -337,7 +338,7 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
         change_base_freedom(body.world, body, free=not record.fixed_base)
     for place in range(count):
         body.set_dynamics(place - 1, record.links[place])
-        body.world.touch.shapes.set_group_and_mask(
+        body.world.contact_arrays.shapes.set_group_and_mask(
             body.first_link + place, record.groups[place], record.masks[place]
         )
     for joint, enabled in enumerate(record.sensors):
@@ -438,4 +439,4 @@ def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> No
             if not BASE <= link < body.joint_count:
                 raise ValueError(f"body {body.id} has no link {link}")
             rows.append(body.first_link + 1 + link)
-        world.touch.shapes.filters.set(*rows, enabled=it.enabled)
+        world.contact_arrays.shapes.filters.set(*rows, enabled=it.enabled)

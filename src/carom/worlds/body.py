@@ -257,7 +257,7 @@ class BodyBatch:
         # A pose that was read and is written back stays the same to the last digit, as in a world alone.
         scale = np.where(abs(squared - 1.0) < ROUNDING, 1.0, 1.0 / np.sqrt(squared))
         self.base_poses[worlds] = np.concatenate([position, turn * scale], axis=1)
-        self._engine.touch.distrust_contacts(worlds)
+        self._engine.contact_arrays.forget_warm_start(worlds)
 
     @property
     def base_velocities(self) -> Array:

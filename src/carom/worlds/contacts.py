@@ -41,7 +41,7 @@ def summarise_contacts(
         second: Rows of other links; None for any.
         substep_time: Of a substep [s]; makes forces of impulses.
     """
-    contacts = engine.touch.contacts.numpy
+    contacts = engine.contact_arrays.contacts.numpy
     counts = contacts["count_contacts"][:, THERE]
     rows = slice(int(counts.max(initial=0)))
     there = np.arange(rows.stop) < counts[:, None]
@@ -76,7 +76,7 @@ def summarise_contacts(
     return ContactSummary(touching, chosen.sum(axis=1), forces, least, deepest)
 
 
-def links_touching(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
+def links_in_contact(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
     """Which of some links have a contact point with some others in each world.
 
     Args:
@@ -87,7 +87,7 @@ def links_touching(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDA
     Returns:
         (worlds, links) booleans.
     """
-    contacts = engine.touch.contacts.numpy
+    contacts = engine.contact_arrays.contacts.numpy
     counts = contacts["count_contacts"][:, THERE]
     touching = np.zeros((len(counts), len(first)), dtype=bool)
     worlds, points = np.nonzero(np.arange(counts.max(initial=0)) < counts[:, None])

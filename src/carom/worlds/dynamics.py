@@ -50,7 +50,9 @@ def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str,
     writes = list(_writes(engine, body, link, values))
     for table, field, rows, numbers in writes:
         engine.spread(table, field)
-        array = (engine.touch.shapes.table if table == "shapes" else engine.arrays.model).numpy[field]
+        array = (engine.contact_arrays.shapes.table if table == "shapes" else engine.arrays.model).numpy[
+            field
+        ]
         array[:, rows] = numbers
 
 

@@ -17,10 +17,10 @@ def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_t
     """A copy of a scene with the state and the parameters of one of the worlds of an engine."""
     world = scene.copy()
     world.time, world.unspent_time = float(time), float(unspent_time)
-    contacts = engine.touch.contacts
-    world.touch.contacts.reserve(contacts.capacity)
+    contacts = engine.contact_arrays.contacts
+    world.contact_arrays.contacts.reserve(contacts.capacity)
     _copy_row(engine.arrays.state, world.arrays.state, number)
-    _copy_row(contacts, world.touch.contacts, number)
+    _copy_row(contacts, world.contact_arrays.contacts, number)
     _take_parameters(world, engine, number)
     world.scene_changed()
     return world
@@ -39,7 +39,7 @@ def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:
 
 def _take_parameters(world: World, engine: Engine, number: int) -> None:
     """Bring what a world knows of its bodies to what is in the arrays, where worlds differ."""
-    model, shapes = engine.arrays.model, engine.touch.shapes.table
+    model, shapes = engine.arrays.model, engine.contact_arrays.shapes.table
     x, y, z = _row(model, "gravity_vector", number)[0].tolist()
     world.parameters.gravity = (x, y, z)
     for body in world.bodies.values():
@@ -62,7 +62,7 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
     for user, row in world.user_constraints.rows.items():
         constraint = world.user_constraints.get(user)
         if constraint is not None:
-            constraint.enabled = bool(_row(engine.touch.users, "user_enabled", number)[row])
+            constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
 
 
 def _take_limits(world: World, engine: Engine, number: int) -> None:

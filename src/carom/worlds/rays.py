@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
-from carom.engine.places import places_struct
+from carom.engine.row_maps import row_map_struct
 from carom.layouts.queries import Rays
 from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
 from carom.native.launch import KernelStructs, Launch
@@ -46,7 +46,7 @@ class RayCaster:
     def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:
         self._count = engine.arrays.world_count
         self._engine = engine
-        self._places = places_struct(places)
+        self._places = row_map_struct(places)
         self._rays = ArrayTable(Rays)
         self._asked: tuple[int, int] = (0, -1)
         self._cast = engine.task(self._launches)

@@ -36,12 +36,12 @@ class SavedWorlds:
     @classmethod
     def take(cls, engine: Engine, worlds: np.ndarray, times: Array, unspent_times: Array) -> SavedWorlds:
         """The present states of some worlds."""
-        counts = engine.touch.contacts.numpy["count_contacts"][worlds, THERE]
+        counts = engine.contact_arrays.contacts.numpy["count_contacts"][worlds, THERE]
         most = int(counts.max(initial=0))
         state = {name: array[worlds] for name, array in _fields(engine.arrays.state)}
         contacts = {
             name: array[worlds, :most] if name.startswith(_CONTACT) else array[worlds]
-            for name, array in _fields(engine.touch.contacts)
+            for name, array in _fields(engine.contact_arrays.contacts)
         }
         return cls(worlds.copy(), times.copy(), unspent_times.copy(), state, contacts)
 
@@ -77,12 +77,12 @@ class SavedWorlds:
         }:
             raise ValueError("these are states of worlds with other bodies")
         most = int(self.contacts["count_contacts"][rows, THERE].max(initial=0))
-        if engine.touch.contacts.reserve({"contact": most}):
+        if engine.contact_arrays.contacts.reserve({"contact": most}):
             engine.changed()
         for name, array in fields.items():
             array[worlds] = self.state[name][rows]
         engine.status[worlds] = 0
-        for name, array in _fields(engine.touch.contacts):
+        for name, array in _fields(engine.contact_arrays.contacts):
             if name.startswith(_CONTACT):
                 array[worlds, :most] = self.contacts[name][rows, :most]
             else:

@@ -20,7 +20,7 @@ from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.checks import Mask, broadcast, world_numbers
-from carom.worlds.contacts import ContactSummary, links_touching, summarise_contacts
+from carom.worlds.contacts import ContactSummary, links_in_contact, summarise_contacts
 from carom.worlds.images import Images, take_images
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.memory import check_memory
@@ -70,10 +70,12 @@ class Worlds:
         self.count: int = count
         self._scene = world.copy()
         self._scene.prepare()
-        state, contacts = self._scene.arrays.state, self._scene.touch.contacts
+        state, contacts = self._scene.arrays.state, self._scene.contact_arrays.contacts
         check_memory(count, state.bytes_per_world(self._scene.arrays.used) + contacts.bytes_per_world())
         arrays = self._scene.arrays.repeated(count)
-        self._engine = Engine(arrays, self._scene.touch.repeated(arrays), min(count, threads or core_count()))
+        self._engine = Engine(
+            arrays, self._scene.contact_arrays.repeated(arrays), min(count, threads or core_count())
+        )
         self._engine.update_settings(self._scene.parameters)
         self.time_step: float = world.parameters.time_step
         self.times: Array = np.full(count, world.time)
@@ -151,7 +153,7 @@ class Worlds:
         self.halted[worlds] = True
         state["link_reaction"][worlds] = 0.0
         state["dof_motor_impulse"][worlds] = 0.0
-        self._engine.touch.contacts.numpy["count_contacts"][worlds] = 0
+        self._engine.contact_arrays.contacts.numpy["count_contacts"][worlds] = 0
         self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
         names = {batch.rows.tree: batch.name for batch in self}
         for world in worlds[:_MOST_NAMED].tolist():
@@ -166,7 +168,7 @@ class Worlds:
 
     def detect_collisions(self) -> None:
         """Find the contacts of all worlds for their present coordinates, without a step."""
-        if self._engine.can_touch:
+        if self._engine.can_collide:
             self._engine.detect()
 
     # States
@@ -260,7 +262,7 @@ class Worlds:
         holds = broadcast(np.asarray(enabled, dtype=bool), (self.count,), "enabled") != 0.0
         row = self._scene.user_constraints.rows[number]
         self._engine.spread("users", "user_enabled")
-        self._engine.touch.users.numpy["user_enabled"][:, row] = holds
+        self._engine.contact_arrays.users.numpy["user_enabled"][:, row] = holds
 
     # Questions
 
@@ -290,7 +292,7 @@ class Worlds:
             self._scene.parameters.substep_time,
         )
 
-    def links_touching(
+    def links_in_contact(
         self, body: Body | int, other: Body | int, other_link: int | str | None = None
     ) -> Mask:
         """Which links of a body have a contact point with another body, as the last step found it.
@@ -305,7 +307,7 @@ class Worlds:
         Returns:
             (count, links + 1) booleans, the base first.
         """
-        return links_touching(self._engine, self[body].link_rows(None), self[other].link_rows(other_link))
+        return links_in_contact(self._engine, self[body].link_rows(None), self[other].link_rows(other_link))
 
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """What rays hit in each world.

@@ -30,7 +30,7 @@ class LinkBox:
         row, world, spec = body.first_link + 1 + link, client.world, body.link_spec(link)
         alone = is_in_place(spec.collisions, spec.inertial_frame)
         self._lone = type(spec.collisions[0].geometry) if alone else None
-        self._bounds = world.touch.shapes.bounds(row)
+        self._bounds = world.contact_arrays.shapes.bounds(row)
         # The base is where its coordinates say, also after a step.
         self._poses = world.position_memory if link == BASE else world.link_pose_memory
         self._at = body.first_position * _DOUBLE if link == BASE else row * _POSE.size

@@ -56,7 +56,7 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
 
     spec = body.spec.base
     before = spec.collisions
-    shapes = client.world.touch.shapes
+    shapes = client.world.contact_arrays.shapes
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     with client.lock:
         unscaled = _unscaled.setdefault(body, before)

@@ -11,7 +11,7 @@ from carom.remote.connection import Connection
 from carom.remote.errors import Malformed, NoServer, RemoteError
 from carom.remote.frames import OF_RESULTS, Frame, check_size
 from carom.remote.listener import Listener
-from carom.remote.meeting import Note, find
+from carom.remote.rendezvous import Note, find
 from carom.remote.values import pack, unpack
 from pybullet._bodies.user_data_view import UserDataView
 from pybullet._calls.detours import Function, detour_of, functions, remove_detour
@@ -49,20 +49,20 @@ class Served:
         self._user_data = UserDataView(self._ask)
         self._for_others = local()
         self._notes: list[tuple[str, Note]] = []
-        for meeting in options.meetings:
-            name = meeting.name(meeting.port)
+        for rendezvous in options.meetings:
+            name = rendezvous.name(rendezvous.port)
             if _is_taken(name):
                 fail(_CANNOT_START, f"there is one already that is found as {name}.")
         try:
-            places = [(meeting.host, meeting.port) for meeting in options.meetings]
+            places = [(rendezvous.host, rendezvous.port) for rendezvous in options.meetings]
             self._listener = Listener(places, options.key, self._answer)
         except OSError as problem:
             fail(_CANNOT_START, f"{problem}.")
         try:
-            for meeting, (host, port) in zip(options.meetings, self._listener.addresses, strict=True):
+            for rendezvous, (host, port) in zip(options.meetings, self._listener.addresses, strict=True):
                 note = Note(reachable(host), port, options.key)
-                note.leave(meeting.name(port))
-                self._notes.append((meeting.name(port), note))
+                note.leave(rendezvous.name(port))
+                self._notes.append((rendezvous.name(port), note))
         except (OSError, RemoteError) as problem:
             self.close()
             fail(_CANNOT_START, f"{problem}")

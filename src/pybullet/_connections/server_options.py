@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from carom.remote.handshake import new_key
-from carom.remote.meeting import Note, find
+from carom.remote.rendezvous import Note, find
 from pybullet._calls.constants import (
     GRAPHICS_CLIENT,
     GRAPHICS_SERVER,

@@ -50,7 +50,7 @@ def setCollisionFilterPair(
     if row_a is None or row_b is None:
         return
     with client.lock:
-        client.world.touch.shapes.filters.set(row_a, row_b, enabled=enabled)
+        client.world.contact_arrays.shapes.filters.set(row_a, row_b, enabled=enabled)
         client.world.scene_changed()
 
 
@@ -86,7 +86,7 @@ def setCollisionFilterGroupMask(
     mask = integer(collisionFilterMask, "collisionFilterMask")
     row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
     if row is not None:
-        client.world.touch.shapes.set_group_and_mask(row, group, mask)
+        client.world.contact_arrays.shapes.set_group_and_mask(row, group, mask)
         client.world.scene_changed()
 
 

@@ -142,7 +142,7 @@ def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
             spec.visuals = tuple(
                 replace(it, geometry=new) if it.geometry is old else it for it in spec.visuals
             )
-            client.world.touch.shapes.replace_pieces(
+            client.world.contact_arrays.shapes.replace_pieces(
                 body.first_link + 1 + link, spec, implicit_cylinder=implicit
             )
             client.bodies.forget(body.id)

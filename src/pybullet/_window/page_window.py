@@ -71,7 +71,7 @@ class PageWindow(RecordingWindow):
 
     @property
     def speed(self) -> float | None:
-        return self._viewer.gate.speed
+        return self._viewer.pause_control.speed
 
     def wait_for_turn(self) -> bool:
         return self._viewer.wait_for_turn(listening=self._asked == self._viewer.time)

@@ -72,7 +72,7 @@ class WalkerVectorEnv(BulletVectorEnv):
         """Drives the joints; remembers what the step before ended with."""
         self._before = self._potential
         # As in PyBullet an observation has the feet of the step before.
-        touching = self.worlds.links_touching(self._runner, self._ground, self._ground_link)
+        touching = self.worlds.links_in_contact(self._runner, self._ground, self._ground_link)
         self.feet_contact = touching[:, self._foot_columns]
         self._motors.push(self._torques * held(actions))
 

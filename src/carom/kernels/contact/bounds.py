@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greater, greatest_entry, upper_corner
+from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
@@ -59,22 +59,22 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
     position = wp.transform_get_translation(pose)
     pairs.shape_position[world, shape] = position
     pairs.shape_frame[world, shape] = frame
-    reach = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
+    half_extents = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
     center = Vector3(0.0, 0.0, 0.0)
     kind = shapes.shape_kind[shape]
     if kind == SPHERE:
         # Exact, whatever rounding has done to the rotation.
         center = position
-        reach = local_extents(shapes, shape)
+        half_extents = local_extents(shapes, shape)
     elif kind != PLANE:
         center = position + frame * local_center(shapes, shape)
-        reach = magnitudes(frame) * local_extents(shapes, shape)
-    total = center[0] + center[1] + center[2] + reach[0] + reach[1] + reach[2]
+        half_extents = magnitudes(frame) * local_extents(shapes, shape)
+    total = center[0] + center[1] + center[2] + half_extents[0] + half_extents[1] + half_extents[2]
     if not wp.isfinite(total):
         center = Vector3(0.0, 0.0, 0.0)
-        reach = -Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
-    pairs.shape_lower[world, shape] = center - reach
-    pairs.shape_upper[world, shape] = center + reach
+        half_extents = -Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
+    pairs.shape_lower[world, shape] = center - half_extents
+    pairs.shape_upper[world, shape] = center + half_extents
 
 
 @func
@@ -105,7 +105,7 @@ def look_ahead(
         state.dof_velocity[world, first + 4],
         state.dof_velocity[world, first + 5],
     )
-    motion = greater(motion, wp.length(velocity) * settings.time_step)
+    motion = maximum(motion, wp.length(velocity) * settings.time_step)
     if motion > 0.5 * radius and motion < UNBOUNDED:
         return motion
     return 0.0
@@ -119,6 +119,8 @@ def place_shapes(shapes: Shapes, state: State, settings: Settings, pairs: Pairs,
 
 
 @func
-def boxes_meet(lower_a: Vector3, upper_a: Vector3, lower_b: Vector3, upper_b: Vector3, reach: real) -> bool:
-    """Whether two boxes are at most `reach` apart along every axis."""
-    return greatest_entry(upper_corner(lower_a - upper_b, lower_b - upper_a)) <= reach
+def boxes_meet(
+    lower_a: Vector3, upper_a: Vector3, lower_b: Vector3, upper_b: Vector3, max_distance: real
+) -> bool:
+    """Whether two boxes are at most `max_distance` apart along every axis."""
+    return greatest_entry(upper_corner(lower_a - upper_b, lower_b - upper_a)) <= max_distance

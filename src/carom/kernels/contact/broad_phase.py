@@ -8,9 +8,9 @@ once in about logarithmic time.
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet, look_ahead, place_shapes
-from carom.kernels.contact.filters import SELF_COLLISION, may_touch
+from carom.kernels.contact.contact_margins import bounds_margin
+from carom.kernels.contact.filters import SELF_COLLISION, may_collide
 from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
-from carom.kernels.contact.reach import bounds_reach
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, func, real
 from carom.layouts.contacts import BOUNDED, LEAVES, PAIRS, PLANES, READINESS, STALE
@@ -21,7 +21,7 @@ def add_pair(
     shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, a: Int32, b: Int32
 ):
     """Note two shapes if they may touch; pairs beyond the capacity are counted only."""
-    if may_touch(shapes, model, settings, a, b):
+    if may_collide(shapes, model, settings, a, b):
         count = pairs.count_pairs[world, PAIRS]
         if count < pairs.pair_found.shape[1]:
             pairs.pair_found[world, count] = Index4(wp.min(a, b), wp.max(a, b), 0, 0)
@@ -29,14 +29,14 @@ def add_pair(
 
 
 @func
-def bounds_meet(pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> bool:
-    """Whether the bounds of two shapes are at most `reach` apart along every axis."""
+def bounds_meet(pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real) -> bool:
+    """Whether the bounds of two shapes are at most `max_distance` apart along every axis."""
     return boxes_meet(
         pairs.shape_lower[world, a],
         pairs.shape_upper[world, a],
         pairs.shape_lower[world, b],
         pairs.shape_upper[world, b],
-        reach,
+        max_distance,
     )
 
 
@@ -63,9 +63,9 @@ def compare_in_leaf(
         b = pairs.shape_order[world, place]
         if shapes.shape_tree[b] == avoided:
             continue
-        reach = breaking + pairs.shape_motion[world, b]
-        if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], reach):
-            if bounds_meet(pairs, world, a, b, bounds_reach(shapes, pairs, world, a, b)):
+        max_distance = breaking + pairs.shape_motion[world, b]
+        if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], max_distance):
+            if bounds_meet(pairs, world, a, b, bounds_margin(shapes, pairs, world, a, b)):
                 add_pair(shapes, model, settings, pairs, world, a, b)
 
 
@@ -106,7 +106,7 @@ def plane_pairs(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, 
         lower = pairs.shape_lower[world, b]
         upper = pairs.shape_upper[world, b]
         nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
-        if nearest <= bounds_reach(shapes, pairs, world, plane, b):
+        if nearest <= bounds_margin(shapes, pairs, world, plane, b):
             add_pair(shapes, model, settings, pairs, world, plane, b)
 
 

@@ -7,7 +7,7 @@ good decides, so results do not depend on rounding more than need be.
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greater, lesser
+from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.types import Int32, Vector3, Vector8, Vector8Rows, func, real, shared_func
 
 # Points closer together than this count as one [m].
@@ -83,7 +83,7 @@ def deepest_outermost(candidates: Vector8Rows, world: Int32, count: Int32) -> In
     deepest = candidate_distance(candidates, world, 0)
     middle = Vector3(0.0, 0.0, 0.0)
     for row in range(count):
-        deepest = lesser(deepest, candidate_distance(candidates, world, row))
+        deepest = minimum(deepest, candidate_distance(candidates, world, row))
         middle += candidate_point(candidates, world, row) / real(count)
     best = Int32(0)
     most = real(-1.0)
@@ -138,9 +138,9 @@ def keep_four(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
     most = SAME_POINT * SAME_POINT * wp.sqrt(base) * wp.length(normal)
     for row in range(3, count):
         p = candidate_point(candidates, world, row)
-        outside = greater(
+        outside = maximum(
             wp.dot(wp.cross(p - a, b - a), normal),
-            greater(wp.dot(wp.cross(p - b, c - b), normal), wp.dot(wp.cross(p - c, a - c), normal)),
+            maximum(wp.dot(wp.cross(p - b, c - b), normal), wp.dot(wp.cross(p - c, a - c), normal)),
         )
         if outside > most * (1.0 + CLEARLY):
             most = outside

@@ -6,10 +6,10 @@ from the contacts that there were, before anything else is done with them.
 
 import warp as wp
 
+from carom.kernels.contact.contact_margins import breaking_distance, contact_margin, region_margin
 from carom.kernels.contact.gathering import AT_ONCE, find_new_point, gather
 from carom.kernels.contact.manifold import keep_previous, skip_contacts, write_new_contact
-from carom.kernels.contact.narrow_phase import touch
-from carom.kernels.contact.reach import breaking_distance, contact_reach, region_reach
+from carom.kernels.contact.narrow_phase import collide_shapes
 from carom.kernels.contact.sides import in_order_of_sides
 from carom.kernels.structs import Contacts, Model, Pairs, Shapes, State
 from carom.kernels.types import Index4, Int32, func, real
@@ -109,13 +109,13 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, fi
     Returns:
         What `find_new_point` returned; the number of candidates if that is `AT_ONCE`, else 0.
     """
-    reach = contact_reach(shapes, pairs, world, pair[0], pair[1], last > first)
+    max_distance = contact_margin(shapes, pairs, world, pair[0], pair[1], last > first)
     sides = in_order_of_sides(shapes, pair)
-    found = find_new_point(shapes, pairs, world, sides, reach, first, last)
+    found = find_new_point(shapes, pairs, world, sides, max_distance, first, last)
     count = Int32(0)
     if found == AT_ONCE:
-        around = region_reach(shapes, pairs, world, pair[0], pair[1], last > first)
-        count = touch(shapes, pairs, world, sides[0], sides[1], reach, around)
+        around = region_margin(shapes, pairs, world, pair[0], pair[1], last > first)
+        count = collide_shapes(shapes, pairs, world, sides[0], sides[1], max_distance, around)
     return found, count
 
 

@@ -73,7 +73,7 @@ def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
 
 
 @func
-def may_touch(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, shape_b: Int32) -> bool:
+def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, shape_b: Int32) -> bool:
     """Whether two shapes make contacts when they meet."""
     a = shapes.shape_link[shape_a]
     b = shapes.shape_link[shape_b]

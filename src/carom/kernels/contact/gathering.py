@@ -17,9 +17,9 @@ from carom.kernels.contact.candidates import (
     candidate_on_a,
     flip_candidates,
 )
-from carom.kernels.contact.manifold import bequeath, keep_contact, write_contact
+from carom.kernels.contact.contact_margins import is_part_of_compound
+from carom.kernels.contact.manifold import keep_contact, keep_for_matching, write_contact
 from carom.kernels.contact.narrow_phase import in_order
-from carom.kernels.contact.reach import is_part_of_compound
 from carom.kernels.queries.closest import nearest_convex
 from carom.kernels.shapes.cores import core_of
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
@@ -100,7 +100,7 @@ def gathers(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, norm
 
 @func
 def find_new_point(
-    shapes: Shapes, pairs: Pairs, world: Int32, sides: Index4, reach: real, first: Int32, last: Int32
+    shapes: Shapes, pairs: Pairs, world: Int32, sides: Index4, max_distance: real, first: Int32, last: Int32
 ) -> Int32:
     """Write the deepest candidate of a manifold that gathers its points.
 
@@ -109,7 +109,7 @@ def find_new_point(
         pairs: Room for candidates, poses of the shapes, and the previous contacts.
         world: The world.
         sides: The two shapes.
-        reach: Largest distance of a contact [m].
+        max_distance: Largest distance of a contact [m].
         first: First previous contact of the two shapes.
         last: End of these.
 
@@ -128,7 +128,7 @@ def find_new_point(
             return AT_ONCE
     order = in_order(shapes, a, b)
     found = nearest_convex(
-        shapes, pairs, world, order[0], order[1], core_of(shapes, pairs, world, order[0]), reach
+        shapes, pairs, world, order[0], order[1], core_of(shapes, pairs, world, order[0]), max_distance
     )
     if order[0] != a:
         flip_candidates(pairs.candidate_terms, world, found)
@@ -262,7 +262,7 @@ def gather(
         if row < contacts.contact_shapes.shape[1]:
             if manifold.slots[slot] == NEW:
                 write_contact(shapes, state, contacts, pairs, world, row, sides, 0)
-                bequeath(contacts, pairs, world, manifold.predecessor, row)
+                keep_for_matching(contacts, pairs, world, manifold.predecessor, row)
             else:
                 keep_contact(state, contacts, pairs, world, manifold.slots[slot], row)
     return wanted + manifold.count

@@ -9,7 +9,7 @@ depends on nothing but the present bounds. Sizes may differ at will: a table onl
 import warp as wp
 
 from carom.kernels.contact.bounds import UNBOUNDED
-from carom.kernels.maths.extremes import greater, greatest_entry, lower_corner, upper_corner
+from carom.kernels.maths.min_max import greatest_entry, lower_corner, maximum, upper_corner
 from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import PLANE
@@ -88,13 +88,13 @@ def write_codes(pairs: Pairs, world: Int32, count: Int32):
             if within(center - window_center, window):
                 mean += center
                 inside += 1.0
-        mean = mean / greater(inside, 1.0)
+        mean = mean / maximum(inside, 1.0)
         deviation = Vector3(0.0, 0.0, 0.0)
         for i in range(count):
             center = double_center(pairs, world, pairs.shape_order[world, i])
             if within(center - window_center, window):
                 deviation += wp.abs(center - mean)
-        window = deviation * (SPREAD / greater(inside, 1.0)) + Vector3(1.0e-9, 1.0e-9, 1.0e-9)
+        window = deviation * (SPREAD / maximum(inside, 1.0)) + Vector3(1.0e-9, 1.0e-9, 1.0e-9)
         window_center = mean
         trimming += 1
     # Cells are cubes, lest what is at almost one height is sorted by the rest of it.

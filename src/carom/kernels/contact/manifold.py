@@ -10,7 +10,7 @@ from carom.kernels.contact.candidates import (
     candidate_on_a,
     candidate_point,
 )
-from carom.kernels.maths.extremes import lesser
+from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, THERE
@@ -125,7 +125,7 @@ def predecessor(
     least = far * far
     for row in range(first, last):
         if pairs.previous_taken[world, row] == 0:
-            away = lesser(
+            away = minimum(
                 wp.length_sq(pairs.previous_local_a[world, row] - local_a),
                 wp.length_sq(pairs.previous_local_b[world, row] - local_b),
             )
@@ -136,7 +136,7 @@ def predecessor(
 
 
 @func
-def bequeath(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
+def keep_for_matching(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
     """Pass on what the previous contact `before`, -1 for none, leaves to contact `row`."""
     if before >= 0:
         contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
@@ -186,7 +186,7 @@ def write_contact(
     pair: Index4,
     candidate: Int32,
 ):
-    """Write where a candidate is as contact `row`; it has still to inherit (`bequeath`)."""
+    """Write where a candidate is as contact `row`; it has still to inherit (`keep_for_matching`)."""
     link_a = shapes.shape_link[pair[0]]
     link_b = shapes.shape_link[pair[1]]
     point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
@@ -230,10 +230,10 @@ def write_new_contact(
         contacts.contact_local_b[world, row],
         far,
     )
-    bequeath(contacts, pairs, world, before, row)
+    keep_for_matching(contacts, pairs, world, before, row)
     if before < 0 and last > first:
         # Another corner of what touched already is no reason to distrust the rest.
-        contacts.contact_impulse[world, row][3] = lesser(pairs.previous_impulse[world, first][3], 1.0)
+        contacts.contact_impulse[world, row][3] = minimum(pairs.previous_impulse[world, first][3], 1.0)
 
 
 @func
@@ -247,4 +247,4 @@ def keep_contact(state: State, contacts: Contacts, pairs: Pairs, world: Int32, b
     point_b = wp.transform_point(state.link_pose[world, shapes[3]], local_b)
     distance = wp.dot(point_a - point_b, normal)
     write_place(contacts, world, row, shapes, local_a, local_b, point_a, point_b, normal, distance)
-    bequeath(contacts, pairs, world, before, row)
+    keep_for_matching(contacts, pairs, world, before, row)

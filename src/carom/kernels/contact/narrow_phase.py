@@ -3,27 +3,39 @@
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate, flip_candidates, keep_four
-from carom.kernels.shapes.balls import touch_ball
+from carom.kernels.shapes.balls import collide_ball
 from carom.kernels.shapes.boxes import APART, EDGES, box_axis, box_edge_points
-from carom.kernels.shapes.convex import face_towards, touch_convex, touch_faces
+from carom.kernels.shapes.convex import collide_convex, collide_faces, face_towards
 from carom.kernels.shapes.cores import Core, core_of, segment_half
-from carom.kernels.shapes.planes import touch_plane, with_sharp_edges
-from carom.kernels.shapes.segments import touch_segments
-from carom.kernels.shapes.surfaces import touch_surface
+from carom.kernels.shapes.planes import collide_plane, with_sharp_edges
+from carom.kernels.shapes.segments import collide_segments
+from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Index4, Int32, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 
 
 @func
-def touch_boxes(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, core_b: Core, reach: real
+def collide_boxes(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    core_a: Core,
+    core_b: Core,
+    max_distance: real,
 ) -> Int32:
     """Candidates of two boxes, their edges sharp."""
     sharp_a = with_sharp_edges(core_a)
     sharp_b = with_sharp_edges(core_b)
     code, normal, _gap = box_axis(
-        sharp_a.frame, sharp_a.size, sharp_b.frame, sharp_b.size, sharp_b.position - sharp_a.position, reach
+        sharp_a.frame,
+        sharp_a.size,
+        sharp_b.frame,
+        sharp_b.size,
+        sharp_b.position - sharp_a.position,
+        max_distance,
     )
     count = Int32(0)
     if code >= EDGES:
@@ -35,13 +47,13 @@ def touch_boxes(
             pairs.candidate_terms, world, 0, point_b, normal, wp.dot(point_a - point_b, normal)
         )
     elif code != APART:
-        count = touch_faces(shapes, pairs, world, a, b, sharp_a, sharp_b, normal, reach, 0)
+        count = collide_faces(shapes, pairs, world, a, b, sharp_a, sharp_b, normal, max_distance, 0)
     return count
 
 
 @func
-def touch_simple(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, reach: real
+def collide_simple(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, max_distance: real
 ) -> Int32:
     """Candidates of the pairs of shapes that have a closed form for their nearest points; -1 for others.
 
@@ -52,7 +64,7 @@ def touch_simple(
         a: Row of one shape.
         b: Row of the other, not before a in the order of `in_order`.
         core_a: Core of a.
-        reach: Largest distance of a contact [m].
+        max_distance: Largest distance of a contact [m].
     """
     kind_a = core_a.kind
     kind_b = shapes.shape_kind[b]
@@ -63,26 +75,28 @@ def touch_simple(
         corners = Int32(0)
         if kind_a != HULL:
             _normal, corners = face_towards(shapes, sharp, a, -normal, pairs.polygon_a, world)
-        count = touch_plane(
+        count = collide_plane(
             sharp, pairs.polygon_a, corners, shapes.vertex_position, pairs.shape_position[world, b],
-            normal, reach, pairs.candidate_terms, world,
+            normal, max_distance, pairs.candidate_terms, world,
         )  # fmt: skip
     elif (kind_a == SPHERE or kind_a == CAPSULE) and (kind_b == SPHERE or kind_b == CAPSULE):
         core_b = core_of(shapes, pairs, world, b)
-        count = touch_segments(
+        count = collide_segments(
             core_a.position, segment_half(core_a), core_a.radius,
             core_b.position, segment_half(core_b), core_b.radius,
-            reach, pairs.candidate_terms, world,
+            max_distance, pairs.candidate_terms, world,
         )  # fmt: skip
     elif kind_a == SPHERE and (kind_b == BOX or kind_b == CYLINDER):
         core_b = core_of(shapes, pairs, world, b)
-        count = touch_ball(core_a.position, core_a.radius, core_b, reach, pairs.candidate_terms, world)
+        count = collide_ball(
+            core_a.position, core_a.radius, core_b, max_distance, pairs.candidate_terms, world
+        )
     return count
 
 
 @func
-def touch_in_order(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real, around: real
+def collide_in_order(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
 ) -> Int32:
     """Candidates of two shapes in the order of `in_order`."""
     kind_a = shapes.shape_kind[a]
@@ -92,14 +106,14 @@ def touch_in_order(
         return 0
     core_a = core_of(shapes, pairs, world, a)
     if kind_b >= TRIANGLES:
-        return touch_surface(shapes, pairs, world, a, b, core_a, reach, around)
-    count = touch_simple(shapes, pairs, world, a, b, core_a, reach)
+        return collide_surface(shapes, pairs, world, a, b, core_a, max_distance, around)
+    count = collide_simple(shapes, pairs, world, a, b, core_a, max_distance)
     if count >= 0:
         return count
     core_b = core_of(shapes, pairs, world, b)
     if kind_a == BOX and kind_b == BOX:
-        return touch_boxes(shapes, pairs, world, a, b, core_a, core_b, reach)
-    return touch_convex(shapes, pairs, world, a, b, core_a, core_b, reach, 0)
+        return collide_boxes(shapes, pairs, world, a, b, core_a, core_b, max_distance)
+    return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0)
 
 
 @func
@@ -119,8 +133,10 @@ def in_order(shapes: Shapes, a: Int32, b: Int32) -> Index4:
 
 
 @func
-def touch(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real, around: real) -> Int32:
-    """Write at most four candidates for two shapes that are at most `reach` apart; returns their number.
+def collide_shapes(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
+) -> Int32:
+    """Write at most four candidates for two shapes at most `max_distance` apart; returns their number.
 
     Args:
         shapes: All shapes.
@@ -128,11 +144,11 @@ def touch(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach:
         world: The world.
         a: Row of one shape.
         b: Row of the other; normals point from it towards a.
-        reach: Largest distance of a contact [m].
+        max_distance: Largest distance of a contact [m].
         around: Triangles of meshes and height fields within this distance of the other's bounds count [m].
     """
     order = in_order(shapes, a, b)
-    count = touch_in_order(shapes, pairs, world, order[0], order[1], reach, around)
+    count = collide_in_order(shapes, pairs, world, order[0], order[1], max_distance, around)
     if count > 4:
         count = keep_four(pairs.candidate_terms, world, count)
     if order[0] != a:

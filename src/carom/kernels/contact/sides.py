@@ -5,7 +5,7 @@ Normals point from b to a, friction directions follow from normals, and users se
 
 import warp as wp
 
-from carom.kernels.contact.reach import is_part_of_compound
+from carom.kernels.contact.contact_margins import is_part_of_compound
 from carom.kernels.structs import Shapes
 from carom.kernels.types import Index4, Int32, func
 from carom.layouts.codes import PLANE, TRIANGLES

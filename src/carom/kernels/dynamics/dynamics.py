@@ -9,7 +9,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.dynamics.quarantine import report_fault
-from carom.kernels.maths.extremes import within_bounds
+from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import CONSTRAINT_FEEDBACK, FREE_MOTION

@@ -8,7 +8,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.dynamics.rows import add_row, axis_effective_masses, dof_effective_mass
-from carom.kernels.maths.extremes import within_bounds
+from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Vector3, func, real

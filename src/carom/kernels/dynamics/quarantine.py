@@ -25,7 +25,7 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
         dof += 1
     scratch.tree[world, tree].start_activity = state.tree_activity[world, tree]
-    scratch.tree[world, tree].start_tired = state.tree_tired[world, tree]
+    scratch.tree[world, tree].start_wants_sleep = state.tree_wants_sleep[world, tree]
     scratch.tree[world, tree].start_idle_time = state.tree_idle_time[world, tree]
 
 
@@ -42,7 +42,7 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
         dof += 1
     state.tree_activity[world, tree] = scratch.tree[world, tree].start_activity
-    state.tree_tired[world, tree] = scratch.tree[world, tree].start_tired
+    state.tree_wants_sleep[world, tree] = scratch.tree[world, tree].start_wants_sleep
     state.tree_idle_time[world, tree] = scratch.tree[world, tree].start_idle_time
 
 

@@ -19,7 +19,7 @@ from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, inv
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
 from carom.kernels.dynamics.step_ends import begin_step, end_step
-from carom.kernels.solver.activity import has_stirred, is_asleep, stop
+from carom.kernels.solver.activity import has_woken, is_asleep, stop
 from carom.kernels.solver.joint_solver import (
     apply_delta_velocities,
     clear_delta_velocities,
@@ -71,7 +71,7 @@ def free_motion(
         move_single_body(model, settings, state, scratch, world, tree, pushed)
     else:
         move_tree(model, settings, state, scratch, world, tree, pushed)
-    if has_stirred(state, world, tree):
+    if has_woken(state, world, tree):
         # Gravity and forces act on it from the next substep on.
         stop(model, state, world, tree)
     clear_delta_velocities(model, scratch, world, tree)

@@ -119,10 +119,10 @@ def add_direction(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32
     greatest = real(0.0)
     for column in range(sizes.columns):
         share = wp.abs(direction_share(search, blocks, column, direction) / singular)
-        reach = real(0.0)
+        max_distance = real(0.0)
         for block in range(blocks):
-            reach += wp.length(search.entry_jacobian[column * blocks + block])
-        joint_motion += share * reach
+            max_distance += wp.length(search.entry_jacobian[column * blocks + block])
+        joint_motion += share * max_distance
         greatest = wp.max(greatest, share)
     bound = MAX_STEP * wp.min(real(1.0), end_motion * singular / wp.max(joint_motion, _NEGLIGIBLE))
     factor = along / singular

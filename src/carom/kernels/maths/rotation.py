@@ -4,7 +4,7 @@ import math
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greater
+from carom.kernels.maths.min_max import maximum
 from carom.kernels.types import Matrix3, Quaternion, Vector3, func, real
 
 # An orientation is not meant to turn by more than this in one step (as in Bullet).
@@ -59,7 +59,7 @@ def rotation_step(rate: Vector3, dt: real) -> Quaternion:
     speed = wp.length(rate)
     if speed * dt > MAX_ANGLE_PER_STEP:
         speed = MAX_ANGLE_PER_STEP / dt
-    scale = wp.sin(0.5 * speed * dt) / greater(speed, _SMALL_RATE)
+    scale = wp.sin(0.5 * speed * dt) / maximum(speed, _SMALL_RATE)
     if speed < _SMALL_RATE:
         # Taylor series of sin(speed dt / 2) / speed.
         scale = 0.5 * dt - dt * dt * dt * 0.020833333333 * speed * speed

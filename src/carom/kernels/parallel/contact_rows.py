@@ -2,9 +2,9 @@
 
 import warp as wp
 
-from carom.kernels.parallel.workspace import GIVEN_UP, UNWRITTEN, WRITTEN, couplings_of_island, is_called_off
+from carom.kernels.parallel.workspace import GIVEN_UP, UNWRITTEN, WRITTEN, is_called_off, pair_rows_of_island
 from carom.kernels.solver.units import write_units
-from carom.kernels.structs import Contacts, Couplings, IslandWork, Model, Scratch, Settings, Shapes, State
+from carom.kernels.structs import Contacts, IslandWork, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, kernel, real
 from carom.layouts.status import OVERFLOW, STATUS
 
@@ -17,7 +17,7 @@ def island_contacts_kernel(
     scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
-    couplings: Couplings,
+    pair_rows: PairRows,
     work: IslandWork,
 ):
     """Write the contacts of each island for which that has still to be done.
@@ -31,13 +31,13 @@ def island_contacts_kernel(
         return
     made = work.tree_progress[world, root].made
     units = Index4(0, 0, 0, 0)
-    first_contact = couplings.tree_first_contact[world, root]
+    first_contact = pair_rows.tree_first_contact[world, root]
     if first_contact >= 0:
         units = write_units(
             model, settings, state, scratch, shapes, contacts,
-            couplings_of_island(couplings, work, world, root), world, first_contact,
+            pair_rows_of_island(pair_rows, work, world, root), world, first_contact,
             Index4(made[1], made[2], 0, 0),
-            settings.contact_warm_starting * real(work.tree_progress[world, root].calm),
+            settings.contact_warm_starting * real(work.tree_progress[world, root].resting),
         )  # fmt: skip
     work.tree_progress[world, root].units = units
     work.tree_progress[world, root].stage = Int32(WRITTEN)

@@ -5,19 +5,19 @@ import warp as wp
 from carom.kernels.parallel.workspace import (
     UNWRITTEN,
     WRITTEN,
-    couplings_of_island,
     is_called_off,
+    pair_rows_of_island,
     scratch_of_island,
 )
-from carom.kernels.solver.calm import NOT_CALM
 from carom.kernels.solver.joint_solver import keep_row_results
 from carom.kernels.solver.solver import island_rows, keep_constraint_impulses
 from carom.kernels.solver.units import keep_unit_impulses
+from carom.kernels.solver.warm_starting import NOT_RESTING
 from carom.kernels.structs import (
     Contacts,
-    Couplings,
     IslandWork,
     Model,
+    PairRows,
     Scratch,
     Settings,
     State,
@@ -33,7 +33,7 @@ def island_rows_kernel(
     state: State,
     scratch: Scratch,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     work: IslandWork,
 ):
     """Begin the search for the impulses of each island."""
@@ -41,13 +41,13 @@ def island_rows_kernel(
     if is_called_off(state, world) or state.tree_island[world, root] != root:
         return
     own_scratch = scratch_of_island(scratch, work, world, root)
-    own_couplings = couplings_of_island(couplings, work, world, root)
+    own_pair_rows = pair_rows_of_island(pair_rows, work, world, root)
     work.tree_progress[world, root].made = island_rows(
-        model, settings, state, own_scratch, users, own_couplings, world, root
+        model, settings, state, own_scratch, users, own_pair_rows, world, root
     )
     work.tree_progress[world, root].units = Index4(0, 0, 0, 0)
-    work.tree_progress[world, root].calm = wp.min(couplings.tree_calm[world, root], 1)
-    work.tree_progress[world, root].outcome = Int32(NOT_CALM)
+    work.tree_progress[world, root].resting = wp.min(pair_rows.tree_rest[world, root], 1)
+    work.tree_progress[world, root].outcome = Int32(NOT_RESTING)
     work.tree_progress[world, root].stage = Int32(UNWRITTEN)
 
 
@@ -59,7 +59,7 @@ def island_impulses_kernel(
     scratch: Scratch,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     work: IslandWork,
 ):
     """Report how the search went in each island, and the impulses found."""
@@ -69,7 +69,7 @@ def island_impulses_kernel(
     if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != WRITTEN:
         return
     own_scratch = scratch_of_island(scratch, work, world, root)
-    own_couplings = couplings_of_island(couplings, work, world, root)
+    own_pair_rows = pair_rows_of_island(pair_rows, work, world, root)
     keep_row_results(
         model,
         settings,
@@ -83,9 +83,9 @@ def island_impulses_kernel(
     )
     keep_unit_impulses(
         contacts,
-        own_couplings,
+        own_pair_rows,
         world,
         work.tree_progress[world, root].units[0],
         work.tree_progress[world, root].outcome,
     )
-    keep_constraint_impulses(model, state, users, own_couplings, world, root)
+    keep_constraint_impulses(model, state, users, own_pair_rows, world, root)

@@ -2,16 +2,26 @@
 
 import warp as wp
 
-from carom.kernels.parallel.workspace import COUPLING, JACOBIAN, PATCH, ROW, RUN, TERMS, UNIT, VISIT, Window
-from carom.kernels.solver.calm import is_rigid
-from carom.kernels.solver.couplings import tree_blocks
-from carom.kernels.solver.long_patches import RUN_PER_BLOCK
+from carom.kernels.parallel.workspace import (
+    JACOBIAN,
+    MANIFOLD_BLOCK,
+    PAIR_ROW,
+    ROW,
+    RUN,
+    TERMS,
+    UNIT,
+    VISIT,
+    Window,
+)
+from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK
+from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.units import next_unit
+from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import (
     Contacts,
-    Couplings,
     IslandWork,
     Model,
+    PairRows,
     Settings,
     Shapes,
     State,
@@ -24,11 +34,11 @@ from carom.layouts.contacts import ROWS_PER_PAIR
 
 @func
 def room_for_constraints(
-    model: Model, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
+    model: Model, users: UserConstraints, pair_rows: PairRows, world: Int32, root: Int32
 ) -> Window:
     """What the motors, limits and user constraints of an island need at most."""
     room = Window()
-    constraint = couplings.tree_first_constraint[world, root]
+    constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
         if model.constraint[constraint].kind != USER:
             room[ROW] += MAX_ROWS_PER_CONSTRAINT
@@ -37,43 +47,43 @@ def room_for_constraints(
             user = model.constraint[constraint].link
             blocks = tree_blocks(model, users.user_tree_a[user]) + tree_blocks(model, users.user_tree_b[user])
             room[VISIT] += ROWS_PER_PAIR
-            room[COUPLING] += ROWS_PER_PAIR
+            room[PAIR_ROW] += ROWS_PER_PAIR
             room[JACOBIAN] += ROWS_PER_PAIR * blocks
-        constraint = couplings.constraint_next[world, constraint]
+        constraint = pair_rows.constraint_next[world, constraint]
     return room
 
 
 @func
 def room_for_contacts(
-    model: Model, shapes: Shapes, contacts: Contacts, couplings: Couplings, world: Int32, root: Int32
+    model: Model, shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32, root: Int32
 ) -> Window:
     """What the contacts of an island need at most.
 
-    The rows of long patches are written one after the other in the same place.
+    The rows of articulated manifold block are written one after the other in the same place.
     """
     room = Window()
     temporary = Int32(0)
-    contact = couplings.tree_first_contact[world, root]
+    contact = pair_rows.tree_first_contact[world, root]
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
         a = shapes.shape_tree[pair[0]]
         b = shapes.shape_tree[pair[1]]
         blocks = tree_blocks(model, a) + tree_blocks(model, b)
         rigid = is_rigid(model, a) and is_rigid(model, b)
-        members, count = next_unit(shapes, contacts, couplings, world, contact, rigid)
+        members, count = next_unit(shapes, contacts, pair_rows, world, contact, rigid)
         room[UNIT] += 1
         room[TERMS] = wp.max(room[TERMS], count)
         if count == 1:
-            room[COUPLING] += ROWS_PER_PAIR
+            room[PAIR_ROW] += ROWS_PER_PAIR
             room[JACOBIAN] += ROWS_PER_PAIR * blocks
         else:
-            room[PATCH] += 1
+            room[MANIFOLD_BLOCK] += 1
             if not rigid:
                 room[RUN] += RUN_PER_BLOCK * blocks
                 temporary = wp.max(temporary, ROWS_PER_PAIR * blocks)
-        contact = couplings.contact_next[world, members[count - 1]]
+        contact = pair_rows.contact_next[world, members[count - 1]]
     if temporary > 0:
-        room[COUPLING] += ROWS_PER_PAIR
+        room[PAIR_ROW] += ROWS_PER_PAIR
         room[JACOBIAN] += temporary
     return room
 
@@ -86,7 +96,7 @@ def lay_out_islands(
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     work: IslandWork,
     world: Int32,
 ):
@@ -94,8 +104,8 @@ def lay_out_islands(
     free = Window()
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
-            room = room_for_constraints(model, users, couplings, world, tree) + room_for_contacts(
-                model, shapes, contacts, couplings, world, tree
+            room = room_for_constraints(model, users, pair_rows, world, tree) + room_for_contacts(
+                model, shapes, contacts, pair_rows, world, tree
             )
             work.tree_window[world, tree] = free
             work.tree_room[world, tree] = room

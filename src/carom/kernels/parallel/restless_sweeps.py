@@ -1,25 +1,25 @@
-"""The sweeps over the rows of islands that are not calm, over islands and worlds."""
+"""The sweeps over the rows of islands that move, over islands and worlds."""
 
 import warp as wp
 
 from carom.kernels.parallel.sweeps import sweep
 from carom.kernels.parallel.workspace import WRITTEN, is_called_off
-from carom.kernels.structs import Couplings, IslandWork, Scratch, Settings, State
+from carom.kernels.structs import IslandWork, PairRows, Scratch, Settings, State
 from carom.kernels.types import kernel
 
 
 @kernel
 def restless_sweeps_kernel(
-    settings: Settings, state: State, scratch: Scratch, couplings: Couplings, work: IslandWork
+    settings: Settings, state: State, scratch: Scratch, pair_rows: PairRows, work: IslandWork
 ):
-    """Solve each island that is not calm, or could not be solved as if it were."""
+    """Solve each island that moves, or could not be solved as one at rest."""
     root, world = wp.tid()
     if is_called_off(state, world):
         return
     if (
         state.tree_island[world, root] == root
         and work.tree_progress[world, root].stage == WRITTEN
-        and work.tree_progress[world, root].calm == 0
+        and work.tree_progress[world, root].resting == 0
     ):
         visits = work.tree_progress[world, root].made[3]
-        sweep(settings, scratch, couplings, work, world, root, visits, 0)
+        sweep(settings, scratch, pair_rows, work, world, root, visits, 0)

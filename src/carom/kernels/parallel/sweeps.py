@@ -5,13 +5,13 @@ import warp as wp
 from carom.kernels.parallel.workspace import (
     UNWRITTEN,
     WRITTEN,
-    couplings_of_island,
     is_called_off,
+    pair_rows_of_island,
     scratch_of_island,
 )
-from carom.kernels.solver.calm import SOLVED, UNSOLVED
 from carom.kernels.solver.solver import forget_changes, sweep_island
-from carom.kernels.structs import Couplings, IslandWork, Model, Scratch, Settings, State
+from carom.kernels.solver.warm_starting import SOLVED, UNSOLVED
+from carom.kernels.structs import IslandWork, Model, PairRows, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector3, func, kernel
 
 
@@ -19,22 +19,22 @@ from carom.kernels.types import Int32, Vector3, func, kernel
 def sweep(
     settings: Settings,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     work: IslandWork,
     world: Int32,
     root: Int32,
     visits: Int32,
-    calm: Int32,
+    resting: Int32,
 ) -> Vector3:
     """Relax the rows of an island until they hardly change; see `solver.sweep_island`."""
     found = sweep_island(
         settings,
         scratch_of_island(scratch, work, world, root),
-        couplings_of_island(couplings, work, world, root),
+        pair_rows_of_island(pair_rows, work, world, root),
         world,
         visits,
         work.tree_progress[world, root].units,
-        calm,
+        resting,
     )
     work.tree_progress[world, root].residual = found[0]
     work.tree_progress[world, root].sweeps = Int32(found[1])
@@ -42,24 +42,24 @@ def sweep(
 
 
 @kernel
-def calm_sweeps_kernel(
-    settings: Settings, model: Model, state: State, scratch: Scratch, couplings: Couplings, work: IslandWork
+def resting_sweeps_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, work: IslandWork
 ):
-    """Solve each calm island; one that cannot be solved so has its contacts written again, from nothing."""
+    """Solve each island at rest; if one cannot be solved so, its contacts are written again, from nothing."""
     root, world = wp.tid()
     if is_called_off(state, world):
         return
     if (
         state.tree_island[world, root] != root
         or work.tree_progress[world, root].stage != WRITTEN
-        or work.tree_progress[world, root].calm == 0
+        or work.tree_progress[world, root].resting == 0
     ):
         return
     # It has no motors, limits or user constraints to visit.
-    found = sweep(settings, scratch, couplings, work, world, root, 0, 1)
+    found = sweep(settings, scratch, pair_rows, work, world, root, 0, 1)
     work.tree_progress[world, root].outcome = Int32(SOLVED)
     if found[0] > settings.residual_threshold:
         work.tree_progress[world, root].outcome = Int32(UNSOLVED)
-        work.tree_progress[world, root].calm = 0
+        work.tree_progress[world, root].resting = 0
         work.tree_progress[world, root].stage = Int32(UNWRITTEN)
         forget_changes(settings, model, state, scratch, world, root)

@@ -14,9 +14,9 @@ from carom.kernels.solver.activity import is_asleep, stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
 from carom.kernels.structs import (
     Contacts,
-    Couplings,
     IslandWork,
     Model,
+    PairRows,
     Pairs,
     Scratch,
     Settings,
@@ -60,27 +60,27 @@ def world_islands_kernel(
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     work: IslandWork,
 ):
     """Group the trees of each world into islands, and give each of these its part of the workspace."""
     world = wp.tid()
     if is_called_off(state, world):
         return
-    build_islands(settings, model, state, shapes, contacts, users, couplings, world)
-    lay_out_islands(settings, model, state, shapes, contacts, users, couplings, work, world)
+    build_islands(settings, model, state, shapes, contacts, users, pair_rows, world)
+    lay_out_islands(settings, model, state, shapes, contacts, users, pair_rows, work, world)
 
 
 @kernel
 def tree_free_motion_kernel(
-    settings: Settings, model: Model, state: State, scratch: Scratch, couplings: Couplings, work: IslandWork
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, work: IslandWork
 ):
     """Velocities of each tree after a substep if there were no constraints."""
     tree, world = wp.tid()
     if is_called_off(state, world):
         return
     work.tree_free_fault[world, tree] = 0
-    pushed = may_be_pushed(model, couplings, world, tree)
+    pushed = may_be_pushed(model, pair_rows, world, tree)
     own_state = state_of_tree(state, work.tree_free_fault, tree)
     free_motion(model, settings, own_state, scratch, world, tree, pushed)
 

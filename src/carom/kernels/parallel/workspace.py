@@ -1,20 +1,20 @@
 """What the islands of a world need to be solved side by side: each has its own part of the workspace.
 
 Where islands are solved one after the other, each writes its rows from the first on. Side by side they get
-windows: the arrays of `Scratch` and `Couplings` that begin where those of the island before end.
+windows: the arrays of `Scratch` and `PairRows` that begin where those of the island before end.
 """
 
 import warp as wp
 
-from carom.kernels.structs import Couplings, IslandWork, Scratch, State
+from carom.kernels.structs import IslandWork, PairRows, Scratch, State
 from carom.kernels.types import Int32, IntRows, func
 from carom.kernels.warp_types import warp_type
 from carom.layouts import parallel
 from carom.layouts.status import STATUS, WELL
 
-# What a window has parts of: rows over one tree, rows to visit, units, patches, rows over two trees, their
-# blocks, the blocks of long patches, and contact terms.
-ROW, VISIT, UNIT, PATCH, COUPLING, JACOBIAN, RUN, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
+# What a window has parts of: rows over one tree, rows to visit, units, manifold blocks, rows over two trees,
+# their blocks, the blocks of articulated manifold blocks, and contact terms.
+ROW, VISIT, UNIT, MANIFOLD_BLOCK, PAIR_ROW, JACOBIAN, RUN, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
 
 # How far an island is: its contacts have still to be written; all its rows are; they did not fit.
 UNWRITTEN, WRITTEN, GIVEN_UP = 0, 1, 2
@@ -45,42 +45,44 @@ def scratch_of_island(scratch: Scratch, work: IslandWork, world: Int32, root: In
 
 
 @func
-def couplings_of_island(couplings: Couplings, work: IslandWork, world: Int32, root: Int32) -> Couplings:
+def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, root: Int32) -> PairRows:
     """The solver's arrays over two trees with an island's window in place of the whole."""
     first = work.tree_window[world, root]
-    own = Couplings()
-    own = couplings
+    own = PairRows()
+    own = pair_rows
 
-    row = wp.min(first[COUPLING], couplings.coupling_start.shape[1])
-    last_row = window_end(work, world, root, COUPLING, couplings.coupling_start.shape[1])
-    own.coupling_place = couplings.coupling_place[:, row:last_row]
-    own.coupling_start = couplings.coupling_start[:, row:last_row]
-    own.coupling_terms = couplings.coupling_terms[:, row:last_row]
-    own.coupling_bound = couplings.coupling_bound[:, row:last_row]
+    row = wp.min(first[PAIR_ROW], pair_rows.row_start.shape[1])
+    last_row = window_end(work, world, root, PAIR_ROW, pair_rows.row_start.shape[1])
+    own.row_place = pair_rows.row_place[:, row:last_row]
+    own.row_start = pair_rows.row_start[:, row:last_row]
+    own.row_terms = pair_rows.row_terms[:, row:last_row]
+    own.row_bound = pair_rows.row_bound[:, row:last_row]
 
-    block = wp.min(first[JACOBIAN], couplings.jacobian_row.shape[1])
-    last_block = window_end(work, world, root, JACOBIAN, couplings.jacobian_row.shape[1])
-    own.jacobian_row = couplings.jacobian_row[:, block:last_block]
-    own.jacobian_response = couplings.jacobian_response[:, block:last_block]
-    own.entry_row = couplings.entry_row[:, 4 * block : 4 * last_block]
-    own.entry_response = couplings.entry_response[:, 4 * block : 4 * last_block]
+    block = wp.min(first[JACOBIAN], pair_rows.jacobian_row.shape[1])
+    last_block = window_end(work, world, root, JACOBIAN, pair_rows.jacobian_row.shape[1])
+    own.jacobian_row = pair_rows.jacobian_row[:, block:last_block]
+    own.jacobian_response = pair_rows.jacobian_response[:, block:last_block]
+    own.entry_row = pair_rows.entry_row[:, 4 * block : 4 * last_block]
+    own.entry_response = pair_rows.entry_response[:, 4 * block : 4 * last_block]
 
-    run = wp.min(first[RUN], couplings.run_block.shape[1])
-    last_run = window_end(work, world, root, RUN, couplings.run_block.shape[1])
-    own.run_block = couplings.run_block[:, run:last_run]
-    own.entry_run = couplings.entry_run[:, 4 * run : 4 * last_run]
+    run = wp.min(first[RUN], pair_rows.run_block.shape[1])
+    last_run = window_end(work, world, root, RUN, pair_rows.run_block.shape[1])
+    own.run_block = pair_rows.run_block[:, run:last_run]
+    own.entry_run = pair_rows.entry_run[:, 4 * run : 4 * last_run]
 
     visit = first[VISIT]
     unit = first[UNIT]
-    patch = first[PATCH]
+    manifold_block = first[MANIFOLD_BLOCK]
     terms = first[TERMS]
-    own.visit_row = couplings.visit_row[
-        :, visit : window_end(work, world, root, VISIT, couplings.visit_row.shape[1])
+    own.visit_row = pair_rows.visit_row[
+        :, visit : window_end(work, world, root, VISIT, pair_rows.visit_row.shape[1])
     ]
-    own.unit_code = couplings.unit_code[
-        :, unit : window_end(work, world, root, UNIT, couplings.unit_code.shape[1])
+    own.unit_code = pair_rows.unit_code[
+        :, unit : window_end(work, world, root, UNIT, pair_rows.unit_code.shape[1])
     ]
-    own.patch = couplings.patch[:, patch : window_end(work, world, root, PATCH, couplings.patch.shape[1])]
+    own.manifold_block = pair_rows.manifold_block[
+        :, manifold_block : window_end(work, world, root, MANIFOLD_BLOCK, pair_rows.manifold_block.shape[1])
+    ]
     own.terms = work.terms[:, terms : window_end(work, world, root, TERMS, work.terms.shape[1])]
     return own
 

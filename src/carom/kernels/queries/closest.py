@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet, place_shapes
 from carom.kernels.contact.candidates import add_candidate, candidate_distance, exchange, flip_candidates
-from carom.kernels.contact.narrow_phase import in_order, touch_simple
+from carom.kernels.contact.narrow_phase import collide_simple, in_order
 from carom.kernels.shapes.convex import nearest_or_deepest
 from carom.kernels.shapes.cores import Core, core_of
 from carom.kernels.shapes.surfaces import nearest_on_surface
@@ -16,7 +16,7 @@ from carom.layouts.contacts import PLACED, READINESS
 
 @func
 def nearest_convex(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, reach: real
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, max_distance: real
 ) -> Int32:
     """The nearest candidate of two shapes, as `nearest_in_order`, if neither is a surface.
 
@@ -27,9 +27,9 @@ def nearest_convex(
         a: Row of one shape.
         b: Row of the other.
         core_a: Core of a.
-        reach: Largest distance of interest [m].
+        max_distance: Largest distance of interest [m].
     """
-    count = touch_simple(shapes, pairs, world, a, b, core_a, reach)
+    count = collide_simple(shapes, pairs, world, a, b, core_a, max_distance)
     if count >= 0:
         for row in range(1, count):
             if candidate_distance(pairs.candidate_terms, world, row) < candidate_distance(
@@ -39,32 +39,36 @@ def nearest_convex(
         return wp.min(count, 1)
     core_b = core_of(shapes, pairs, world, b)
     rounding = core_a.radius + core_b.radius
-    distance, normal, _on_a, on_b = nearest_or_deepest(shapes, pairs, world, core_a, core_b, reach + rounding)
+    distance, normal, _on_a, on_b = nearest_or_deepest(
+        shapes, pairs, world, core_a, core_b, max_distance + rounding
+    )
     distance -= rounding
-    if distance > reach:
+    if distance > max_distance:
         return 0
     return add_candidate(pairs.candidate_terms, world, 0, on_b + normal * core_b.radius, normal, distance)
 
 
 @func
-def nearest_in_order(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> Int32:
+def nearest_in_order(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real
+) -> Int32:
     """The nearest candidate of two shapes in the order of `narrow_phase.in_order`: 1, or 0 if too far."""
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
     if kind_a == PLANE or kind_a >= TRIANGLES:
         return 0
     core_a = core_of(shapes, pairs, world, a)
-    distance = reach + 1.0
+    distance = max_distance + 1.0
     if kind_b >= TRIANGLES:
-        distance, normal, point = nearest_on_surface(shapes, pairs, world, a, b, core_a, reach)
-        if distance > reach:
+        distance, normal, point = nearest_on_surface(shapes, pairs, world, a, b, core_a, max_distance)
+        if distance > max_distance:
             return 0
         return add_candidate(pairs.candidate_terms, world, 0, point, normal, distance)
-    return nearest_convex(shapes, pairs, world, a, b, core_a, reach)
+    return nearest_convex(shapes, pairs, world, a, b, core_a, max_distance)
 
 
 @func
-def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reach: real) -> Int32:
+def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real) -> Int32:
     """Write the nearest candidate of two shapes as the first; returns 1, or 0 if they are too far apart.
 
     Args:
@@ -73,17 +77,17 @@ def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, reac
         world: The world.
         a: Row of one shape.
         b: Row of the other; the normal points from it towards a.
-        reach: Largest distance of interest [m].
+        max_distance: Largest distance of interest [m].
     """
     order = in_order(shapes, a, b)
-    count = nearest_in_order(shapes, pairs, world, order[0], order[1], reach)
+    count = nearest_in_order(shapes, pairs, world, order[0], order[1], max_distance)
     if order[0] != a:
         flip_candidates(pairs.candidate_terms, world, count)
     return count
 
 
 @kernel
-def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, count: Int32, reach: real):
+def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, count: Int32, max_distance: real):
     """Nearest points of given pairs of shapes, one pair after the other.
 
     Args:
@@ -91,7 +95,7 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
         pairs: Room for intermediate results, and the poses of the shapes, from `place_shapes_kernel`.
         searches: The pairs, and room for what is found.
         count: How many there are.
-        reach: Largest distance of interest [m].
+        max_distance: Largest distance of interest [m].
     """
     world = wp.tid()
     found = Int32(0)
@@ -103,9 +107,9 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
             pairs.shape_upper[world, a],
             pairs.shape_lower[world, b],
             pairs.shape_upper[world, b],
-            reach,
+            max_distance,
         ):
-            if nearest(shapes, pairs, world, a, b, reach) == 1:
+            if nearest(shapes, pairs, world, a, b, max_distance) == 1:
                 searches.search_found[world, found] = pairs.candidate_terms[world, 0]
                 searches.search_pair[world, found] = i
                 found += 1

@@ -69,7 +69,7 @@ def splat(number: real) -> Vector4:
 
 
 @func
-def lesser(a: Vector4, b: Vector4) -> Vector4:
+def minimum(a: Vector4, b: Vector4) -> Vector4:
     """The lesser number of each lane."""
     return Vector4(
         wp.where(a[0] < b[0], a[0], b[0]),
@@ -80,7 +80,7 @@ def lesser(a: Vector4, b: Vector4) -> Vector4:
 
 
 @func
-def greater(a: Vector4, b: Vector4) -> Vector4:
+def maximum(a: Vector4, b: Vector4) -> Vector4:
     """The greater number of each lane."""
     return Vector4(
         wp.where(a[0] > b[0], a[0], b[0]),
@@ -99,10 +99,10 @@ def length_within(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3
     other_x = wp.cw_mul(splat(upper[0]) - packet.start_x, packet.inverse_x)
     other_y = wp.cw_mul(splat(upper[1]) - packet.start_y, packet.inverse_y)
     other_z = wp.cw_mul(splat(upper[2]) - packet.start_z, packet.inverse_z)
-    enter_xy = greater(lesser(one_x, other_x), lesser(one_y, other_y))
-    enter = greater(enter_xy, greater(lesser(one_z, other_z), splat(0.0)))
-    leave_xy = lesser(greater(one_x, other_x), greater(one_y, other_y))
-    leave = lesser(leave_xy, lesser(greater(one_z, other_z), limit))
+    enter_xy = maximum(minimum(one_x, other_x), minimum(one_y, other_y))
+    enter = maximum(enter_xy, maximum(minimum(one_z, other_z), splat(0.0)))
+    leave_xy = minimum(maximum(one_x, other_x), maximum(one_y, other_y))
+    leave = minimum(leave_xy, minimum(maximum(one_z, other_z), limit))
     return leave - enter
 
 

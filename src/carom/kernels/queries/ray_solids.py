@@ -32,8 +32,8 @@ def ray_from_margin(from_core: Vector3, way: Vector3):
 @func
 def beyond(x: real, core: real) -> real:
     """How far a coordinate is beyond a core that reaches as far on both sides, if it reaches anywhere."""
-    reach = wp.max(core, real(0.0))
-    return x - wp.clamp(x, -reach, reach)
+    max_distance = wp.max(core, real(0.0))
+    return x - wp.clamp(x, -max_distance, max_distance)
 
 
 @func

@@ -59,8 +59,8 @@ def nearest_in_cylinder(point: Vector3, radius: real, half_length: real):
 
 
 @shared_func
-def touch_ball(
-    center: Vector3, radius: real, core: Core, reach: real, candidates: Vector8Rows, world: Int32
+def collide_ball(
+    center: Vector3, radius: real, core: Core, max_distance: real, candidates: Vector8Rows, world: Int32
 ) -> Int32:
     """Candidate of shape a, a ball, on shape b, the core of a box or of a cylinder; returns their number."""
     local = wp.transpose(core.frame) * (center - core.position)
@@ -69,7 +69,7 @@ def touch_ball(
     else:
         nearest, normal, distance = nearest_in_cylinder(local, core.size[0], core.size[1])
     gap = distance - radius - core.radius
-    if gap > reach:
+    if gap > max_distance:
         return 0
     point = core.position + core.frame * (nearest + normal * core.radius)
     return add_candidate(candidates, world, 0, point, core.frame * normal, gap)

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greatest_entry, least_entry, lower_corner
+from carom.kernels.maths.min_max import greatest_entry, least_entry, lower_corner
 from carom.kernels.shapes.cores import toward
 from carom.kernels.shapes.segments import nearest_places
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
@@ -41,7 +41,7 @@ def main_axis(direction: Vector3) -> Int32:
 
 @shared_func
 def box_axis(
-    frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, reach: real
+    frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, max_distance: real
 ):
     """Separating axis test of two boxes.
 
@@ -51,7 +51,7 @@ def box_axis(
         frame_b: Rotation matrix of b.
         half_b: Half extents of b.
         offset: From the centre of a to that of b, in world axes.
-        reach: The test ends at an axis along which they are further apart than this.
+        max_distance: The test ends at an axis along which they are further apart than this.
 
     Returns:
         What it is (see `FACE_A`), the unit axis from b towards a in world axes, and the distance
@@ -84,7 +84,7 @@ def box_axis(
             best = gaps_b[i]
             code = Int32(FACE_B)
             normal = column(frame_b, i) * -toward(t_in_b[i], 1.0)
-    if best > reach + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
+    if best > max_distance + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
         return Int32(APART), normal, best
 
     thinnest = least_entry(lower_corner(half_a, half_b))
@@ -101,9 +101,9 @@ def box_axis(
         if length_sq > PARALLEL:
             # The cross product of unit vector i with column j, and what both boxes reach along it.
             along = t[i2] * turn[i1, j] - t[i1] * turn[i2, j]
-            reach_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
-            reach_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
-            gap = (wp.abs(along) - reach_a - reach_b) / wp.sqrt(length_sq)
+            max_distance_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
+            max_distance_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
+            gap = (wp.abs(along) - max_distance_a - max_distance_b) / wp.sqrt(length_sq)
             if gap > needed:
                 needed = gap
                 best = gap
@@ -111,7 +111,7 @@ def box_axis(
                 cross = wp.cross(column(frame_a, i), column(frame_b, j))
                 normal = cross * (-toward(along, 1.0) / wp.sqrt(length_sq))
         pair += 1
-    if code >= EDGES and best > reach:
+    if code >= EDGES and best > max_distance:
         return Int32(APART), normal, best
     return code, normal, best
 

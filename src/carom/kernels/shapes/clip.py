@@ -78,7 +78,7 @@ def clip_faces(
     reference_is_a: Int32,
     radius_a: real,
     radius_b: real,
-    reach: real,
+    max_distance: real,
     candidates: Vector8Rows,
     world: Int32,
     found: Int32,
@@ -97,7 +97,7 @@ def clip_faces(
         reference_is_a: 1 if the reference face is that of a.
         radius_a: Rounding of a.
         radius_b: Rounding of b.
-        reach: Largest distance of a contact.
+        max_distance: Largest distance of a contact.
         candidates: Where candidates go.
         world: The world.
         found: Number of candidates already there.
@@ -122,7 +122,7 @@ def clip_faces(
         v = incident[world, i]
         core_distance = wp.dot(v - p, outward) / slope
         distance = core_distance - radius_a - radius_b
-        if distance <= reach:
+        if distance <= max_distance:
             # The corner is on the core of the incident shape.
             point = v + normal * radius_b
             if reference_is_a == 0:

@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate, candidate_distance
-from carom.kernels.maths.extremes import lesser
+from carom.kernels.maths.min_max import minimum
 from carom.kernels.shapes.clip import clip_faces
 from carom.kernels.shapes.cores import Core, support, toward
 from carom.kernels.shapes.faces import arrange_box_corners, supporting_face
@@ -48,10 +48,12 @@ def over_face(box: Core, other: Core, vertex_position: Vectors3):
 
 
 @func
-def nearest_or_deepest(shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core, core_b: Core, reach: real):
+def nearest_or_deepest(
+    shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core, core_b: Core, max_distance: real
+):
     """Distance of two cores (negative: overlap), normal on b towards a, nearest points on a and on b.
 
-    If the distance is more than `reach` it is a lower bound, and the rest means nothing.
+    If the distance is more than `max_distance` it is a lower bound, and the rest means nothing.
     """
     if core_a.kind == BOX:
         height, outward, lowest = over_face(core_a, core_b, shapes.vertex_position)
@@ -62,7 +64,7 @@ def nearest_or_deepest(shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core,
         if height > TOUCHING:
             return height, outward, lowest, lowest - outward * height
     start = core_a.position - core_b.position
-    distance, point_a, point_b = nearest_points(core_a, core_b, shapes.vertex_position, start, reach)
+    distance, point_a, point_b = nearest_points(core_a, core_b, shapes.vertex_position, start, max_distance)
     normal = start
     if distance > TOUCHING:
         normal = (point_a - point_b) / wp.length(point_a - point_b)
@@ -106,7 +108,7 @@ def face_towards(
 
 
 @func
-def touch_faces(
+def collide_faces(
     shapes: Shapes,
     pairs: Pairs,
     world: Int32,
@@ -115,7 +117,7 @@ def touch_faces(
     core_a: Core,
     core_b: Core,
     normal: Vector3,
-    reach: real,
+    max_distance: real,
     found: Int32,
 ) -> Int32:
     """Add the candidates of two faces that lie on each other; none if neither face is flat on the normal."""
@@ -133,20 +135,20 @@ def touch_faces(
             arrange_box_corners(core_b, normal_b, pairs.polygon_b, world)
         count = clip_faces(
             core_a, pairs.polygon_a, count_a, normal_a, pairs.polygon_b, count_b, pairs.polygon_clipped,
-            normal, 1, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
+            normal, 1, core_a.radius, core_b.radius, max_distance, pairs.candidate_terms, world, found,
         )  # fmt: skip
     elif flat_b > FLAT_ON:
         if core_a.kind == BOX:
             arrange_box_corners(core_a, normal_a, pairs.polygon_a, world)
         count = clip_faces(
             core_b, pairs.polygon_b, count_b, normal_b, pairs.polygon_a, count_a, pairs.polygon_clipped,
-            normal, 0, core_a.radius, core_b.radius, reach, pairs.candidate_terms, world, found,
+            normal, 0, core_a.radius, core_b.radius, max_distance, pairs.candidate_terms, world, found,
         )  # fmt: skip
     return count
 
 
 @func
-def touch_convex(
+def collide_convex(
     shapes: Shapes,
     pairs: Pairs,
     world: Int32,
@@ -154,21 +156,21 @@ def touch_convex(
     b: Int32,
     core_a: Core,
     core_b: Core,
-    reach: real,
+    max_distance: real,
     found: Int32,
 ) -> Int32:
-    """Add the candidates of two cores at most `reach` apart to those found; returns their number."""
+    """Add the candidates of two cores at most `max_distance` apart to those found; returns their number."""
     rounding = core_a.radius + core_b.radius
     core_distance, normal, _point_a, point_b = nearest_or_deepest(
-        shapes, pairs, world, core_a, core_b, reach + rounding
+        shapes, pairs, world, core_a, core_b, max_distance + rounding
     )
     distance = core_distance - rounding
-    if distance > reach:
+    if distance > max_distance:
         return found
-    count = touch_faces(shapes, pairs, world, a, b, core_a, core_b, normal, reach, found)
+    count = collide_faces(shapes, pairs, world, a, b, core_a, core_b, normal, max_distance, found)
     deepest = distance + 2.0 * DEEPER
     for row in range(found, count):
-        deepest = lesser(deepest, candidate_distance(pairs.candidate_terms, world, row))
+        deepest = minimum(deepest, candidate_distance(pairs.candidate_terms, world, row))
     if count == found or distance < deepest - DEEPER:
         count = add_candidate(
             pairs.candidate_terms, world, count, point_b + normal * core_b.radius, normal, distance

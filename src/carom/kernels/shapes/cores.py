@@ -7,7 +7,7 @@ lies outside. Only between boxes, and against planes, boxes have sharp edges.
 
 import warp as wp
 
-from carom.kernels.maths.extremes import least_entry, lesser
+from carom.kernels.maths.min_max import least_entry, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, Vectors3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
@@ -42,10 +42,10 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
     if core.kind == SPHERE or core.kind == CAPSULE:
         core.radius = core.size[0]
     elif core.kind == BOX:
-        core.radius = lesser(margin, least_entry(core.size))
+        core.radius = minimum(margin, least_entry(core.size))
         core.size = core.size - Vector3(core.radius, core.radius, core.radius)
     elif core.kind == CYLINDER:
-        core.radius = lesser(margin, lesser(core.size[0], core.size[1]))
+        core.radius = minimum(margin, minimum(core.size[0], core.size[1]))
         core.size = core.size - Vector3(core.radius, core.radius, 0.0)
     else:
         core.radius = margin

@@ -6,7 +6,7 @@ cores, by a simplex of at most four differences that moves towards it.
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greater, within_bounds
+from carom.kernels.maths.min_max import maximum, within_bounds
 from carom.kernels.shapes.cores import Core, support
 from carom.kernels.types import Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
 
@@ -125,7 +125,7 @@ def nearest_weights(simplex: Matrix43, count: Int32) -> Vector4:
 
 
 @shared_func
-def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start: Vector3, reach: real):
+def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start: Vector3, max_distance: real):
     """Nearest points of two cores.
 
     Args:
@@ -133,11 +133,11 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
         core_b: The other.
         vertex_position: Vertices of hulls.
         start: About the direction from b to a.
-        reach: The search ends where the distance is found to be more than this.
+        max_distance: The search ends where the distance is found to be more than this.
 
     Returns:
         The distance, and the point on each. Where they overlap the distance is 0 and the points are one
-        of a's. If the distance is more than `reach` it
+        of a's. If the distance is more than `max_distance` it
         is a lower bound and the points mean nothing.
     """
     differences = Matrix43()
@@ -160,9 +160,9 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
         length = wp.length(v)
         if count > 0:
             bound = wp.dot(v, w) / length
-            if bound > reach:
+            if bound > max_distance:
                 return bound, core_a.position, core_b.position
-            if length - bound <= greater(PRECISION, RELATIVE_PRECISION * (length + wp.length(w))):
+            if length - bound <= maximum(PRECISION, RELATIVE_PRECISION * (length + wp.length(w))):
                 searching = Int32(0)
         if searching == 1:
             for axis in range(3):

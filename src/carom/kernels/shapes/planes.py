@@ -27,24 +27,24 @@ def add_on_plane(
     radius: real,
     origin: Vector3,
     normal: Vector3,
-    reach: real,
+    max_distance: real,
 ) -> Int32:
     """Candidate of a point with a radius near a plane."""
     height = wp.dot(point - origin, normal)
-    if height - radius > reach:
+    if height - radius > max_distance:
         return count
     return add_candidate(candidates, world, count, point - normal * height, normal, height - radius)
 
 
 @shared_func
-def touch_plane(
+def collide_plane(
     core: Core,
     polygon: Vector3Rows,
     corners: Int32,
     vertex_position: Vectors3,
     origin: Vector3,
     normal: Vector3,
-    reach: real,
+    max_distance: real,
     candidates: Vector8Rows,
     world: Int32,
 ) -> Int32:
@@ -57,7 +57,7 @@ def touch_plane(
         vertex_position: Vertices of hulls.
         origin: A point of the plane.
         normal: Its unit normal.
-        reach: Largest distance of a contact.
+        max_distance: Largest distance of a contact.
         candidates: Where candidates go.
         world: The world.
 
@@ -68,14 +68,14 @@ def touch_plane(
     if core.kind != HULL:
         for i in range(corners):
             count = add_on_plane(
-                candidates, world, count, polygon[world, i], core.radius, origin, normal, reach
+                candidates, world, count, polygon[world, i], core.radius, origin, normal, max_distance
             )
         return count
     # The deepest point first: it must be there even if there are more points than fit.
     deepest = support(core, vertex_position, -normal)
-    count = add_on_plane(candidates, world, count, deepest, core.radius, origin, normal, reach)
+    count = add_on_plane(candidates, world, count, deepest, core.radius, origin, normal, max_distance)
     if count > 0:
         for vertex in range(core.first_vertex, core.first_vertex + core.vertex_count):
             point = core.position + core.frame * vertex_position[vertex]
-            count = add_on_plane(candidates, world, count, point, core.radius, origin, normal, reach)
+            count = add_on_plane(candidates, world, count, point, core.radius, origin, normal, max_distance)
     return count

@@ -62,13 +62,13 @@ def add_round_contact(
     point_b: Vector3,
     radius_b: real,
     fallback: Vector3,
-    reach: real,
+    max_distance: real,
 ) -> Int32:
     """Candidate of two balls; `fallback` is the normal where their centres coincide."""
     offset = point_a - point_b
     length = wp.length(offset)
     distance = length - radius_a - radius_b
-    if distance > reach:
+    if distance > max_distance:
         return count
     normal = fallback
     if length * length > TINY:
@@ -77,18 +77,18 @@ def add_round_contact(
 
 
 @shared_func
-def touch_segments(
+def collide_segments(
     middle_a: Vector3,
     half_a: Vector3,
     radius_a: real,
     middle_b: Vector3,
     half_b: Vector3,
     radius_b: real,
-    reach: real,
+    max_distance: real,
     candidates: Vector8Rows,
     world: Int32,
 ) -> Int32:
-    """Candidates of two round segments at most `reach` apart: one, or two where they lie side by side."""
+    """Candidates of two round segments at most `max_distance` apart: one, or two if they lie side by side."""
     offset = middle_a - middle_b
     across = wp.cross(half_a, half_b)
     lengths = wp.length_sq(half_a) * wp.length_sq(half_b)
@@ -112,7 +112,7 @@ def touch_segments(
                 place_b = wp.dot(point_a - middle_b, half_b) / wp.length_sq(half_b)
                 point_b = middle_b + half_b * wp.clamp(place_b, -1.0, 1.0)
                 count = add_round_contact(
-                    candidates, world, count, point_a, radius_a, point_b, radius_b, fallback, reach
+                    candidates, world, count, point_a, radius_a, point_b, radius_b, fallback, max_distance
                 )
             return count
     place_a, place_b = nearest_places(offset, half_a, half_b)
@@ -125,5 +125,5 @@ def touch_segments(
         middle_b + half_b * place_b,
         radius_b,
         fallback,
-        reach,
+        max_distance,
     )

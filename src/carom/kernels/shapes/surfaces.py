@@ -10,7 +10,7 @@ from carom.kernels.contact.candidates import (
     exchange,
     keep_four,
 )
-from carom.kernels.shapes.convex import nearest_or_deepest, touch_convex
+from carom.kernels.shapes.convex import collide_convex, nearest_or_deepest
 from carom.kernels.shapes.cores import Core
 from carom.kernels.shapes.triangles import (
     Region,
@@ -45,7 +45,7 @@ def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
 
 @func
 def region_around(
-    shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, surface: Int32, reach: real
+    shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, surface: Int32, max_distance: real
 ) -> Region:
     """The region of a surface that is within reach of the bounds of a shape."""
     to_surface = wp.transpose(pairs.shape_frame[world, surface])
@@ -53,7 +53,7 @@ def region_around(
     center = turn * local_center(shapes, shape) + to_surface * (
         pairs.shape_position[world, shape] - pairs.shape_position[world, surface]
     )
-    more = reach + shapes.shape_margin[surface]
+    more = max_distance + shapes.shape_margin[surface]
     extents = local_extents(shapes, shape)
     if shapes.shape_kind[shape] != SPHERE:
         extents = magnitudes(turn) * extents
@@ -114,8 +114,15 @@ def triangle_normal(core: Core) -> Vector3:
 
 
 @func
-def touch_surface(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real, around: real
+def collide_surface(
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    core: Core,
+    max_distance: real,
+    around: real,
 ) -> Int32:
     """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
 
@@ -126,7 +133,7 @@ def touch_surface(
         a: Row of the convex shape.
         b: Row of the surface.
         core: Core of a.
-        reach: Largest distance of a contact [m].
+        max_distance: Largest distance of a contact [m].
         around: Triangles within this distance of the bounds of a are looked at [m].
     """
     region = region_around(shapes, pairs, world, a, b, around)
@@ -136,7 +143,7 @@ def touch_surface(
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
-        found = touch_convex(shapes, pairs, world, a, b, core, triangle, reach, count)
+        found = collide_convex(shapes, pairs, world, a, b, core, triangle, max_distance, count)
         count = mark_flat(pairs, world, count, found, triangle_normal(triangle))
         if count + ROOM > pairs.candidate_terms.shape[1]:
             count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
@@ -148,25 +155,25 @@ def touch_surface(
 
 @func
 def nearest_on_surface(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, reach: real
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core: Core, max_distance: real
 ):
     """Distance of shape a, convex, from shape b, a mesh or height field; normal on b and point on b.
 
-    If the distance is more than `reach` the rest means nothing.
+    If the distance is more than `max_distance` the rest means nothing.
     """
-    region = region_around(shapes, pairs, world, a, b, reach)
+    region = region_around(shapes, pairs, world, a, b, max_distance)
     radius = surface_radius(shapes, core, b)
     rounding = core.radius + radius
-    least = reach + 1.0
+    least = max_distance + 1.0
     best_normal = Vector3(0.0, 0.0, 1.0)
     best_point = core.position
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         distance, normal, _on_a, on_b = nearest_or_deepest(
-            shapes, pairs, world, core, triangle, wp.min(least, reach) + rounding
+            shapes, pairs, world, core, triangle, wp.min(least, max_distance) + rounding
         )
-        if distance - rounding <= wp.min(least, reach):
+        if distance - rounding <= wp.min(least, max_distance):
             least = distance - rounding
             best_normal = normal
             best_point = on_b + normal * radius

@@ -8,7 +8,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
 from carom.kernels.contact.hierarchy import next_node
-from carom.kernels.maths.extremes import greater, lesser
+from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.shapes.cores import Core
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
@@ -101,8 +101,8 @@ def corners_meet(region: Region, corners: Matrix3) -> bool:
     """Whether the bounds of a triangle, its corners as columns, meet a region."""
     meet = True
     for axis in range(3):
-        low = lesser(lesser(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
-        high = greater(greater(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
+        low = minimum(minimum(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
+        high = maximum(maximum(corners[axis, 0], corners[axis, 1]), corners[axis, 2])
         if low > region.upper[axis] or high < region.lower[axis]:
             meet = False
     return meet

@@ -1,8 +1,8 @@
-"""Which trees take part in a substep: those that can move and are not asleep; `slumber` says who is."""
+"""Which trees take part in a substep: those that can move and are not asleep; `sleeping` says who is."""
 
 from carom.kernels.structs import Model, Shapes, State
 from carom.kernels.types import Index4, Int32, func, real
-from carom.layouts.codes import ASLEEP, STIRRED
+from carom.layouts.codes import ASLEEP, WOKEN
 
 
 @func
@@ -39,9 +39,9 @@ def is_asleep(state: State, world: Int32, tree: Int32) -> bool:
 
 
 @func
-def has_stirred(state: State, world: Int32, tree: Int32) -> bool:
+def has_woken(state: State, world: Int32, tree: Int32) -> bool:
     """Whether this is the first substep of a tree that was asleep."""
-    return state.tree_activity[world, tree] == STIRRED
+    return state.tree_activity[world, tree] == WOKEN
 
 
 @func

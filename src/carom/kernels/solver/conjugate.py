@@ -1,4 +1,4 @@
-"""Conjugate directions: what makes the sweeps over the patches of a calm island converge quickly.
+"""Conjugate directions: what makes the sweeps over the manifold blocks of an island at rest converge quickly.
 
 A sweep of projected Gauss-Seidel takes the place of the gradient in the method of Fletcher and Reeves.
 After it the impulses go on along what is left of the last direction; the next sweep takes back what their
@@ -8,76 +8,90 @@ for interactive contact force problems, The Visual Computer 26, 2010).
 
 import warp as wp
 
-from carom.kernels.solver.patches import push_patch
-from carom.kernels.structs import Couplings, Scratch
+from carom.kernels.solver.rigid_manifolds import push_manifold_block
+from carom.kernels.structs import PairRows, Scratch
 from carom.kernels.types import Int32, Vector4, Vector8, func, real
 
 
 @func
-def remember_impulses(couplings: Couplings, world: Int32, patches: Int32):
+def remember_impulses(pair_rows: PairRows, world: Int32, manifold_blocks: Int32):
     """Keep the impulses from which a sweep starts."""
-    patch = Int32(0)
-    while patch < patches:
-        couplings.patch[world, patch].normal_before = couplings.patch[world, patch].normal_impulse
-        couplings.patch[world, patch].friction_before = couplings.patch[world, patch].friction_impulse
-        patch += 1
+    manifold_block = Int32(0)
+    while manifold_block < manifold_blocks:
+        pair_rows.manifold_block[world, manifold_block].normal_before = pair_rows.manifold_block[
+            world, manifold_block
+        ].normal_impulse
+        pair_rows.manifold_block[world, manifold_block].friction_before = pair_rows.manifold_block[
+            world, manifold_block
+        ].friction_impulse
+        manifold_block += 1
 
 
 @func
-def squared_change(couplings: Couplings, world: Int32, patches: Int32) -> real:
+def squared_change(pair_rows: PairRows, world: Int32, manifold_blocks: Int32) -> real:
     """How far the last sweep moved the impulses, squared."""
     square = real(0.0)
-    patch = Int32(0)
-    while patch < patches:
-        normal = couplings.patch[world, patch].normal_impulse - couplings.patch[world, patch].normal_before
+    manifold_block = Int32(0)
+    while manifold_block < manifold_blocks:
+        normal = (
+            pair_rows.manifold_block[world, manifold_block].normal_impulse
+            - pair_rows.manifold_block[world, manifold_block].normal_before
+        )
         friction = (
-            couplings.patch[world, patch].friction_impulse - couplings.patch[world, patch].friction_before
+            pair_rows.manifold_block[world, manifold_block].friction_impulse
+            - pair_rows.manifold_block[world, manifold_block].friction_before
         )
         square += wp.dot(normal, normal) + wp.dot(friction, friction)
-        patch += 1
+        manifold_block += 1
     return square
 
 
 @func
-def go_on(scratch: Scratch, couplings: Couplings, world: Int32, patches: Int32, last_square: real) -> real:
+def go_on(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_blocks: Int32, last_square: real
+) -> real:
     """Move the impulses on along a direction conjugate to the last one.
 
     Args:
         scratch: Changes of the velocities.
-        couplings: The patches; `remember_impulses` was called before the sweep.
+        pair_rows: The manifold blocks; `remember_impulses` was called before the sweep.
         world: The world.
-        patches: Their number.
+        manifold_blocks: Their number.
         last_square: What this returned after the sweep before; 0 after the first.
 
     Returns:
         How far the sweep moved the impulses, squared.
     """
-    square = squared_change(couplings, world, patches)
+    square = squared_change(pair_rows, world, manifold_blocks)
     share = real(0.0)
     if square < last_square:
         share = square / last_square
-    patch = Int32(0)
-    while patch < patches:
-        normal = couplings.patch[world, patch].normal_impulse - couplings.patch[world, patch].normal_before
+    manifold_block = Int32(0)
+    while manifold_block < manifold_blocks:
+        normal = (
+            pair_rows.manifold_block[world, manifold_block].normal_impulse
+            - pair_rows.manifold_block[world, manifold_block].normal_before
+        )
         friction = (
-            couplings.patch[world, patch].friction_impulse - couplings.patch[world, patch].friction_before
+            pair_rows.manifold_block[world, manifold_block].friction_impulse
+            - pair_rows.manifold_block[world, manifold_block].friction_before
         )
         if share > 0.0:
-            further = share * couplings.patch[world, patch].normal_search
-            aside = share * couplings.patch[world, patch].friction_search
-            couplings.patch[world, patch].normal_impulse = (
-                couplings.patch[world, patch].normal_impulse + further
+            further = share * pair_rows.manifold_block[world, manifold_block].normal_search
+            aside = share * pair_rows.manifold_block[world, manifold_block].friction_search
+            pair_rows.manifold_block[world, manifold_block].normal_impulse = (
+                pair_rows.manifold_block[world, manifold_block].normal_impulse + further
             )
-            couplings.patch[world, patch].friction_impulse = (
-                couplings.patch[world, patch].friction_impulse + aside
+            pair_rows.manifold_block[world, manifold_block].friction_impulse = (
+                pair_rows.manifold_block[world, manifold_block].friction_impulse + aside
             )
-            push_patch(scratch, couplings, world, patch, further, aside)
+            push_manifold_block(scratch, pair_rows, world, manifold_block, further, aside)
             normal += further
             friction += aside
         if share == 0.0 and last_square > 0.0:
             normal = Vector4(0.0, 0.0, 0.0, 0.0)
             friction = Vector8(0.0)
-        couplings.patch[world, patch].normal_search = normal
-        couplings.patch[world, patch].friction_search = friction
-        patch += 1
+        pair_rows.manifold_block[world, manifold_block].normal_search = normal
+        pair_rows.manifold_block[world, manifold_block].friction_search = friction
+        manifold_block += 1
     return square

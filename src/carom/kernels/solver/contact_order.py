@@ -7,7 +7,7 @@ sorts all manifolds by island with a quicksort that does not keep the order of e
 import warp as wp
 
 from carom.kernels.solver.activity import can_move, is_asleep, pushed_tree
-from carom.kernels.structs import Contacts, Couplings, Model, Settings, Shapes, State
+from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, func
 from carom.layouts.contacts import THERE
 
@@ -28,7 +28,7 @@ def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) 
 
 @func
 def gather_runs(
-    model: Model, state: State, shapes: Shapes, contacts: Contacts, couplings: Couplings, world: Int32
+    model: Model, state: State, shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32
 ) -> Int32:
     """List the manifolds that can push a tree that is not asleep; returns their number.
 
@@ -41,8 +41,8 @@ def gather_runs(
         pair = contacts.contact_shapes[world, contact]
         tree = pushed_tree(shapes, model, pair)
         if tree >= 0 and not is_asleep(state, world, tree):
-            couplings.run_first[world, runs] = contact
-            couplings.run_island[world, runs] = couplings.tree_first_contact[
+            pair_rows.run_first[world, runs] = contact
+            pair_rows.run_island[world, runs] = pair_rows.tree_first_contact[
                 world, state.tree_island[world, tree]
             ]
             runs += 1
@@ -53,18 +53,18 @@ def gather_runs(
 
 
 @func
-def exchange_runs(couplings: Couplings, world: Int32, i: Int32, j: Int32):
+def exchange_runs(pair_rows: PairRows, world: Int32, i: Int32, j: Int32):
     """Swap two manifolds."""
-    first = couplings.run_first[world, i]
-    island = couplings.run_island[world, i]
-    couplings.run_first[world, i] = couplings.run_first[world, j]
-    couplings.run_island[world, i] = couplings.run_island[world, j]
-    couplings.run_first[world, j] = first
-    couplings.run_island[world, j] = island
+    first = pair_rows.run_first[world, i]
+    island = pair_rows.run_island[world, i]
+    pair_rows.run_first[world, i] = pair_rows.run_first[world, j]
+    pair_rows.run_island[world, i] = pair_rows.run_island[world, j]
+    pair_rows.run_first[world, j] = first
+    pair_rows.run_island[world, j] = island
 
 
 @func
-def sort_runs(couplings: Couplings, world: Int32, count: Int32):
+def sort_runs(pair_rows: PairRows, world: Int32, count: Int32):
     """Sort the first `count` manifolds by island: Hoare's quicksort around the middle element."""
     bounds = Bounds()
     waiting = Int32(0)
@@ -73,14 +73,14 @@ def sort_runs(couplings: Couplings, world: Int32, count: Int32):
     while low < high:
         i = low + 0
         j = high + 0
-        pivot = couplings.run_island[world, (low + high) // 2]
+        pivot = pair_rows.run_island[world, (low + high) // 2]
         while i <= j:
-            while couplings.run_island[world, i] < pivot:
+            while pair_rows.run_island[world, i] < pivot:
                 i += 1
-            while pivot < couplings.run_island[world, j]:
+            while pivot < pair_rows.run_island[world, j]:
                 j -= 1
             if i <= j:
-                exchange_runs(couplings, world, i, j)
+                exchange_runs(pair_rows, world, i, j)
                 i += 1
                 j -= 1
         # Go on with the shorter part; the other waits.
@@ -106,20 +106,20 @@ def list_contacts(
     state: State,
     shapes: Shapes,
     contacts: Contacts,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
 ):
     """Give the root of each island the list of its contacts, manifold by manifold."""
     for tree in range(settings.tree_count):
         if can_move(model, tree):
-            couplings.tree_first_contact[world, state.tree_island[world, tree]] = tree
-    run = gather_runs(model, state, shapes, contacts, couplings, world)
-    sort_runs(couplings, world, run)
+            pair_rows.tree_first_contact[world, state.tree_island[world, tree]] = tree
+    run = gather_runs(model, state, shapes, contacts, pair_rows, world)
+    sort_runs(pair_rows, world, run)
     for tree in range(settings.tree_count):
-        couplings.tree_first_contact[world, tree] = NONE
+        pair_rows.tree_first_contact[world, tree] = NONE
     while run > 0:
         run -= 1
-        first = couplings.run_first[world, run]
+        first = pair_rows.run_first[world, run]
         pair = contacts.contact_shapes[world, first]
         root = state.tree_island[world, pushed_tree(shapes, model, pair)]
         contact = first + 1
@@ -127,5 +127,5 @@ def list_contacts(
             contact += 1
         while contact > first:
             contact -= 1
-            couplings.contact_next[world, contact] = couplings.tree_first_contact[world, root]
-            couplings.tree_first_contact[world, root] = contact
+            pair_rows.contact_next[world, contact] = pair_rows.tree_first_contact[world, root]
+            pair_rows.tree_first_contact[world, root] = contact

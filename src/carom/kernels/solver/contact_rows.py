@@ -2,10 +2,10 @@
 
 import warp as wp
 
-from carom.kernels.solver.calm import NOT_CALM
 from carom.kernels.solver.contact_terms import friction_change, keep_contact_impulse, normal_change
-from carom.kernels.solver.couplings import write_pair_jacobian, write_row
-from carom.kernels.structs import Contacts, ContactTerms, Couplings, Model, Scratch, Settings, Shapes, State
+from carom.kernels.solver.pair_rows import write_pair_jacobian, write_row
+from carom.kernels.solver.warm_starting import NOT_RESTING
+from carom.kernels.structs import Contacts, ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, ROW_FRICTION, ROW_IMPULSE, SPINNING_ROW
 
@@ -20,7 +20,7 @@ def add_contact_rows(
     scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
-    couplings: Couplings,
+    pair_rows: PairRows,
     terms: ContactTerms,
     world: Int32,
     contact: Int32,
@@ -40,7 +40,7 @@ def add_contact_rows(
     if terms.friction[2] > 0.0:
         rows[SPINNING_ROW] = end
         end += 1
-    couplings.contact_rows[world, contact] = rows
+    pair_rows.contact_rows[world, contact] = rows
 
     zero = Vector3(0.0, 0.0, 0.0)
     for place in range(row, end):
@@ -63,7 +63,7 @@ def add_contact_rows(
                 angular = terms.rolling2
 
         found = write_pair_jacobian(
-            model, state, scratch, couplings, world, place, block, terms.ends, terms.point_a, terms.point_b,
+            model, state, scratch, pair_rows, world, place, block, terms.ends, terms.point_a, terms.point_b,
             linear, angular,
         )  # fmt: skip
         block = Int32(found[2])
@@ -80,22 +80,22 @@ def add_contact_rows(
             lower = real(0.0)
             upper = real(0.0) + _UNBOUNDED
             softness = terms.softness
-        write_row(couplings, world, place, inverse_mass, change, softness, lower, upper, coefficient)
-        couplings.coupling_bound[world, place] = row
+        write_row(pair_rows, world, place, inverse_mass, change, softness, lower, upper, coefficient)
+        pair_rows.row_bound[world, place] = row
     return Index4(end, block, 0, 0)
 
 
 @func
-def keep_contact_impulses(contacts: Contacts, couplings: Couplings, world: Int32, contact: Int32):
+def keep_contact_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, contact: Int32):
     """Report the impulses of a contact's rows."""
-    rows = couplings.contact_rows[world, contact]
+    rows = pair_rows.contact_rows[world, contact]
     keep_contact_impulse(
         contacts,
         world,
         contact,
-        couplings.coupling_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
-        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
-        couplings.coupling_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
-        couplings.coupling_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
-        Int32(NOT_CALM),
+        pair_rows.row_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
+        pair_rows.row_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
+        pair_rows.row_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
+        pair_rows.row_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
+        Int32(NOT_RESTING),
     )

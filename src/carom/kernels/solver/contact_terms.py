@@ -3,8 +3,8 @@
 import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
-from carom.kernels.maths.extremes import greater, lesser, within_bounds
-from carom.kernels.solver.calm import next_trust, slides
+from carom.kernels.maths.min_max import maximum, minimum, within_bounds
+from carom.kernels.solver.warm_starting import next_warm_start, slides
 from carom.kernels.structs import Contacts, ContactTerms, Model, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
 
@@ -36,8 +36,8 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
     if stiffness_b > 0.0:
         compliance += 1.0 / stiffness_b
     damping = contact_damping(shapes, world, a) + contact_damping(shapes, world, b)
-    stiffness = 1.0 / greater(compliance, _LEAST_DENOMINATOR)
-    denominator = greater(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
+    stiffness = 1.0 / maximum(compliance, _LEAST_DENOMINATOR)
+    denominator = maximum(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
     return Vector3(
         1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
     )
@@ -188,7 +188,7 @@ def contact_terms(
     terms.erp = soft[1]
     terms.start = starting_impulse(share, contacts.contact_impulse[world, contact])
     terms.ignored = Int32(0)
-    solved_up_to = lesser(
+    solved_up_to = minimum(
         shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
     )
     if terms.distance > solved_up_to:
@@ -226,8 +226,8 @@ def normal_change(
     restitution = combined_restitution(shapes, world, terms.ends[1], terms.ends[3])
     if restitution <= 0.0:
         return parting - velocity
-    rebound = greater(restitution, 1.0) * (terms.gain - velocity)
-    return lesser(parting - restitution * velocity, greater(rebound, parting)) - velocity
+    rebound = maximum(restitution, 1.0) * (terms.gain - velocity)
+    return minimum(parting - restitution * velocity, maximum(rebound, parting)) - velocity
 
 
 @func
@@ -257,10 +257,10 @@ def keep_contact_impulse(
         first: That along the first friction direction.
         second: That along the second.
         friction: Coefficient of lateral friction.
-        outcome: How the search for it went, see `calm.next_trust`.
+        outcome: How the search for it went, see `resting.next_warm_start`.
     """
-    trust = next_trust(contacts.contact_impulse[world, contact][3], outcome)
-    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, trust)
+    warm_start = next_warm_start(contacts.contact_impulse[world, contact][3], outcome)
+    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, warm_start)
     if slides(normal, first, second, friction):
         contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
         contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]

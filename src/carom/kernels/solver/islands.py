@@ -7,9 +7,9 @@ contacts.
 import warp as wp
 
 from carom.kernels.solver.activity import can_move, is_asleep, link_moves
-from carom.kernels.solver.calm import ANCHORED, find_calm, touches_how
 from carom.kernels.solver.contact_order import list_contacts
-from carom.kernels.structs import Contacts, Couplings, Model, Settings, Shapes, State, UserConstraints
+from carom.kernels.solver.warm_starting import ANCHORED, contact_traits, find_resting_islands
+from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func
 
 _NONE = wp.constant(-1)
@@ -44,9 +44,9 @@ def unite_tied(settings: Settings, model: Model, state: State, users: UserConstr
 
 
 @func
-def note_touch(couplings: Couplings, world: Int32, tree: Int32, touches: Int32):
+def note_contact(pair_rows: PairRows, world: Int32, tree: Int32, touches: Int32):
     """Note that a tree has a contact, and of what kind."""
-    couplings.tree_touches[world, tree] = couplings.tree_touches[world, tree] | touches
+    pair_rows.tree_contacts[world, tree] = pair_rows.tree_contacts[world, tree] | touches
 
 
 @func
@@ -57,7 +57,7 @@ def build_islands(
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
 ):
     """Join trees that touch or are tied together, and list the constraints and contacts of each island.
@@ -67,38 +67,38 @@ def build_islands(
     contact_count = contacts.count_contacts[world, 0]
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = model.tree[tree].batch
-        couplings.tree_touches[world, tree] = 0
+        pair_rows.tree_contacts[world, tree] = 0
     for contact in range(contact_count):
         pair = contacts.contact_shapes[world, contact]
         moves_a = link_moves(model, pair[2])
         moves_b = link_moves(model, pair[3])
-        touches = touches_how(settings, shapes, contacts, world, contact)
+        touches = contact_traits(settings, shapes, contacts, world, contact)
         if not moves_a or not moves_b:
             touches = touches | ANCHORED
         if moves_a:
-            note_touch(couplings, world, shapes.shape_tree[pair[0]], touches)
+            note_contact(pair_rows, world, shapes.shape_tree[pair[0]], touches)
         if moves_b:
-            note_touch(couplings, world, shapes.shape_tree[pair[1]], touches)
+            note_contact(pair_rows, world, shapes.shape_tree[pair[1]], touches)
         if moves_a and moves_b:
             unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
     unite_tied(settings, model, state, users, world)
 
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = island_root(state, world, tree)
-        couplings.tree_first_constraint[world, tree] = _NONE
+        pair_rows.tree_first_constraint[world, tree] = _NONE
     constraint = settings.constraint_count - 1
     while constraint >= 0:
         tree = model.constraint[constraint].tree
         if not is_asleep(state, world, tree):
             root = state.tree_island[world, tree]
-            couplings.constraint_next[world, constraint] = couplings.tree_first_constraint[world, root]
-            couplings.tree_first_constraint[world, root] = constraint
+            pair_rows.constraint_next[world, constraint] = pair_rows.tree_first_constraint[world, root]
+            pair_rows.tree_first_constraint[world, root] = constraint
         constraint -= 1
-    list_contacts(settings, model, state, shapes, contacts, couplings, world)
-    find_calm(settings, model, state, couplings, world)
+    list_contacts(settings, model, state, shapes, contacts, pair_rows, world)
+    find_resting_islands(settings, model, state, pair_rows, world)
 
 
 @func
-def may_be_pushed(model: Model, couplings: Couplings, world: Int32, tree: Int32) -> bool:
+def may_be_pushed(model: Model, pair_rows: PairRows, world: Int32, tree: Int32) -> bool:
     """Whether contacts, user constraints, motors or limits can act on a tree."""
-    return couplings.tree_touches[world, tree] != 0 or model.tree[tree].constraint_count > 0
+    return pair_rows.tree_contacts[world, tree] != 0 or model.tree[tree].constraint_count > 0

@@ -12,7 +12,7 @@ from carom.kernels.dynamics.motors import motor_row, spherical_motor_rows
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.rows import row_dof
 from carom.kernels.maths.blocks import add_multiple
-from carom.kernels.maths.extremes import greater, within_bounds
+from carom.kernels.maths.min_max import maximum, within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector4, func, real, shared_func
 from carom.layouts.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
@@ -108,7 +108,7 @@ def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> rea
         stride = Int32(-1)
     while row >= 0 and row < count:
         change = relax_row(scratch, world, row)
-        residual = greater(residual, change * change)
+        residual = maximum(residual, change * change)
         row += stride
     return residual
 
@@ -172,7 +172,7 @@ def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int3
 def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Start the solver from no change of velocity.
 
-    Every tree has room for a free base, two blocks, which patches read whether there is one or not.
+    Every tree has room for a free base, two blocks, which manifold blocks read whether there is one or not.
     """
     first = model.tree[tree].first_delta
     for block in range(first, first + wp.max((model.tree[tree].dof_count + 3) // 4, 2)):

@@ -5,18 +5,24 @@ Sweeps go and end as those of `joint_solver`, which does the same where nothing 
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greater
-from carom.kernels.solver.calm import CALM_PRECISION, CALM_SWEEPS, NOT_CALM, SOLVED, UNSOLVED
+from carom.kernels.maths.min_max import maximum
 from carom.kernels.solver.conjugate import go_on, remember_impulses
-from carom.kernels.solver.couplings import has_room
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
-from carom.kernels.solver.sweeps import calm_sweep, contact_sweep, visit_sweep
+from carom.kernels.solver.pair_rows import has_room
+from carom.kernels.solver.sweeps import contact_sweep, resting_sweep, visit_sweep
 from carom.kernels.solver.units import keep_unit_impulses, write_units
 from carom.kernels.solver.user_constraints import add_user_rows, keep_user_impulses
+from carom.kernels.solver.warm_starting import (
+    NOT_RESTING,
+    RESTING_PRECISION,
+    RESTING_SWEEPS,
+    SOLVED,
+    UNSOLVED,
+)
 from carom.kernels.structs import (
     Contacts,
-    Couplings,
     Model,
+    PairRows,
     Scratch,
     Settings,
     Shapes,
@@ -35,7 +41,7 @@ def island_rows(
     state: State,
     scratch: Scratch,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     root: Int32,
 ) -> Index4:
@@ -49,7 +55,7 @@ def island_rows(
     place = Index4(0, 0, 0, 0)
     visits = Int32(0)
     fits = Int32(1)
-    constraint = couplings.tree_first_constraint[world, root]
+    constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
         before = row + 0
         if model.constraint[constraint].kind != USER:
@@ -57,22 +63,22 @@ def island_rows(
         else:
             user = model.constraint[constraint].link
             if users.user_enabled[world, user] == 0:
-                constraint = couplings.constraint_next[world, constraint]
+                constraint = pair_rows.constraint_next[world, constraint]
                 continue
-            if has_room(model, couplings, place, users.user_tree_a[user], users.user_tree_b[user]):
+            if has_room(model, pair_rows, place, users.user_tree_a[user], users.user_tree_b[user]):
                 first = place[0]
-                place = add_user_rows(settings, model, state, scratch, users, couplings, world, user, place)
+                place = add_user_rows(settings, model, state, scratch, users, pair_rows, world, user, place)
                 while first < place[0]:
-                    couplings.visit_row[world, visits] = -1 - first
+                    pair_rows.visit_row[world, visits] = -1 - first
                     visits += 1
                     first += 1
             else:
                 fits = Int32(0)
         while before < row:
-            couplings.visit_row[world, visits] = before
+            pair_rows.visit_row[world, visits] = before
             visits += 1
             before += 1
-        constraint = couplings.constraint_next[world, constraint]
+        constraint = pair_rows.constraint_next[world, constraint]
     if fits == 0:
         visits = Int32(-1)
     return Index4(row, place[0], place[1], visits)
@@ -92,31 +98,31 @@ def forget_changes(
 def sweep_island(
     settings: Settings,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     visits: Int32,
     units: Index4,
-    calm: Int32,
+    resting: Int32,
 ) -> Vector3:
-    """Sweep over the rows of an island until they hardly change; if it is `calm`, along conjugate directions.
+    """Sweep over the rows of an island until they hardly change; along conjugate directions if it rests.
 
     Args:
         settings: How many sweeps there may be, and what may be left over.
         scratch: Rows of one tree.
-        couplings: Rows over two trees.
+        pair_rows: Rows over two trees.
         world: The world.
         visits: Rows to visit.
         units: What `write_units` returned.
-        calm: 1 if all units are patches that start from their last impulses.
+        resting: 1 if all units are manifold blocks that start from their last impulses.
 
     Returns:
         Greatest change of a velocity in the last sweep, squared; number of sweeps; 0.
     """
     threshold = settings.residual_threshold
     most = settings.iterations
-    if calm == 1:
-        threshold = threshold * CALM_PRECISION
-        most = most * CALM_SWEEPS
+    if resting == 1:
+        threshold = threshold * RESTING_PRECISION
+        most = most * RESTING_SWEEPS
     residual = real(0.0)
     square = real(0.0)
     sweep = Int32(0)
@@ -124,18 +130,18 @@ def sweep_island(
     if (visits > 0 or units[0] > 0) and most > 0:
         searching = Int32(1)
     while searching == 1:
-        if calm == 1:
-            remember_impulses(couplings, world, units[1])
-        residual = visit_sweep(settings, scratch, couplings, world, visits, sweep)
-        if calm == 1:
-            residual = greater(residual, calm_sweep(settings, scratch, couplings, world, units[1]))
+        if resting == 1:
+            remember_impulses(pair_rows, world, units[1])
+        residual = visit_sweep(settings, scratch, pair_rows, world, visits, sweep)
+        if resting == 1:
+            residual = maximum(residual, resting_sweep(settings, scratch, pair_rows, world, units[1]))
         elif units[0] > 0:
-            residual = greater(residual, contact_sweep(settings, scratch, couplings, world, units))
+            residual = maximum(residual, contact_sweep(settings, scratch, pair_rows, world, units))
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)
-        elif calm == 1:
-            square = go_on(scratch, couplings, world, units[1], square)
+        elif resting == 1:
+            square = go_on(scratch, pair_rows, world, units[1], square)
     return Vector3(residual, real(sweep), 0.0)
 
 
@@ -148,54 +154,54 @@ def solve_island(
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     root: Int32,
 ):
     """Solve the rows of one island; leaves the change of velocity in `delta_velocity`.
 
-    One that is calm but cannot be solved so is solved once more, from nothing.
+    One that is at rest but cannot be solved so is solved once more, from nothing.
     """
-    made = island_rows(model, settings, state, scratch, users, couplings, world, root)
+    made = island_rows(model, settings, state, scratch, users, pair_rows, world, root)
     visits = made[3]
-    first_contact = couplings.tree_first_contact[world, root]
+    first_contact = pair_rows.tree_first_contact[world, root]
     # Without any sweep there are no impulses, those of the last step included.
-    calm = wp.min(wp.min(couplings.tree_calm[world, root], 1), settings.iterations)
-    outcome = Int32(NOT_CALM)
+    resting = wp.min(wp.min(pair_rows.tree_rest[world, root], 1), settings.iterations)
+    outcome = Int32(NOT_RESTING)
     units = Index4(0, 0, 0, 0)
     found = Vector3(0.0, 0.0, 0.0)
     trying = Int32(1)
     while trying == 1:
         trying = Int32(0)
         if first_contact >= 0:
-            share = settings.contact_warm_starting * real(calm)
+            share = settings.contact_warm_starting * real(resting)
             units = write_units(
-                model, settings, state, scratch, shapes, contacts, couplings, world, first_contact,
+                model, settings, state, scratch, shapes, contacts, pair_rows, world, first_contact,
                 Index4(made[1], made[2], 0, 0), share,
             )  # fmt: skip
         if visits < 0 or units[0] < 0:
             state.status_entry[world, STATUS] = OVERFLOW
             return
-        found = sweep_island(settings, scratch, couplings, world, visits, units, calm)
-        if calm == 1:
+        found = sweep_island(settings, scratch, pair_rows, world, visits, units, resting)
+        if resting == 1:
             outcome = Int32(SOLVED)
             if found[0] > settings.residual_threshold:
                 outcome = Int32(UNSOLVED)
                 forget_changes(settings, model, state, scratch, world, root)
-                calm = Int32(0)
+                resting = Int32(0)
                 trying = Int32(1)
     keep_row_results(model, settings, state, scratch, world, root, made[0], Int32(found[1]), found[0])
-    keep_unit_impulses(contacts, couplings, world, units[0], outcome)
-    keep_constraint_impulses(model, state, users, couplings, world, root)
+    keep_unit_impulses(contacts, pair_rows, world, units[0], outcome)
+    keep_constraint_impulses(model, state, users, pair_rows, world, root)
 
 
 @func
 def keep_constraint_impulses(
-    model: Model, state: State, users: UserConstraints, couplings: Couplings, world: Int32, root: Int32
+    model: Model, state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, root: Int32
 ):
     """Report the impulses of an island's user constraints."""
-    constraint = couplings.tree_first_constraint[world, root]
+    constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
         if model.constraint[constraint].kind == USER:
-            keep_user_impulses(state, users, couplings, world, model.constraint[constraint].link)
-        constraint = couplings.constraint_next[world, constraint]
+            keep_user_impulses(state, users, pair_rows, world, model.constraint[constraint].link)
+        constraint = pair_rows.constraint_next[world, constraint]

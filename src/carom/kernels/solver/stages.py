@@ -7,8 +7,8 @@ from carom.kernels.solver.islands import build_islands, may_be_pushed
 from carom.kernels.solver.solver import solve_island
 from carom.kernels.structs import (
     Contacts,
-    Couplings,
     Model,
+    PairRows,
     Scratch,
     Settings,
     Shapes,
@@ -26,12 +26,12 @@ def islands_kernel(
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     first_world: Int32,
 ):
     """Group trees into islands."""
     world = first_world + wp.tid()
-    build_islands(settings, model, state, shapes, contacts, users, couplings, world)
+    build_islands(settings, model, state, shapes, contacts, users, pair_rows, world)
 
 
 @kernel
@@ -40,14 +40,14 @@ def free_motion_kernel(
     model: Model,
     state: State,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     first_world: Int32,
 ):
     """Velocities after a substep if there were no constraints."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         free_motion(
-            model, settings, state, scratch, world, tree, may_be_pushed(model, couplings, world, tree)
+            model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
         )
 
 
@@ -60,14 +60,14 @@ def constraints_kernel(
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     first_world: Int32,
 ):
     """Changes of velocity that motors, limits, user constraints and contacts ask for."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
-            solve_island(model, settings, state, scratch, shapes, contacts, users, couplings, world, tree)
+            solve_island(model, settings, state, scratch, shapes, contacts, users, pair_rows, world, tree)
 
 
 @kernel

@@ -1,13 +1,13 @@
-"""What the sweeps of an island relax, in order: patches, and contacts by themselves."""
+"""What the sweeps of an island relax, in order: manifold blocks, and contacts by themselves."""
 
-from carom.kernels.solver.calm import is_rigid
+from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.kernels.solver.contact_terms import contact_friction, contact_terms
-from carom.kernels.solver.couplings import has_room, tree_blocks
-from carom.kernels.solver.long_patches import RUN_PER_BLOCK
-from carom.kernels.solver.patch_writing import keep_patch_impulses, write_patch
-from carom.kernels.structs import Contacts, Couplings, Model, Scratch, Settings, Shapes, State
+from carom.kernels.solver.manifold_writing import keep_manifold_impulses, write_manifold_block
+from carom.kernels.solver.pair_rows import has_room, tree_blocks
+from carom.kernels.solver.warm_starting import is_rigid
+from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, func, real
 
 
@@ -23,9 +23,9 @@ def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> 
 def may_join(
     shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32, first: Int32, rigid: bool
 ) -> bool:
-    """Whether a contact may be in a patch with another one that comes before it.
+    """Whether a contact may be in a manifold block with another one that comes before it.
 
-    Patches of rigid bodies are those of two shapes, as calm islands want them; those of articulated ones
+    Manifold blocks of rigid bodies are those of two shapes, as islands at rest want them; articulated ones
     may have contacts of several links, so that a robot on four feet has one.
     """
     if contact < 0:
@@ -43,16 +43,16 @@ def may_join(
 
 @func
 def next_unit(
-    shapes: Shapes, contacts: Contacts, couplings: Couplings, world: Int32, first: Int32, rigid: bool
+    shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32, first: Int32, rigid: bool
 ):
     """The contacts, -1 for none, of the unit that begins with `first`, and their number."""
     members = Index4(first, -1, -1, -1)
     count = Int32(1)
     if not twists(shapes, contacts, world, first):
-        following = couplings.contact_next[world, first]
+        following = pair_rows.contact_next[world, first]
         while count < 4 and may_join(shapes, contacts, world, following, first, rigid):
             members[count] = following
-            following = couplings.contact_next[world, following]
+            following = pair_rows.contact_next[world, following]
             count += 1
     return members, count
 
@@ -65,7 +65,7 @@ def write_units(
     scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     first_contact: Int32,
     place: Index4,
@@ -74,14 +74,14 @@ def write_units(
     """Write the rows of an island's contacts, from the free place on.
 
     Those of rigid bodies start from a `share` of their last impulses. Several contacts in a row that may
-    be solved together make a patch.
+    be solved together make a manifold block.
 
     Returns:
-        Number of units, negative if some did not fit; number of patches; 1 if there is rolling or
+        Number of units, negative if some did not fit; number of manifold blocks; 1 if there is rolling or
         spinning friction; 0.
     """
     units = Int32(0)
-    patches = Int32(0)
+    manifold_blocks = Int32(0)
     torsion = Int32(0)
     next_run = Int32(0)
     contact = first_contact + 0
@@ -90,50 +90,51 @@ def write_units(
         a = shapes.shape_tree[pair[0]]
         b = shapes.shape_tree[pair[1]]
         rigid = is_rigid(model, a) and is_rigid(model, b)
-        members, count = next_unit(shapes, contacts, couplings, world, contact, rigid)
+        members, count = next_unit(shapes, contacts, pair_rows, world, contact, rigid)
         i = Int32(0)
         while i < count:
-            couplings.terms[world, i] = contact_terms(
+            pair_rows.terms[world, i] = contact_terms(
                 settings, model, state, scratch, shapes, contacts, world, members[i], share
             )
             i += 1
-        room = has_room(model, couplings, place, a, b)
+        room = has_room(model, pair_rows, place, a, b)
         if count > 1:
             run = Int32(-1)
             if not rigid:
                 run = next_run + 0
                 next_run += RUN_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
-                if next_run > couplings.run_block.shape[1] or not room:
-                    return Index4(-1, patches, torsion, 0)
-            write_patch(
-                settings, model, state, scratch, shapes, couplings, world, patches, members, count, a, b, run,
+                if next_run > pair_rows.run_block.shape[1] or not room:
+                    return Index4(-1, manifold_blocks, torsion, 0)
+            write_manifold_block(
+                settings, model, state, scratch, shapes, pair_rows, world,
+                manifold_blocks, members, count, a, b, run,
                 place[1],
             )  # fmt: skip
-            couplings.unit_code[world, units] = -1 - patches
-            patches += 1
+            pair_rows.unit_code[world, units] = -1 - manifold_blocks
+            manifold_blocks += 1
         else:
             if not room:
-                return Index4(-1, patches, torsion, 0)
-            if couplings.terms[world, 0].friction[1] > 0.0 or couplings.terms[world, 0].friction[2] > 0.0:
+                return Index4(-1, manifold_blocks, torsion, 0)
+            if pair_rows.terms[world, 0].friction[1] > 0.0 or pair_rows.terms[world, 0].friction[2] > 0.0:
                 torsion = Int32(1)
             place = add_contact_rows(
-                settings, model, state, scratch, shapes, contacts, couplings, couplings.terms[world, 0],
+                settings, model, state, scratch, shapes, contacts, pair_rows, pair_rows.terms[world, 0],
                 world, contact, place[0], place[1],
             )  # fmt: skip
-            couplings.unit_code[world, units] = contact
+            pair_rows.unit_code[world, units] = contact
         units += 1
-        contact = couplings.contact_next[world, members[count - 1]]
-    return Index4(units, patches, torsion, 0)
+        contact = pair_rows.contact_next[world, members[count - 1]]
+    return Index4(units, manifold_blocks, torsion, 0)
 
 
 @func
-def keep_unit_impulses(contacts: Contacts, couplings: Couplings, world: Int32, units: Int32, outcome: Int32):
+def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, units: Int32, outcome: Int32):
     """Report the impulses of an island's contacts, and the `outcome` of the search for them."""
     unit = Int32(0)
     while unit < units:
-        code = couplings.unit_code[world, unit]
+        code = pair_rows.unit_code[world, unit]
         if code < 0:
-            keep_patch_impulses(contacts, couplings, world, -1 - code, outcome)
+            keep_manifold_impulses(contacts, pair_rows, world, -1 - code, outcome)
         else:
-            keep_contact_impulses(contacts, couplings, world, code)
+            keep_contact_impulses(contacts, pair_rows, world, code)
         unit += 1

@@ -5,8 +5,8 @@ import warp as wp
 from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.solver.couplings import place_row, write_pair_jacobian, write_row
-from carom.kernels.structs import Couplings, Model, Scratch, Settings, State, UserConstraints
+from carom.kernels.solver.pair_rows import place_row, write_pair_jacobian, write_row
+from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import ROW_IMPULSE, USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
 
@@ -63,7 +63,7 @@ def add_pose_rows(
     state: State,
     scratch: Scratch,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     user: Int32,
     place: Index4,
@@ -113,11 +113,11 @@ def add_pose_rows(
             angular = column(axes, axis)
             error = turned[axis]
         found = write_pair_jacobian(
-            model, state, scratch, couplings, world, row, block, ends, point_a, point_b, linear, angular
+            model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
         block = Int32(found[2])
         change = -found[1] - error * settings.joint_erp / settings.time_step
-        write_row(couplings, world, row, found[0], change, 0.0, -bound, bound, 0.0)
+        write_row(pair_rows, world, row, found[0], change, 0.0, -bound, bound, 0.0)
         row += 1
     return Index4(row, block, 0, 0)
 
@@ -127,7 +127,7 @@ def write_dof_jacobian(
     model: Model,
     state: State,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     tree: Int32,
     dof: Int32,
@@ -138,12 +138,12 @@ def write_dof_jacobian(
     blocks = (model.tree[tree].dof_count + 3) // 4
     column_of_dof = dof - model.tree[tree].first_dof
     response = model.tree[tree].first_block + column_of_dof * blocks
-    fill_zero(couplings.jacobian_row, start, world, blocks)
+    fill_zero(pair_rows.jacobian_row, start, world, blocks)
     write_multiple(
-        couplings.jacobian_response, start, share, scratch.block_inverse_mass, response, world, blocks
+        pair_rows.jacobian_response, start, share, scratch.block_inverse_mass, response, world, blocks
     )
-    couplings.entry_row[world, 4 * start + column_of_dof] = share
-    inverse_mass = share * couplings.entry_response[world, 4 * start + column_of_dof]
+    pair_rows.entry_row[world, 4 * start + column_of_dof] = share
+    inverse_mass = share * pair_rows.entry_response[world, 4 * start + column_of_dof]
     return Vector3(inverse_mass, share * state.dof_velocity[world, dof], 0.0)
 
 
@@ -160,7 +160,7 @@ def add_gear_row(
     state: State,
     scratch: Scratch,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     user: Int32,
     place: Index4,
@@ -184,20 +184,20 @@ def add_gear_row(
 
     row = place[0]
     after = place_row(
-        model, couplings, world, row, users.user_tree_a[user], users.user_tree_b[user], place[1]
+        model, pair_rows, world, row, users.user_tree_a[user], users.user_tree_b[user], place[1]
     )
     own = write_dof_jacobian(
-        model, state, scratch, couplings, world,
+        model, state, scratch, pair_rows, world,
         users.user_tree_a[user], model.link[link_a].first_dof, 1.0, place[1],
     )  # fmt: skip
-    start_b = place[1] + couplings.coupling_place[world, row][1]
+    start_b = place[1] + pair_rows.row_place[world, row][1]
     other = write_dof_jacobian(
-        model, state, scratch, couplings, world,
+        model, state, scratch, pair_rows, world,
         users.user_tree_b[user], model.link[link_b].first_dof, ratio, start_b,
     )  # fmt: skip
     change = auxiliary_rate - (own[1] + other[1]) - error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]
-    write_row(couplings, world, row, own[0] + other[0], change, 0.0, -bound, bound, 0.0)
+    write_row(pair_rows, world, row, own[0] + other[0], change, 0.0, -bound, bound, 0.0)
     return Index4(row + 1, after, 0, 0)
 
 
@@ -208,24 +208,24 @@ def add_user_rows(
     state: State,
     scratch: Scratch,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     user: Int32,
     place: Index4,
 ) -> Index4:
     """Add the rows of one user constraint; returns the next free row and block."""
-    couplings.user_first_row[world, user] = place[0]
+    pair_rows.user_first_row[world, user] = place[0]
     if users.user_kind[user] == USER_GEAR:
-        return add_gear_row(settings, model, state, scratch, users, couplings, world, user, place)
-    return add_pose_rows(settings, model, state, scratch, users, couplings, world, user, place)
+        return add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, place)
+    return add_pose_rows(settings, model, state, scratch, users, pair_rows, world, user, place)
 
 
 @func
-def keep_user_impulses(state: State, users: UserConstraints, couplings: Couplings, world: Int32, user: Int32):
+def keep_user_impulses(state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, user: Int32):
     """Report the impulses of a user constraint's rows."""
-    first = couplings.user_first_row[world, user]
+    first = pair_rows.user_first_row[world, user]
     for i in range(user_row_count(users.user_kind[user])):
         impulse = real(0.0)
         if users.user_enabled[world, user] != 0:
-            impulse = couplings.coupling_terms[world, first + i][ROW_IMPULSE]
+            impulse = pair_rows.row_terms[world, first + i][ROW_IMPULSE]
         state.user_impulse[world, user][i] = impulse

@@ -6,7 +6,7 @@ two shapes, and most pairs make one as early as that, so that it can slow them i
 
 import warp as wp
 
-from carom.kernels.maths.extremes import greater, lesser
+from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import BOX, PLANE, SPHERE
@@ -17,7 +17,7 @@ IDENTITY_TOLERANCE = real(1.0e-12)
 @func
 def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
     """Distance at which a contact of two shapes ends [m]."""
-    return lesser(shapes.shape_breaking[a], shapes.shape_breaking[b])
+    return minimum(shapes.shape_breaking[a], shapes.shape_breaking[b])
 
 
 @func
@@ -34,7 +34,7 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 
 
 @func
-def bounds_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
+def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
     """Gap between the bounds of two shapes up to which they can be in contact [m].
 
     Bullet widens the bounds of bodies, but not those of the parts of compounds. Those of planes are infinite,
@@ -44,11 +44,11 @@ def bounds_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32)
     on_plane = shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
     if not on_plane and (is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b)):
         return ahead
-    return greater(ahead, breaking_distance(shapes, a, b))
+    return maximum(ahead, breaking_distance(shapes, a, b))
 
 
 @func
-def region_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
+def region_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
     """Distance from the bounds of a shape up to which triangles of a mesh or height field count [m].
 
     Bullet looks at those that meet the bounds, and keeps what contacts there are until their sides have
@@ -56,12 +56,12 @@ def region_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32,
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     if in_contact:
-        return greater(ahead, breaking_distance(shapes, a, b))
+        return maximum(ahead, breaking_distance(shapes, a, b))
     return ahead
 
 
 @func
-def contact_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
+def contact_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
     """Distance up to which two shapes are in contact [m].
 
     Boxes begin to be, and balls are, only where they touch. Fast bodies with continuous detection are
@@ -74,4 +74,4 @@ def contact_reach(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
         return ahead
     if kind_a == BOX and kind_b == BOX and not in_contact:
         return ahead
-    return greater(ahead, breaking_distance(shapes, a, b))
+    return maximum(ahead, breaking_distance(shapes, a, b))

@@ -45,7 +45,7 @@ class _Hand:
     moved: bool = False
 
 
-class Hands:
+class Picking:
     """The hands of all pages. Belongs to one thread; the world is only touched in `apply`.
 
     Args:
@@ -56,25 +56,25 @@ class Hands:
     def __init__(self, world: World, lock: Any) -> None:
         self._world = world
         self._world_lock = lock
-        self._hands: dict[int, _Hand] = {}
+        self._picking: dict[int, _Hand] = {}
         self._released: list[UserConstraint] = []
 
     def take(self, page: int, body: int, link: int, point: Vector3, target: Vector3) -> None:
         """A page takes hold of a point of a link, given in its inertial frame."""
         self.release(page)
         if all(map(isfinite, (*point, *target))):
-            self._hands[page] = _Hand(body, link, point, target)
+            self._picking[page] = _Hand(body, link, point, target)
 
     def move(self, page: int, target: Vector3) -> None:
         """The mouse of a page goes somewhere else in the world."""
-        hand = self._hands.get(page)
+        hand = self._picking.get(page)
         if hand is not None and all(map(isfinite, target)):
             hand.target = target
             hand.moved = True
 
     def release(self, page: int) -> None:
         """A page lets go."""
-        hand = self._hands.pop(page, None)
+        hand = self._picking.pop(page, None)
         if hand is not None and hand.tie is not None:
             self._released.append(hand.tie)
 
@@ -84,15 +84,15 @@ class Hands:
         Args:
             patience: How long to wait for a world that is stepping [s].
         """
-        if not self._released and not any(hand.moved or hand.tie is None for hand in self._hands.values()):
+        if not self._released and not any(hand.moved or hand.tie is None for hand in self._picking.values()):
             return
         if not self._world_lock.acquire(timeout=patience):
             return
         try:
             self._remove_released()
-            for page, hand in list(self._hands.items()):
+            for page, hand in list(self._picking.items()):
                 if not self._hold(hand):
-                    del self._hands[page]
+                    del self._picking[page]
         finally:
             self._world_lock.release()
 
@@ -111,7 +111,7 @@ class Hands:
             if world.user_constraints.get(hand.tie.id) is not hand.tie:
                 return False
             hand.tie.child_frame = Pose(hand.target, _NO_TURN)
-            world.user_constraints.write(world.touch)
+            world.user_constraints.write(world.contact_arrays)
             hand.moved = False
             return True
         body = world.bodies.get(hand.body)

@@ -16,7 +16,7 @@ from carom.native.tables import ArrayTable
 _LEAST_CONTACTS = 4
 
 
-class TouchArrays:
+class ContactArrays:
     """Shapes, contacts and user constraints."""
 
     def __init__(self, arrays: WorldArrays) -> None:
@@ -26,9 +26,9 @@ class TouchArrays:
         self.users: ArrayTable = ArrayTable(UserConstraints)
         self.user_count = 0
 
-    def repeated(self, arrays: WorldArrays) -> TouchArrays:
+    def repeated(self, arrays: WorldArrays) -> ContactArrays:
         """What bodies do to each other in the worlds of some arrays, in all of them as in the first."""
-        other = TouchArrays(arrays)
+        other = ContactArrays(arrays)
         other.shapes = deepcopy(self.shapes)
         other.contacts = self.contacts.copy(
             arrays.world_count, {"contact": max(_LEAST_CONTACTS, self.contact_count), "count": 1}
@@ -46,7 +46,7 @@ class TouchArrays:
         """Drop all contacts; the rows of their shapes are about to move."""
         self.contacts.numpy["count_contacts"][:] = 0
 
-    def distrust_contacts(self, worlds: np.ndarray | None = None) -> None:
+    def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
         """Let no contact start from its last impulses: somebody has put a body elsewhere.
 
         So what follows depends on where everything is put, and not on what was there before.

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
-from carom.kernels.structs import Couplings, Model, Scratch, State
+from carom.kernels.structs import Model, PairRows, Scratch, State
 from carom.kernels.types import Index4, Int32, Vector3, Vector4, Vector8, func, real
 from carom.layouts.codes import (
     ROW_EFFECTIVE_MASS,
@@ -27,12 +27,12 @@ def tree_blocks(model: Model, tree: Int32) -> Int32:
 
 
 @func
-def has_room(model: Model, couplings: Couplings, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
+def has_room(model: Model, pair_rows: PairRows, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
     """Whether all rows there may be between two trees still fit."""
     blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
-    if place[0] + ROWS_PER_PAIR > couplings.coupling_start.shape[1]:
+    if place[0] + ROWS_PER_PAIR > pair_rows.row_start.shape[1]:
         return False
-    return place[1] + ROWS_PER_PAIR * blocks <= couplings.jacobian_row.shape[1]
+    return place[1] + ROWS_PER_PAIR * blocks <= pair_rows.jacobian_row.shape[1]
 
 
 @func
@@ -40,7 +40,7 @@ def write_jacobian(
     model: Model,
     state: State,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     tree: Int32,
     link: Int32,
@@ -60,8 +60,8 @@ def write_jacobian(
     velocity = real(0.0)
     blocks = tree_blocks(model, tree)
     if blocks > 0:
-        fill_zero(couplings.jacobian_row, start, world, blocks)
-        fill_zero(couplings.jacobian_response, start, world, blocks)
+        fill_zero(pair_rows.jacobian_row, start, world, blocks)
+        fill_zero(pair_rows.jacobian_response, start, world, blocks)
         reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         moment = wp.cross(point - reference, linear) + angular
         first = model.tree[tree].first_dof
@@ -72,21 +72,21 @@ def write_jacobian(
                 scratch.dof[world, dof].angular, moment
             )
             velocity += share * state.dof_velocity[world, dof]
-            couplings.entry_row[world, 4 * start + dof - first] = share
+            pair_rows.entry_row[world, 4 * start + dof - first] = share
             add_multiple(
-                couplings.jacobian_response, start, share, scratch.block_inverse_mass,
+                pair_rows.jacobian_response, start, share, scratch.block_inverse_mass,
                 matrix + (dof - first) * blocks, world, blocks,
             )  # fmt: skip
             dof = model.dof[dof].parent
         inverse_mass = dot_product(
-            couplings.jacobian_row, start, couplings.jacobian_response, start, world, blocks
+            pair_rows.jacobian_row, start, pair_rows.jacobian_response, start, world, blocks
         )
     return Vector3(inverse_mass, velocity, 0.0)
 
 
 @func
 def place_row(
-    model: Model, couplings: Couplings, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
+    model: Model, pair_rows: PairRows, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
 ) -> Int32:
     """Note which trees a row acts on and where its Jacobian is; returns the next free block."""
     blocks_a = tree_blocks(model, tree_a)
@@ -97,15 +97,15 @@ def place_row(
         delta_a = model.tree[tree_a].first_delta
     if tree_b >= 0:
         delta_b = model.tree[tree_b].first_delta
-    couplings.coupling_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
-    couplings.coupling_start[world, row] = start
-    couplings.coupling_bound[world, row] = Int32(-1)
+    pair_rows.row_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
+    pair_rows.row_start[world, row] = start
+    pair_rows.row_bound[world, row] = Int32(-1)
     return start + blocks_a + blocks_b
 
 
 @func
 def write_row(
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     row: Int32,
     inverse_mass: real,
@@ -123,7 +123,7 @@ def write_row(
     diagonal = real(0.0)
     if effective_mass > 0.0:
         diagonal = 1.0 / effective_mass
-    couplings.coupling_terms[world, row] = Vector8(
+    pair_rows.row_terms[world, row] = Vector8(
         change * effective_mass,
         effective_mass,
         diagonal,
@@ -137,83 +137,81 @@ def write_row(
 
 @func
 def row_velocity_change(
-    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32
+    scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32
 ) -> real:
     """What the solver has changed so far about the velocity of a row, by its place and start."""
     total = real(0.0)
     if place[1] > 0:
-        total = dot_product(couplings.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
+        total = dot_product(pair_rows.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
     if place[3] > 0:
         total += dot_product(
-            couplings.jacobian_row, start + place[1], scratch.delta_velocity, place[2], world, place[3]
+            pair_rows.jacobian_row, start + place[1], scratch.delta_velocity, place[2], world, place[3]
         )
     return total
 
 
 @func
-def push_row(
-    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32, impulse: real
-):
+def push_row(scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, impulse: real):
     """Apply an impulse along a row to the changes of velocity of its trees."""
     if place[1] > 0:
         add_multiple(
-            scratch.delta_velocity, place[0], impulse, couplings.jacobian_response, start, world, place[1]
+            scratch.delta_velocity, place[0], impulse, pair_rows.jacobian_response, start, world, place[1]
         )
     if place[3] > 0:
         add_multiple(
-            scratch.delta_velocity, place[2], impulse, couplings.jacobian_response, start + place[1], world,
+            scratch.delta_velocity, place[2], impulse, pair_rows.jacobian_response, start + place[1], world,
             place[3],
         )  # fmt: skip
 
 
 @func
 def wanted_impulse(
-    scratch: Scratch, couplings: Couplings, world: Int32, place: Index4, start: Int32, terms: Vector8
+    scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, terms: Vector8
 ) -> real:
     """Impulse that would bring a row to its target if it had no bounds."""
     return (
         terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
         + terms[ROW_SHARE]
-        - row_velocity_change(scratch, couplings, world, place, start) * terms[ROW_EFFECTIVE_MASS]
+        - row_velocity_change(scratch, pair_rows, world, place, start) * terms[ROW_EFFECTIVE_MASS]
     )
 
 
 @func
 def relax_within(
-    scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, lower: real, upper: real
+    scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, lower: real, upper: real
 ) -> real:
     """Bring one row to its target as far as bounds allow; returns the change of its velocity."""
-    terms = couplings.coupling_terms[world, row]
-    place = couplings.coupling_place[world, row]
-    start = couplings.coupling_start[world, row]
-    impulse = wanted_impulse(scratch, couplings, world, place, start, terms)
+    terms = pair_rows.row_terms[world, row]
+    place = pair_rows.row_place[world, row]
+    start = pair_rows.row_start[world, row]
+    impulse = wanted_impulse(scratch, pair_rows, world, place, start, terms)
     if impulse < lower:
         impulse = lower
     if impulse > upper:
         impulse = upper
     change = impulse - terms[ROW_IMPULSE]
-    couplings.coupling_terms[world, row][ROW_IMPULSE] = impulse
-    push_row(scratch, couplings, world, place, start, change)
+    pair_rows.row_terms[world, row][ROW_IMPULSE] = impulse
+    push_row(scratch, pair_rows, world, place, start, change)
     return change * terms[ROW_INVERSE_MASS]
 
 
 @func
-def relax_coupling(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32) -> real:
+def relax_pair_row(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32) -> real:
     """As `relax_within`, with the row's own bounds."""
-    terms = couplings.coupling_terms[world, row]
-    return relax_within(scratch, couplings, world, row, terms[ROW_LOWER], terms[ROW_UPPER])
+    terms = pair_rows.row_terms[world, row]
+    return relax_within(scratch, pair_rows, world, row, terms[ROW_LOWER], terms[ROW_UPPER])
 
 
 @func
-def relax_in_circle(scratch: Scratch, couplings: Couplings, world: Int32, row: Int32, bound: real) -> real:
+def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, bound: real) -> real:
     """Relax two perpendicular rows, this and the next, their impulses together within `bound`."""
-    place = couplings.coupling_place[world, row]
-    start1 = couplings.coupling_start[world, row]
+    place = pair_rows.row_place[world, row]
+    start1 = pair_rows.row_start[world, row]
     start2 = start1 + place[1] + place[3]
-    terms1 = couplings.coupling_terms[world, row]
-    terms2 = couplings.coupling_terms[world, row + 1]
-    first = wanted_impulse(scratch, couplings, world, place, start1, terms1)
-    second = wanted_impulse(scratch, couplings, world, place, start2, terms2)
+    terms1 = pair_rows.row_terms[world, row]
+    terms2 = pair_rows.row_terms[world, row + 1]
+    first = wanted_impulse(scratch, pair_rows, world, place, start1, terms1)
+    second = wanted_impulse(scratch, pair_rows, world, place, start2, terms2)
     square = first * first + second * second
     if square >= bound * bound:
         scale = real(0.0)
@@ -223,10 +221,10 @@ def relax_in_circle(scratch: Scratch, couplings: Couplings, world: Int32, row: I
         second = second * scale
     change1 = first - terms1[ROW_IMPULSE]
     change2 = second - terms2[ROW_IMPULSE]
-    couplings.coupling_terms[world, row][ROW_IMPULSE] = first
-    couplings.coupling_terms[world, row + 1][ROW_IMPULSE] = second
-    push_row(scratch, couplings, world, place, start1, change1)
-    push_row(scratch, couplings, world, place, start2, change2)
+    pair_rows.row_terms[world, row][ROW_IMPULSE] = first
+    pair_rows.row_terms[world, row + 1][ROW_IMPULSE] = second
+    push_row(scratch, pair_rows, world, place, start1, change1)
+    push_row(scratch, pair_rows, world, place, start2, change2)
     return change1 * terms1[ROW_INVERSE_MASS] + change2 * terms2[ROW_INVERSE_MASS]
 
 
@@ -235,7 +233,7 @@ def write_jacobians(
     model: Model,
     state: State,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     ends: Index4,
     point_a: Vector3,
@@ -261,7 +259,7 @@ def write_jacobians(
             sign = real(-1.0)
             start += tree_blocks(model, ends[0])
         result += write_jacobian(
-            model, state, scratch, couplings, world, ends[2 * side], ends[2 * side + 1], point,
+            model, state, scratch, pair_rows, world, ends[2 * side], ends[2 * side + 1], point,
             sign * linear, sign * angular, start,
         )  # fmt: skip
         side += 1
@@ -273,7 +271,7 @@ def write_pair_jacobian(
     model: Model,
     state: State,
     scratch: Scratch,
-    couplings: Couplings,
+    pair_rows: PairRows,
     world: Int32,
     row: Int32,
     block: Int32,
@@ -288,8 +286,8 @@ def write_pair_jacobian(
     Returns:
         Inverse mass, relative velocity, next free block, 0.
     """
-    after = place_row(model, couplings, world, row, ends[0], ends[2], block)
+    after = place_row(model, pair_rows, world, row, ends[0], ends[2], block)
     found = write_jacobians(
-        model, state, scratch, couplings, world, ends, point_a, point_b, linear, angular, block
+        model, state, scratch, pair_rows, world, ends, point_a, point_b, linear, angular, block
     )
     return Vector4(found[0], found[1], real(after), 0.0)

@@ -11,7 +11,7 @@ _LOOK = 0.1
 _GREATEST_LAG = 0.1
 
 
-class Gate:
+class PauseControl:
     """What a step has to pass while a simulation is paused or slowed down. Safe to use from all threads.
 
     Attributes:

@@ -1,6 +1,6 @@
 """Which trees are asleep: those at rest do not take part until something in motion comes near.
 
-A tree that hardly moves for `TIRED_AFTER` seconds is *tired*. Trees that are near each other, touch or are
+A tree that hardly moves for `SLEEP_DELAY` seconds is *tired*. Trees that are near each other, touch or are
 tied together fall asleep together, when none of them is awake, and stir together when one is. As in
 Bullet neither forces nor motors wake anyone up.
 """
@@ -8,17 +8,17 @@ Bullet neither forces nor motors wake anyone up.
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
-from carom.kernels.contact.filters import may_touch
+from carom.kernels.contact.filters import may_collide
 from carom.kernels.contact.hierarchy import leaf_start, next_node
 from carom.kernels.solver.activity import link_moves, squared_motion
 from carom.kernels.solver.islands import unite, unite_tied
-from carom.kernels.structs import Contacts, Couplings, Model, Pairs, Settings, Shapes, State, UserConstraints
+from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
-from carom.layouts.codes import ACTIVE, ASLEEP, DROWSY, STIRRED
+from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
 from carom.layouts.contacts import LEAVES, THERE
 
 # Time without motion after which a tree may fall asleep [s].
-TIRED_AFTER = real(2.0)
+SLEEP_DELAY = real(2.0)
 # Gap between the bounds of two trees up to which they fall asleep and stir together [m].
 NEAR = real(0.04)
 
@@ -36,7 +36,7 @@ def are_near(
         pairs.shape_lower[world, b],
         pairs.shape_upper[world, b],
         NEAR,
-    ) and may_touch(shapes, model, settings, a, b)
+    ) and may_collide(shapes, model, settings, a, b)
 
 
 @func
@@ -113,7 +113,7 @@ def settle_kernel(
     pairs: Pairs,
     contacts: Contacts,
     users: UserConstraints,
-    couplings: Couplings,
+    pair_rows: PairRows,
     touching: Int32,
     first_world: Int32,
 ):
@@ -124,7 +124,7 @@ def settle_kernel(
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = tree
-        couplings.tree_touches[world, tree] = 0
+        pair_rows.tree_contacts[world, tree] = 0
     if touching != 0:
         unite_neighbours(settings, model, state, shapes, pairs, world)
         for contact in range(contacts.count_contacts[world, THERE]):
@@ -132,36 +132,36 @@ def settle_kernel(
             if link_moves(model, pair[2]) and link_moves(model, pair[3]):
                 unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
     unite_tied(settings, model, state, users, world)
-    # From here on `tree_touches` of a root says that someone of its island is active.
+    # From here on `tree_contacts` of a root says that someone of its island is active.
     for tree in range(settings.tree_count):
         if state.tree_activity[world, tree] == ACTIVE and has_moving_shapes(model, shapes, tree):
-            couplings.tree_touches[world, island_of(state, world, tree)] = 1
+            pair_rows.tree_contacts[world, island_of(state, world, tree)] = 1
     for tree in range(settings.tree_count):
         activity = state.tree_activity[world, tree]
         if activity != ACTIVE and has_moving_shapes(model, shapes, tree):
-            if couplings.tree_touches[world, island_of(state, world, tree)] == 0:
+            if pair_rows.tree_contacts[world, island_of(state, world, tree)] == 0:
                 state.tree_activity[world, tree] = ASLEEP
             elif activity == ASLEEP:
-                state.tree_activity[world, tree] = STIRRED
+                state.tree_activity[world, tree] = WOKEN
             else:
-                state.tree_activity[world, tree] = DROWSY
+                state.tree_activity[world, tree] = WANTS_SLEEP
 
 
 @func
 def watch(model: Model, settings: Settings, state: State, world: Int32, tree: Int32):
     """Whether a tree moves enough to stay awake, or to wake up."""
     if model.tree[tree].can_sleep == 0:
-        state.tree_tired[world, tree] = 0
+        state.tree_wants_sleep[world, tree] = 0
         state.tree_idle_time[world, tree] = 0.0
         return
     if squared_motion(model, state, world, tree) < model.tree[tree].sleep_threshold:
         state.tree_idle_time[world, tree] += settings.time_step
-        if state.tree_idle_time[world, tree] > TIRED_AFTER:
-            state.tree_tired[world, tree] = 1
+        if state.tree_idle_time[world, tree] > SLEEP_DELAY:
+            state.tree_wants_sleep[world, tree] = 1
     else:
         state.tree_idle_time[world, tree] = 0.0
         if model.tree[tree].can_wake != 0:
-            state.tree_tired[world, tree] = 0
+            state.tree_wants_sleep[world, tree] = 0
 
 
 @kernel
@@ -170,7 +170,7 @@ def watch_kernel(settings: Settings, model: Model, state: State, first_world: In
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         watch(model, settings, state, world, tree)
-        if state.tree_tired[world, tree] == 0:
+        if state.tree_wants_sleep[world, tree] == 0:
             state.tree_activity[world, tree] = ACTIVE
         elif state.tree_activity[world, tree] == ACTIVE:
-            state.tree_activity[world, tree] = DROWSY
+            state.tree_activity[world, tree] = WANTS_SLEEP

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from carom.viewer.viewer import Viewer
 
 
-class Turnstile:
+class StepLock:
     """One of `World.observers`: a step waits for the viewer and holds its lock.
 
     So that pages can pause, pull and go back in time while a script calls `World.step`.

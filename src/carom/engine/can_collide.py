@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.engine.touch_arrays import TouchArrays
+from carom.engine.contact_arrays import ContactArrays
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 
-def can_touch(arrays: WorldArrays, touch: TouchArrays) -> bool:
+def can_collide(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
     """Whether two shapes could ever touch: of two bodies that are not both scenery, or of one body.
 
     Scenery are bodies with shapes on their fixed base alone, in the group of fixed bases.
     """
-    shapes, model = touch.shapes.table.numpy, arrays.model.numpy
+    shapes, model = contact_arrays.shapes.table.numpy, arrays.model.numpy
     solid = np.flatnonzero(shapes["link_shape_count"][: arrays.used["link"]])
     if shapes["link_self_collision"][solid].any():
         return True
@@ -22,7 +22,7 @@ def can_touch(arrays: WorldArrays, touch: TouchArrays) -> bool:
     trees = np.searchsorted(first_links, solid, side="right") - 1
     if (trees[1:] == trees[:-1]).all():
         return False
-    if touch.shapes.filters.all:
+    if contact_arrays.shapes.filters.all:
         return True
     is_fixed_base = (model["tree_fixed"][trees] != 0) & (first_links[trees] == solid)
     groups, masks = shapes["link_group"][solid], shapes["link_mask"][solid]

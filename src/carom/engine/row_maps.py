@@ -7,7 +7,7 @@ from carom.layouts.queries import Places
 from carom.native.tables import ArrayTable
 
 
-def places_struct(places: Sequence[tuple[int, int]]) -> Any:
+def row_map_struct(places: Sequence[tuple[int, int]]) -> Any:
     """A struct of the bodies and links that the rows of the link arrays stand for."""
     table = ArrayTable(Places)
     table.reserve({"place": len(places)})

@@ -7,56 +7,56 @@ and the motion is Bullet's.
 
 A start from impulses that were not quite right would add errors up over the steps, and stacks would tremble.
 So what could not be solved is done again as in Bullet, and the next attempt comes later. And where every
-patch *holds* (at least three contacts that all push, two of which do not slide), the exact solution is rest:
-the velocity left from the last step, if it is next to nothing, is the solver's error and is taken away.
+manifold block *holds* (at least three contacts that all push, two of which do not slide), the exact solution
+is rest: the velocity left from the last step, if next to nothing, is the solver's error and is taken away.
 """
 
 import warp as wp
 
-from carom.kernels.maths.extremes import lesser
+from carom.kernels.maths.min_max import minimum
 from carom.kernels.solver.activity import is_asleep, squared_motion, stop
 from carom.kernels.solver.contact_order import same_shapes
-from carom.kernels.structs import Contacts, Couplings, Model, Settings, Shapes, State
+from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.contacts import THERE
 
-# What `Couplings.tree_touches` says of a tree, added up: it has contacts; some are not plain; some did not
+# What `PairRows.tree_contacts` says of a tree, added up: it has contacts; some are not plain; some did not
 # hold in the last step; some, its own or others of the island whose root it is, are with what cannot move.
-TOUCHES, TOUCHES_BADLY, TOUCHES_LOOSELY, ANCHORED = 1, 2, 4, 8
-# What `Couplings.tree_calm` says of the root of an island: it is not calm; it is; and all its patches hold
+HAS_CONTACTS, HAS_OTHER_CONTACTS, HAS_LOOSE_CONTACTS, ANCHORED = 1, 2, 4, 8
+# What `PairRows.tree_rest` says of the root of an island: it moves; it is at rest; and all its blocks hold
 # and all its bodies are still.
-RESTLESS, CALM, HELD = 0, 1, 2
+MOVING, RESTING, HELD = 0, 1, 2
 # Sum of squared velocities of a body at rest, at most [m²/s², rad²/s²].
 REST = real(2e-4)
 # The same of one that is still.
 STILL = real(1e-8)
 # Bodies whose contacts are this much deeper or higher than they should be still move because of that [m].
 SETTLED = real(2e-7)
-# Share of `residual_threshold` that ends the sweeps of a calm island.
-CALM_PRECISION = real(1e-4)
+# Share of `residual_threshold` that ends the sweeps of an island at rest.
+RESTING_PRECISION = real(1e-4)
 # How many times the usual sweeps it may take; a few are enough but for those after it has come to rest.
-CALM_SWEEPS = 4
+RESTING_SWEEPS = 4
 
 
-# How the search for the impulses of a contact went: it was not in a calm island; that was solved; it was not;
-# it was, and the patch holds.
-NOT_CALM, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
+# How the search for the impulses of a contact went: it was in no island at rest; that was solved; it was
+# not; it was, and the manifold block holds.
+NOT_RESTING, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
 # Share of the greatest friction, squared, from which on a contact slides.
 SLIDING = real(1.0 - 1e-9)
-# What makes trust of a contact in a patch that holds.
+# What makes trust of a contact in a manifold block that holds.
 HOLDS = real(2.0)
 # Steps without an attempt after one that failed.
 PAUSE = real(60.0)
 
 
 @func
-def next_trust(trust: real, outcome: Int32) -> real:
+def next_warm_start(warm_start: real, outcome: Int32) -> real:
     """Whether a step may start from the last impulses of a contact: if at least 1; each step adds one."""
     if outcome == UNSOLVED:
         return 1.0 - PAUSE
     if outcome == SOLVED_AND_HOLDS:
         return HOLDS
-    return lesser(trust + 1.0, 1.0)
+    return minimum(warm_start + 1.0, 1.0)
 
 
 @func
@@ -88,7 +88,7 @@ def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
 
 @func
 def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact was there before, in a patch that can be solved, and neither rolls nor gives."""
+    """Whether a contact was there before, in a block that can be solved, and neither rolls nor gives."""
     if contacts.contact_impulse[world, contact][3] < 1.0:
         return False
     pair = contacts.contact_shapes[world, contact]
@@ -101,62 +101,62 @@ def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -
 
 
 @func
-def touches_how(
+def contact_traits(
     settings: Settings, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
 ) -> Int32:
-    """What a contact adds to `Couplings.tree_touches` of the trees it moves."""
+    """What a contact adds to `PairRows.tree_contacts` of the trees it moves."""
     if not is_plain(shapes, contacts, world, contact):
-        return TOUCHES | TOUCHES_BADLY
+        return HAS_CONTACTS | HAS_OTHER_CONTACTS
     gap = contacts.contact_distance[world, contact] + settings.contact_slop
     if contacts.contact_impulse[world, contact][3] < HOLDS or wp.abs(gap) > SETTLED:
-        return TOUCHES | TOUCHES_LOOSELY
-    return TOUCHES
+        return HAS_CONTACTS | HAS_LOOSE_CONTACTS
+    return HAS_CONTACTS
 
 
 @func
-def calmness(model: Model, state: State, couplings: Couplings, world: Int32, tree: Int32) -> Int32:
+def rest_of(model: Model, state: State, pair_rows: PairRows, world: Int32, tree: Int32) -> Int32:
     """What a tree lets its island be."""
-    touches = couplings.tree_touches[world, tree]
+    touches = pair_rows.tree_contacts[world, tree]
     motion = squared_motion(model, state, world, tree)
-    if touches & TOUCHES_BADLY != 0 or motion >= REST or not is_rigid(model, tree):
-        return RESTLESS
-    if touches & TOUCHES_LOOSELY != 0 or motion >= STILL:
-        return CALM
+    if touches & HAS_OTHER_CONTACTS != 0 or motion >= REST or not is_rigid(model, tree):
+        return MOVING
+    if touches & HAS_LOOSE_CONTACTS != 0 or motion >= STILL:
+        return RESTING
     return HELD
 
 
 @func
-def find_calm(settings: Settings, model: Model, state: State, couplings: Couplings, world: Int32):
-    """Mark the roots of islands by how calm these are, and stop what is held."""
+def find_resting_islands(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
+    """Mark the roots of islands by how much at rest these are, and stop what is held."""
     for tree in range(settings.tree_count):
-        couplings.tree_calm[world, tree] = Int32(HELD)
-        if couplings.tree_first_constraint[world, tree] >= 0 or settings.contact_warm_starting == 0.0:
-            couplings.tree_calm[world, tree] = Int32(RESTLESS)
+        pair_rows.tree_rest[world, tree] = Int32(HELD)
+        if pair_rows.tree_first_constraint[world, tree] >= 0 or settings.contact_warm_starting == 0.0:
+            pair_rows.tree_rest[world, tree] = Int32(MOVING)
     for tree in range(settings.tree_count):
         if is_asleep(state, world, tree):
             continue
         root = state.tree_island[world, tree]
-        couplings.tree_calm[world, root] = wp.min(
-            couplings.tree_calm[world, root], calmness(model, state, couplings, world, tree)
+        pair_rows.tree_rest[world, root] = wp.min(
+            pair_rows.tree_rest[world, root], rest_of(model, state, pair_rows, world, tree)
         )
-        anchor = couplings.tree_touches[world, tree] & ANCHORED
-        couplings.tree_touches[world, root] = couplings.tree_touches[world, root] | anchor
+        anchor = pair_rows.tree_contacts[world, tree] & ANCHORED
+        pair_rows.tree_contacts[world, root] = pair_rows.tree_contacts[world, root] | anchor
     for tree in range(settings.tree_count):
         root = state.tree_island[world, tree]
-        if couplings.tree_calm[world, root] == HELD and couplings.tree_touches[world, root] & ANCHORED != 0:
+        if pair_rows.tree_rest[world, root] == HELD and pair_rows.tree_contacts[world, root] & ANCHORED != 0:
             stop(model, state, world, tree)
 
 
 @func
-def holds(couplings: Couplings, world: Int32, patch: Int32) -> bool:
-    """Whether a patch leaves two rigid bodies no motion against each other.
+def holds(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> bool:
+    """Whether a manifold block leaves two rigid bodies no motion against each other.
 
     It does if three contacts or more push, and two of them do not slide.
     """
-    normal = couplings.patch[world, patch].normal_impulse
-    lateral = couplings.patch[world, patch].friction_impulse
-    friction = couplings.patch[world, patch].friction
-    count = couplings.patch[world, patch].count
+    normal = pair_rows.manifold_block[world, manifold_block].normal_impulse
+    lateral = pair_rows.manifold_block[world, manifold_block].friction_impulse
+    friction = pair_rows.manifold_block[world, manifold_block].friction
+    count = pair_rows.manifold_block[world, manifold_block].count
     stick = Int32(0)
     for i in range(count):
         if normal[i] <= 0.0:

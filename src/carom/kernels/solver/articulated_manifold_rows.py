@@ -1,0 +1,140 @@
+"""Writing the rows of manifold blocks of trees of any size; see `articulated_manifolds`."""
+
+from carom.kernels.maths.blocks import combine4, combine8, fill_zero
+from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK, run_parts
+from carom.kernels.solver.pair_rows import write_jacobians
+from carom.kernels.solver.rigid_manifold_rows import row_direction, write_row_numbers
+from carom.kernels.structs import ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, func, real
+
+
+@func
+def clear_run(pair_rows: PairRows, world: Int32, manifold_block: Int32):
+    """Set the matrices of a manifold block to zero."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    fill_zero(
+        pair_rows.run_block,
+        pair_rows.manifold_block[world, manifold_block].run,
+        world,
+        RUN_PER_BLOCK * (place[1] + place[3]),
+    )
+
+
+@func
+def write_normal_matrices(
+    pair_rows: PairRows, world: Int32, part: Index4, blocks: Int32, contact: Int32, mass: real, start: Int32
+):
+    """Write the weighted Jacobian and the response of a normal row, which are at block `start`."""
+    block = Int32(0)
+    while block < blocks:
+        jacobian = pair_rows.jacobian_row[world, start + block]
+        for i in range(4):
+            entry = 4 * (part[0] + 4 * block + i) + contact
+            pair_rows.entry_run[world, entry] = mass * jacobian[i]
+        response = pair_rows.jacobian_response[world, start + block]
+        pair_rows.run_block[world, part[2] + 4 * block + contact] = response
+        block += 1
+
+
+@func
+def write_friction_matrices(
+    pair_rows: PairRows, world: Int32, part: Index4, blocks: Int32, row: Int32, mass: real, start: Int32
+):
+    """As `write_normal_matrices`, for friction row `row` of eight."""
+    block = Int32(0)
+    while block < blocks:
+        jacobian = pair_rows.jacobian_row[world, start + block]
+        for i in range(4):
+            entry = 4 * (part[1] + 8 * block + 2 * i) + row
+            pair_rows.entry_run[world, entry] = mass * jacobian[i]
+        response = pair_rows.jacobian_response[world, start + block]
+        pair_rows.run_block[world, part[3] + 8 * block + row] = response
+        block += 1
+
+
+@func
+def write_normal_gains(
+    pair_rows: PairRows, world: Int32, manifold_block: Int32, contact: Int32, mass: real, start: Int32
+):
+    """Write by how much the normal rows before this, of effective mass `mass`, lower its impulse wanted.
+
+    The response to this row says by how much it lowers theirs; masses tell the two apart.
+    """
+    place = pair_rows.manifold_block[world, manifold_block].place
+    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    lowered = pair_rows.manifold_block[world, manifold_block].normal_share * real(0.0)
+    if place[1] > 0:
+        lowered += combine4(pair_rows.run_block, part[0], pair_rows.jacobian_response, start, world, place[1])
+    if place[3] > 0:
+        lowered += combine4(
+            pair_rows.run_block, part[0] + 4 * place[1], pair_rows.jacobian_response, start + place[1],
+            world, place[3],
+        )  # fmt: skip
+    for i in range(4):
+        inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[i]
+        pair_rows.manifold_block[world, manifold_block].normal_gain[i, contact] = (
+            lowered[i] * inverse_mass * mass
+        )
+
+
+@func
+def write_friction_gains(
+    pair_rows: PairRows, world: Int32, manifold_block: Int32, row: Int32, mass: real, start: Int32
+):
+    """As `write_normal_gains`, for friction row `row` of eight."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    lowered = pair_rows.manifold_block[world, manifold_block].friction_share * real(0.0)
+    if place[1] > 0:
+        lowered += combine8(pair_rows.run_block, part[1], pair_rows.jacobian_response, start, world, place[1])
+    if place[3] > 0:
+        lowered += combine8(
+            pair_rows.run_block, part[1] + 8 * place[1], pair_rows.jacobian_response, start + place[1],
+            world, place[3],
+        )  # fmt: skip
+    for i in range(8):
+        inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i]
+        pair_rows.manifold_block[world, manifold_block].friction_gain[i, row] = (
+            lowered[i] * inverse_mass * mass
+        )
+
+
+@func
+def write_long_contact(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pair_rows: PairRows,
+    terms: ContactTerms,
+    world: Int32,
+    manifold_block: Int32,
+    contact: Int32,
+    start: Int32,
+):
+    """Write the three rows of a contact; blocks of rows over two trees from `start` on are free."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    part_a = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    part_b = part_a + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1])
+    start_b = start + place[1]
+    row = Int32(0)
+    while row < 3:
+        direction = row_direction(terms, row)
+        moved = write_jacobians(
+            model, state, scratch, pair_rows, world, terms.ends, terms.point_a, terms.point_b, direction,
+            0.0 * direction, start,
+        )  # fmt: skip
+        mass = write_row_numbers(
+            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, moved[1], moved[0]
+        )
+        if row == 0:
+            write_normal_matrices(pair_rows, world, part_a, place[1], contact, mass, start)
+            write_normal_matrices(pair_rows, world, part_b, place[3], contact, mass, start_b)
+            write_normal_gains(pair_rows, world, manifold_block, contact, mass, start)
+        else:
+            line = 2 * contact + row - 1
+            write_friction_matrices(pair_rows, world, part_a, place[1], line, mass, start)
+            write_friction_matrices(pair_rows, world, part_b, place[3], line, mass, start_b)
+            write_friction_gains(pair_rows, world, manifold_block, line, mass, start)
+        row += 1

@@ -1,0 +1,83 @@
+"""Manifold blocks of trees of any size; see `manifold_blocks`.
+
+Their matrices are in `PairRows.run_block`, one after the other, each for tree a and then tree b: the
+weighted Jacobians of the normals, a vector for each dof; those of friction, two for each; the responses
+to the normals, four vectors for each block of dofs; those to friction, eight.
+"""
+
+import warp as wp
+
+from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
+from carom.kernels.solver.rigid_manifolds import (
+    bounded_friction,
+    bounded_normals,
+    friction_residual,
+    normal_residual,
+)
+from carom.kernels.structs import PairRows, Scratch, Settings
+from carom.kernels.types import Index4, Int32, func, real
+
+# Vectors of all matrices of a articulated manifold block for each block of dofs of its trees.
+RUN_PER_BLOCK = 24
+
+
+@func
+def run_parts(run: Int32, place: Index4) -> Index4:
+    """Where the four matrices of a manifold block start."""
+    blocks = place[1] + place[3]
+    return Index4(run, run + 4 * blocks, run + 12 * blocks, run + 16 * blocks)
+
+
+@func
+def relax_long_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
+    """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    wanted = pair_rows.manifold_block[world, manifold_block].normal_share - wp.cw_mul(
+        pair_rows.manifold_block[world, manifold_block].normal_softness,
+        pair_rows.manifold_block[world, manifold_block].normal_impulse,
+    )
+    if place[1] > 0:
+        wanted -= combine4(pair_rows.run_block, part[0], scratch.delta_velocity, place[0], world, place[1])
+    if place[3] > 0:
+        start = part[0] + 4 * place[1]
+        wanted -= combine4(pair_rows.run_block, start, scratch.delta_velocity, place[2], world, place[3])
+    pair_rows.manifold_block[world, manifold_block].normal_wanted = wanted
+    change = bounded_normals(pair_rows, world, manifold_block)
+    if place[1] > 0:
+        add_combination4(
+            scratch.delta_velocity, place[0], change, pair_rows.run_block, part[2], world, place[1]
+        )
+    if place[3] > 0:
+        start = part[2] + 4 * place[1]
+        add_combination4(
+            scratch.delta_velocity, place[2], change, pair_rows.run_block, start, world, place[3]
+        )
+    return normal_residual(pair_rows, world, manifold_block, change)
+
+
+@func
+def relax_long_friction(
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+) -> real:
+    """Relax the friction rows of a manifold block; returns as `relax_long_normals`."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    wanted = pair_rows.manifold_block[world, manifold_block].friction_share
+    if place[1] > 0:
+        wanted -= combine8(pair_rows.run_block, part[1], scratch.delta_velocity, place[0], world, place[1])
+    if place[3] > 0:
+        start = part[1] + 8 * place[1]
+        wanted -= combine8(pair_rows.run_block, start, scratch.delta_velocity, place[2], world, place[3])
+    pair_rows.manifold_block[world, manifold_block].friction_wanted = wanted
+    change = bounded_friction(settings, pair_rows, world, manifold_block)
+    if place[1] > 0:
+        add_combination8(
+            scratch.delta_velocity, place[0], change, pair_rows.run_block, part[3], world, place[1]
+        )
+    if place[3] > 0:
+        start = part[3] + 8 * place[1]
+        add_combination8(
+            scratch.delta_velocity, place[2], change, pair_rows.run_block, start, world, place[3]
+        )
+    return friction_residual(pair_rows, world, manifold_block, change)

@@ -1,0 +1,77 @@
+"""Making manifold blocks of contacts, and reporting what they did; see `manifold_blocks`."""
+
+from carom.kernels.solver.articulated_manifold_rows import clear_run, write_long_contact
+from carom.kernels.solver.contact_terms import keep_contact_impulse
+from carom.kernels.solver.pair_rows import tree_blocks
+from carom.kernels.solver.rigid_manifold_rows import write_rigid_rows
+from carom.kernels.solver.warm_starting import SOLVED, SOLVED_AND_HOLDS, holds
+from carom.kernels.structs import Contacts, ManifoldBlock, Model, PairRows, Scratch, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, func
+
+
+@func
+def tree_place(model: Model, tree: Int32) -> Int32:
+    """First block of a tree in `delta_velocity`; 0 for the world, -1."""
+    if tree < 0:
+        return Int32(0)
+    return model.tree[tree].first_delta
+
+
+@func
+def write_manifold_block(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    members: Index4,
+    count: Int32,
+    a: Int32,
+    b: Int32,
+    run: Int32,
+    temporary: Int32,
+):
+    """Write the rows of the `count` contacts in `members` of two trees, whose terms are in `PairRows.terms`.
+
+    `run` is where in `PairRows.run_block` their matrices go, -1 if they are rigid bodies; the
+    blocks from `temporary` on of a row over two trees are free.
+    """
+    pair_rows.manifold_block[world, manifold_block] = ManifoldBlock()
+    pair_rows.manifold_block[world, manifold_block].place = Index4(
+        tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
+    )
+    pair_rows.manifold_block[world, manifold_block].run = run
+    pair_rows.manifold_block[world, manifold_block].members = members
+    pair_rows.manifold_block[world, manifold_block].count = count
+    if run < 0:
+        write_rigid_rows(settings, model, state, scratch, shapes, pair_rows, world, manifold_block, a, b)
+        return
+    clear_run(pair_rows, world, manifold_block)
+    contact = Int32(0)
+    while contact < count:
+        write_long_contact(
+            settings, model, state, scratch, shapes, pair_rows,
+            pair_rows.terms[world, contact], world, manifold_block,
+            contact, temporary,
+        )  # fmt: skip
+        contact += 1
+
+
+@func
+def keep_manifold_impulses(
+    contacts: Contacts, pair_rows: PairRows, world: Int32, manifold_block: Int32, outcome: Int32
+):
+    """Report the impulses of the contacts of a manifold block, and the `outcome` of the search for them."""
+    normal = pair_rows.manifold_block[world, manifold_block].normal_impulse
+    lateral = pair_rows.manifold_block[world, manifold_block].friction_impulse
+    friction = pair_rows.manifold_block[world, manifold_block].friction
+    members = pair_rows.manifold_block[world, manifold_block].members
+    if outcome == SOLVED and holds(pair_rows, world, manifold_block):
+        outcome = Int32(SOLVED_AND_HOLDS)
+    for i in range(pair_rows.manifold_block[world, manifold_block].count):
+        keep_contact_impulse(
+            contacts, world, members[i], normal[i], lateral[2 * i], lateral[2 * i + 1], friction[i], outcome
+        )

@@ -1,0 +1,283 @@
+"""Writing the rows of manifold blocks of rigid bodies; see `manifold_blocks`."""
+
+import warp as wp
+
+from carom.kernels.dynamics.rows import inverse_or_off
+from carom.kernels.solver.contact_terms import friction_change, normal_change
+from carom.kernels.solver.rigid_manifolds import combination, push_manifold_block
+from carom.kernels.structs import ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
+from carom.kernels.types import Int32, Matrix8, Vector3, Vector4, Vector8, func, real
+
+
+@wp.struct
+class RigidBody:
+    """A rigid body about the reference point of its tree; all zero where it cannot be moved."""
+
+    reference: Vector3
+    velocity: Vector8  # angular before linear, in world axes
+    inverse_mass: Matrix8  # its last two rows and columns are zero
+
+
+@func
+def rigid_body(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32) -> RigidBody:
+    """The rigid body that a tree, -1 for none, is."""
+    body = RigidBody()
+    body.reference = Vector3(0.0, 0.0, 0.0)
+    body.velocity = Vector8(0.0)
+    body.inverse_mass = Matrix8()
+    if tree >= 0 and model.tree[tree].dof_count > 0:
+        body.reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+        first = model.tree[tree].first_dof
+        block = model.tree[tree].first_block
+        for i in range(6):
+            left = scratch.block_inverse_mass[world, block + 2 * i]
+            right = scratch.block_inverse_mass[world, block + 2 * i + 1]
+            body.velocity[i] = state.dof_velocity[world, first + i]
+            body.inverse_mass[i] = Vector8(left[0], left[1], left[2], left[3], right[0], right[1], 0.0, 0.0)
+    return body
+
+
+@func
+def row_direction(terms: ContactTerms, row: Int32) -> Vector3:
+    """Direction of a row of a contact: 0 is the normal, 1 and 2 are those of friction."""
+    direction = terms.normal
+    if row == 1:
+        direction = terms.lateral1
+    elif row == 2:
+        direction = terms.lateral2
+    return direction
+
+
+@func
+def write_row_numbers(
+    settings: Settings,
+    shapes: Shapes,
+    pair_rows: PairRows,
+    terms: ContactTerms,
+    world: Int32,
+    manifold_block: Int32,
+    contact: Int32,
+    row: Int32,
+    velocity: real,
+    inverse_mass: real,
+) -> real:
+    """Write everything about a row of a contact but its matrices.
+
+    Args:
+        settings: Softness, error reduction and more.
+        shapes: Restitution of the links.
+        pair_rows: The manifold block.
+        terms: The contact.
+        world: The world.
+        manifold_block: The manifold block.
+        contact: Which of its contacts.
+        row: Which of the rows of the contact: 0 is the normal, 1 and 2 are those of friction.
+        velocity: Present velocity of the row, but for what fixed bases do.
+        inverse_mass: Velocity that a unit impulse gives it.
+
+    Returns:
+        Effective mass of the row.
+    """
+    if terms.ignored != 0:
+        inverse_mass = real(0.0)
+    direction = row_direction(terms, row)
+    total = velocity + wp.dot(terms.carried, direction)
+    change = friction_change(settings, total, terms.drift, direction)
+    if row == 0:
+        inverse_mass += terms.softness
+        change = normal_change(settings, shapes, terms, world, total)
+    mass = inverse_or_off(inverse_mass)
+    if mass == 0.0:
+        inverse_mass = real(0.0)
+    impulse = real(0.0)
+    if mass > 0.0 and terms.start[0] > 0.0:
+        impulse = terms.start[row]
+    if row == 0:
+        pair_rows.manifold_block[world, manifold_block].friction[contact] = terms.friction[0]
+        pair_rows.manifold_block[world, manifold_block].normal_share[contact] = change * mass
+        pair_rows.manifold_block[world, manifold_block].normal_softness[contact] = terms.softness * mass
+        pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[contact] = inverse_mass
+        pair_rows.manifold_block[world, manifold_block].normal_impulse[contact] = impulse
+    else:
+        i = 2 * contact + row - 1
+        pair_rows.manifold_block[world, manifold_block].friction_share[i] = change * mass
+        pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i] = inverse_mass
+        pair_rows.manifold_block[world, manifold_block].friction_impulse[i] = impulse
+    return mass
+
+
+@func
+def rigid_jacobian(arm: Vector3, direction: Vector3) -> Vector8:
+    """How the velocities of a rigid body move the end of an arm along a direction, in world axes."""
+    moment = wp.cross(arm, direction)
+    return Vector8(
+        moment[0], moment[1], moment[2], direction[0], direction[1], direction[2], real(0.0), real(0.0)
+    )
+
+
+@func
+def write_rigid_jacobians(
+    pair_rows: PairRows,
+    terms: ContactTerms,
+    reference_a: Vector3,
+    reference_b: Vector3,
+    world: Int32,
+    manifold_block: Int32,
+    contact: Int32,
+):
+    """Write the Jacobians of a contact between rigid bodies in place of responses and weighted Jacobians."""
+    row = Int32(0)
+    while row < 3:
+        direction = row_direction(terms, row)
+        jacobian_a = rigid_jacobian(terms.point_a - reference_a, direction)
+        jacobian_b = rigid_jacobian(terms.point_b - reference_b, -direction)
+        i = 2 * contact + row - 1
+        if row == 0:
+            pair_rows.manifold_block[world, manifold_block].normal_response_a[contact] = jacobian_a
+            pair_rows.manifold_block[world, manifold_block].normal_response_b[contact] = jacobian_b
+            for dof in range(6):
+                pair_rows.manifold_block[world, manifold_block].normal_weighted_a[dof, contact] = jacobian_a[
+                    dof
+                ]
+                pair_rows.manifold_block[world, manifold_block].normal_weighted_b[dof, contact] = jacobian_b[
+                    dof
+                ]
+        else:
+            pair_rows.manifold_block[world, manifold_block].friction_response_a[i] = jacobian_a
+            pair_rows.manifold_block[world, manifold_block].friction_response_b[i] = jacobian_b
+            for dof in range(6):
+                pair_rows.manifold_block[world, manifold_block].friction_weighted_a[dof, i] = jacobian_a[dof]
+                pair_rows.manifold_block[world, manifold_block].friction_weighted_b[dof, i] = jacobian_b[dof]
+        row += 1
+
+
+@func
+def write_responses_a(pair_rows: PairRows, world: Int32, manifold_block: Int32, body: RigidBody):
+    """Turn the Jacobians of body a into responses, and add up what rows are to know of both bodies.
+
+    Until masses are known gains hold products of Jacobians and responses, shares the present velocities.
+    """
+    normal = pair_rows.manifold_block[world, manifold_block].normal_weighted_a
+    friction = pair_rows.manifold_block[world, manifold_block].friction_weighted_a
+    normal_response = pair_rows.manifold_block[world, manifold_block].normal_response_a * body.inverse_mass
+    friction_response = (
+        pair_rows.manifold_block[world, manifold_block].friction_response_a * body.inverse_mass
+    )
+    pair_rows.manifold_block[world, manifold_block].normal_response_a = normal_response
+    pair_rows.manifold_block[world, manifold_block].friction_response_a = friction_response
+    pair_rows.manifold_block[world, manifold_block].normal_gain += normal_response * normal
+    pair_rows.manifold_block[world, manifold_block].friction_gain += friction_response * friction
+    pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
+        world, manifold_block
+    ].normal_share + combination(normal, body.velocity)
+    pair_rows.manifold_block[world, manifold_block].friction_share = pair_rows.manifold_block[
+        world, manifold_block
+    ].friction_share + combination(friction, body.velocity)
+
+
+@func
+def write_responses_b(pair_rows: PairRows, world: Int32, manifold_block: Int32, body: RigidBody):
+    """As `write_responses_a`, for body b."""
+    normal = pair_rows.manifold_block[world, manifold_block].normal_weighted_b
+    friction = pair_rows.manifold_block[world, manifold_block].friction_weighted_b
+    normal_response = pair_rows.manifold_block[world, manifold_block].normal_response_b * body.inverse_mass
+    friction_response = (
+        pair_rows.manifold_block[world, manifold_block].friction_response_b * body.inverse_mass
+    )
+    pair_rows.manifold_block[world, manifold_block].normal_response_b = normal_response
+    pair_rows.manifold_block[world, manifold_block].friction_response_b = friction_response
+    pair_rows.manifold_block[world, manifold_block].normal_gain += normal_response * normal
+    pair_rows.manifold_block[world, manifold_block].friction_gain += friction_response * friction
+    pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
+        world, manifold_block
+    ].normal_share + combination(normal, body.velocity)
+    pair_rows.manifold_block[world, manifold_block].friction_share = pair_rows.manifold_block[
+        world, manifold_block
+    ].friction_share + combination(friction, body.velocity)
+
+
+@func
+def weigh(
+    pair_rows: PairRows, world: Int32, manifold_block: Int32, normal_mass: Vector4, friction_mass: Vector8
+):
+    """Multiply Jacobians and gains by the effective masses of their rows."""
+    for dof in range(6):
+        pair_rows.manifold_block[world, manifold_block].normal_weighted_a[dof] = wp.cw_mul(
+            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_weighted_a[dof]
+        )
+        pair_rows.manifold_block[world, manifold_block].normal_weighted_b[dof] = wp.cw_mul(
+            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_weighted_b[dof]
+        )
+        pair_rows.manifold_block[world, manifold_block].friction_weighted_a[dof] = wp.cw_mul(
+            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_weighted_a[dof]
+        )
+        pair_rows.manifold_block[world, manifold_block].friction_weighted_b[dof] = wp.cw_mul(
+            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_weighted_b[dof]
+        )
+    for i in range(4):
+        pair_rows.manifold_block[world, manifold_block].normal_gain[i] = wp.cw_mul(
+            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_gain[i]
+        )
+    for i in range(8):
+        pair_rows.manifold_block[world, manifold_block].friction_gain[i] = wp.cw_mul(
+            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_gain[i]
+        )
+
+
+@func
+def write_rigid_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    tree_a: Int32,
+    tree_b: Int32,
+):
+    """Write all rows of a manifold block of rigid bodies; what its contacts are is in `PairRows.terms`."""
+    body_a = rigid_body(model, state, scratch, world, tree_a)
+    body_b = rigid_body(model, state, scratch, world, tree_b)
+    count = pair_rows.manifold_block[world, manifold_block].count
+    contact = Int32(0)
+    while contact < count:
+        terms = pair_rows.terms[world, contact]
+        write_rigid_jacobians(
+            pair_rows, terms, body_a.reference, body_b.reference, world, manifold_block, contact
+        )
+        contact += 1
+    place = pair_rows.manifold_block[world, manifold_block].place
+    if place[1] > 0:
+        write_responses_a(pair_rows, world, manifold_block, body_a)
+    if place[3] > 0:
+        write_responses_b(pair_rows, world, manifold_block, body_b)
+    normal_mass = Vector4(0.0, 0.0, 0.0, 0.0)
+    friction_mass = Vector8(0.0)
+    row = Int32(0)
+    while row < 3 * count:
+        contact = row // 3
+        part = row % 3
+        i = 2 * contact + part - 1
+        velocity = pair_rows.manifold_block[world, manifold_block].normal_share[contact]
+        inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_gain[contact, contact]
+        if part > 0:
+            velocity = pair_rows.manifold_block[world, manifold_block].friction_share[i]
+            inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_gain[i, i]
+        mass = write_row_numbers(
+            settings, shapes, pair_rows, pair_rows.terms[world, contact],
+            world, manifold_block, contact, part,
+            velocity, inverse_mass,
+        )  # fmt: skip
+        if part > 0:
+            friction_mass[i] = mass
+        else:
+            normal_mass[contact] = mass
+        row += 1
+    weigh(pair_rows, world, manifold_block, normal_mass, friction_mass)
+    push_manifold_block(
+        scratch, pair_rows, world, manifold_block,
+        pair_rows.manifold_block[world, manifold_block].normal_impulse,
+        pair_rows.manifold_block[world, manifold_block].friction_impulse,
+    )  # fmt: skip

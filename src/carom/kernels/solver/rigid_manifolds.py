@@ -1,0 +1,231 @@
+"""Manifold blocks: up to four contacts of two trees that come one after the other, relaxed together.
+
+What a row of a manifold block does to the velocities of those after it is known beforehand. So all velocities
+are computed at once, from then on only the impulses depend on each other, and the trees' velocities
+are brought up to date once per manifold block: the same steps of Gauss-Seidel, without waiting for memory.
+
+Places beyond the last contact of a manifold block have no effective mass. Those of rigid bodies are here;
+`articulated_manifolds` does the same for articulated ones.
+"""
+
+from typing import Any
+
+import warp as wp
+
+from carom.kernels.maths.min_max import maximum, within_bounds
+from carom.kernels.structs import PairRows, Scratch, Settings
+from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, shared_func
+
+
+@func
+def body_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
+    """What the solver has changed so far about the velocity of a rigid body."""
+    first = scratch.delta_velocity[world, delta]
+    second = scratch.delta_velocity[world, delta + 1]
+    return Vector8(first[0], first[1], first[2], first[3], second[0], second[1], second[2], second[3])
+
+
+@func
+def add_change(scratch: Scratch, world: Int32, delta: Int32, change: Vector8):
+    """Change the velocity of a rigid body."""
+    scratch.delta_velocity[world, delta] += Vector4(change[0], change[1], change[2], change[3])
+    scratch.delta_velocity[world, delta + 1] += Vector4(change[4], change[5], change[6], change[7])
+
+
+@func
+def combination(rows: Any, factors: Vector8) -> Any:
+    """The eight rows of a matrix, each times its factor, summed up."""
+    return ((factors[0] * rows[0] + factors[1] * rows[1]) + (factors[2] * rows[2] + factors[3] * rows[3])) + (
+        (factors[4] * rows[4] + factors[5] * rows[5]) + (factors[6] * rows[6] + factors[7] * rows[7])
+    )
+
+
+@func
+def push_of_normals(response: Matrix48, impulse: Vector4) -> Vector8:
+    """How impulses along the normals change velocities."""
+    return (impulse[0] * response[0] + impulse[1] * response[1]) + (
+        impulse[2] * response[2] + impulse[3] * response[3]
+    )
+
+
+@func
+def push_manifold_block(
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    normal: Vector4,
+    friction: Vector8,
+):
+    """Apply impulses along the rows of a manifold block of rigid bodies."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    if place[1] > 0:
+        moved = push_of_normals(
+            pair_rows.manifold_block[world, manifold_block].normal_response_a, normal
+        ) + combination(pair_rows.manifold_block[world, manifold_block].friction_response_a, friction)
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = push_of_normals(
+            pair_rows.manifold_block[world, manifold_block].normal_response_b, normal
+        ) + combination(pair_rows.manifold_block[world, manifold_block].friction_response_b, friction)
+        add_change(scratch, world, place[2], moved)
+
+
+@func
+def greatest_square(change: Vector4) -> real:
+    """The greatest of the squares."""
+    square = wp.cw_mul(change, change)
+    return maximum(maximum(square[0], square[1]), maximum(square[2], square[3]))
+
+
+@func
+def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector4:
+    """Change the normal impulses of a manifold block by what is wanted as far as they stay pushes."""
+    before = pair_rows.manifold_block[world, manifold_block].normal_impulse
+    wanted = pair_rows.manifold_block[world, manifold_block].normal_wanted
+    gain = pair_rows.manifold_block[world, manifold_block].normal_gain
+    change = Vector4(0.0, 0.0, 0.0, 0.0)
+    for i in range(4):
+        change[i] = wanted[i]
+        if change[i] < -before[i]:
+            change[i] = -before[i]
+        wanted -= change[i] * gain[i]
+    pair_rows.manifold_block[world, manifold_block].normal_impulse = before + change
+    return change
+
+
+@func
+def normal_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector4) -> real:
+    """The greatest change of velocity squared that goes with a change of normal impulses."""
+    return greatest_square(
+        wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].normal_inverse_mass)
+    )
+
+
+@shared_func
+def scale_to_circle(square: real, bound: real) -> real:
+    """Factor that takes impulses whose squares add up to `square` back to the circle of radius `bound`.
+
+    Being called keeps root and quotient off the way of impulses within the circle, which most are.
+    """
+    if bound == 0.0:
+        return 0.0
+    return bound / wp.sqrt(square)
+
+
+@func
+def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
+    """Change the friction of a manifold block by what is wanted, within its normal impulses."""
+    wanted = pair_rows.manifold_block[world, manifold_block].friction_wanted
+    before = pair_rows.manifold_block[world, manifold_block].friction_impulse
+    bounds = wp.cw_mul(
+        pair_rows.manifold_block[world, manifold_block].friction,
+        pair_rows.manifold_block[world, manifold_block].normal_impulse,
+    )
+    gain = pair_rows.manifold_block[world, manifold_block].friction_gain
+    change = Vector8(0.0)
+    for i in range(4):
+        bound = bounds[i]
+        first = before[2 * i] + wanted[2 * i]
+        second = before[2 * i + 1] + wanted[2 * i + 1]
+        change1 = wanted[2 * i]
+        change2 = wanted[2 * i + 1]
+        if settings.cone_friction != 0:
+            square = first * first + second * second
+            if square > bound * bound:
+                scale = scale_to_circle(square, bound)
+                change1 = first * scale - before[2 * i]
+                change2 = second * scale - before[2 * i + 1]
+        elif bound > 0.0:
+            change1 = within_bounds(first, -bound, bound) - before[2 * i]
+            second -= change1 * gain[2 * i, 2 * i + 1]
+            change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
+        else:
+            change1 = real(0.0)
+            change2 = real(0.0)
+        change[2 * i] = change1
+        change[2 * i + 1] = change2
+        wanted -= change1 * gain[2 * i] + change2 * gain[2 * i + 1]
+    pair_rows.manifold_block[world, manifold_block].friction_impulse = before + change
+    return change
+
+
+@func
+def friction_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector8) -> real:
+    """The greatest change of velocity squared that goes with a change of friction."""
+    velocity = wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].friction_inverse_mass)
+    return greatest_square(
+        Vector4(
+            velocity[0] + velocity[1],
+            velocity[2] + velocity[3],
+            velocity[4] + velocity[5],
+            velocity[6] + velocity[7],
+        )
+    )
+
+
+@func
+def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
+    """Relax the normal rows of a rigid manifold block; returns the greatest change of velocity squared."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
+        world, manifold_block
+    ].normal_share - wp.cw_mul(
+        pair_rows.manifold_block[world, manifold_block].normal_softness,
+        pair_rows.manifold_block[world, manifold_block].normal_impulse,
+    )
+    if place[1] > 0:
+        pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
+            world, manifold_block
+        ].normal_wanted - combination(
+            pair_rows.manifold_block[world, manifold_block].normal_weighted_a,
+            body_change(scratch, world, place[0]),
+        )
+    if place[3] > 0:
+        pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
+            world, manifold_block
+        ].normal_wanted - combination(
+            pair_rows.manifold_block[world, manifold_block].normal_weighted_b,
+            body_change(scratch, world, place[2]),
+        )
+    change = bounded_normals(pair_rows, world, manifold_block)
+    if place[1] > 0:
+        moved = push_of_normals(pair_rows.manifold_block[world, manifold_block].normal_response_a, change)
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = push_of_normals(pair_rows.manifold_block[world, manifold_block].normal_response_b, change)
+        add_change(scratch, world, place[2], moved)
+    return normal_residual(pair_rows, world, manifold_block, change)
+
+
+@func
+def relax_rigid_friction(
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+) -> real:
+    """Relax the friction rows of a manifold block of rigid bodies; returns as `relax_rigid_normals`."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
+        world, manifold_block
+    ].friction_share
+    if place[1] > 0:
+        pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
+            world, manifold_block
+        ].friction_wanted - combination(
+            pair_rows.manifold_block[world, manifold_block].friction_weighted_a,
+            body_change(scratch, world, place[0]),
+        )
+    if place[3] > 0:
+        pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
+            world, manifold_block
+        ].friction_wanted - combination(
+            pair_rows.manifold_block[world, manifold_block].friction_weighted_b,
+            body_change(scratch, world, place[2]),
+        )
+    change = bounded_friction(settings, pair_rows, world, manifold_block)
+    if place[1] > 0:
+        moved = combination(pair_rows.manifold_block[world, manifold_block].friction_response_a, change)
+        add_change(scratch, world, place[0], moved)
+    if place[3] > 0:
+        moved = combination(pair_rows.manifold_block[world, manifold_block].friction_response_b, change)
+        add_change(scratch, world, place[2], moved)
+    return friction_residual(pair_rows, world, manifold_block, change)
