@@ -53,16 +53,16 @@ def test_worlds_are_independent() -> None:
 
 def test_a_step_from_a_thousand_worlds_down() -> None:
     assert p.connect(p.DIRECT) == 0
-    from pybullet._clients.clients import clients as _clients
+    from pybullet._clients import clients as registry
 
-    taken = dict.fromkeys(range(1, _clients.MAX_CLIENTS), _clients.clients[0])
-    _clients.clients.update(taken)
+    taken = dict.fromkeys(range(1, registry.MAX_CLIENTS), registry.clients[0])
+    registry.clients.update(taken)
     try:
         with pytest.raises(p.error, match=r"^Exceeding maximum number of physics connections\."):
             p.connect(p.DIRECT)
     finally:
         for slot in taken:
-            del _clients.clients[slot]
+            del registry.clients[slot]
 
 
 @pytest.mark.parametrize(

@@ -160,7 +160,8 @@ class UserConstraints:
     @property
     def rows(self) -> dict[int, int]:
         """Row of each constraint in the arrays of the engine, by number."""
-        return {number: row for row, number in enumerate(self._by_id)}
+        # The copy is made at once: others may look while the viewer's thread ties a body to a hand.
+        return {number: row for row, number in enumerate(tuple(self._by_id))}
 
     def write(self, contact_arrays: ContactArrays) -> None:
         """Write all constraints to the arrays of the engine."""
