@@ -144,7 +144,7 @@ def clock_of_server() -> int:
 
 def size_of_frame(address: str) -> int:
     """Length of the message with the poses of all bodies."""
-    with connect(address.replace("http", "ws") + "socket", max_size=None) as socket:
+    with connect(address.replace("http", "ws", 1).replace("/?", "/socket?", 1), max_size=None) as socket:
         while True:
             message = socket.recv()
             assert isinstance(message, bytes)
@@ -210,7 +210,7 @@ def panda() -> None:
 @contextmanager
 def reader(address: str) -> Iterator[None]:
     """Somebody who watches from another process."""
-    command = [sys.executable, "-c", READER, address.replace("http", "ws") + "socket"]
+    command = [sys.executable, "-c", READER, address.replace("http", "ws", 1).replace("/?", "/socket?", 1)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdin is not None and process.stdout is not None
         process.stdout.readline()

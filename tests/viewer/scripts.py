@@ -21,6 +21,6 @@ def started(*command: str | Path) -> tuple[subprocess.Popen[str], str]:
     )
     assert script.stdout is not None
     for line in script.stdout:
-        if address := re.search(r"http://\S+/", line):
+        if address := re.search(r"http://\S+", line):
             return script, address[0]
     raise AssertionError("no address")

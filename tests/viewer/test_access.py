@@ -41,7 +41,7 @@ def test_loopback():
     assert not any(map(is_loopback, ("0.0.0.0", "192.168.1.1", "example.org")))
 
 
-def test_others_need_the_token_everywhere_but_on_this_machine():
+def test_everybody_needs_the_token():
     access = Access("0.0.0.0")
     assert access.address(8400).endswith(f":8400/?token={access.token}")
     assert "0.0.0.0" not in access.address(8400)
@@ -51,8 +51,13 @@ def test_others_need_the_token_everywhere_but_on_this_machine():
     assert not access.may_connect("/socket?token=guessed", own, f"http://{own}")
     assert access.may_connect(f"/socket?token={access.token}", own, f"http://{own}")
     home = Access()
-    assert home.address(8400) == "http://127.0.0.1:8400/"
-    assert home.may_connect("/socket", "localhost:8400", "http://localhost:8400")
+    assert home.address(8400) == f"http://127.0.0.1:8400/?token={home.token}"
+    own, origin = "localhost:8400", "http://localhost:8400"
+    assert not home.may_connect("/socket", own, origin)
+    assert not home.may_connect("/socket", own, origin, "carom-abcd=guessed")
+    assert home.may_connect("/socket", own, origin, f"other=1; {home.cookie}")
+    assert not home.may_connect("/socket", own, "http://evil.example", home.cookie)
+    assert not home.is_known("/", own, None)
     assert home.token != access.token
 
 

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.patience import PATIENCE
-from tests.viewer.watcher import Watcher
+from tests.viewer.watcher import Watcher, origin_of, socket_address
 from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Origin
 
 import pybullet as p
 import pybullet_data
@@ -24,8 +26,12 @@ def panda() -> int:
     return p.loadURDF("franka_panda/panda.urdf", [0, 0, 0.5], useFixedBase=True)
 
 
-def request(viewer: Viewer, path: str, host: str | None = None) -> http.client.HTTPResponse:
-    address = viewer.address.removeprefix("http://").rstrip("/")
+def request(
+    viewer: Viewer, path: str, host: str | None = None, *, known: bool = True
+) -> http.client.HTTPResponse:
+    address = origin_of(viewer.address).removeprefix("http://")
+    if known:
+        path += ("&" if "?" in path else "?") + viewer.address.partition("/?")[2]
     connection = http.client.HTTPConnection(address, timeout=PATIENCE)
     connection.request("GET", path, headers={"Host": host or address})
     return connection.getresponse()
@@ -43,11 +49,36 @@ def test_the_page_and_nothing_else_is_served(viewer: Viewer):
 
 
 def test_strangers_are_turned_away(viewer: Viewer):
-    assert request(viewer, "/", host="evil.example").status == 421
+    assert request(viewer, "/", host="evil.example", known=False).status == 421
     with pytest.raises(InvalidStatus, match="403"):
-        Watcher(viewer.address, origin="http://evil.example")
-    with Watcher(viewer.address, origin=viewer.address.rstrip("/")) as page:
+        Watcher(f"{origin_of(viewer.address)}/?", origin="http://evil.example")
+    with Watcher(viewer.address, origin=origin_of(viewer.address)) as page:
         page.wait_for(lambda: ("title", None) in page.shown)
+
+
+def test_other_users_of_the_machine_are_turned_away(viewer: Viewer):
+    origin = origin_of(viewer.address)
+    with pytest.raises(InvalidStatus, match="403"):
+        Watcher(f"{origin}/?token=guessed")
+    with pytest.raises(InvalidStatus, match="403"):
+        Watcher(f"{origin}/?", origin=origin)
+    refused = request(viewer, "/", known=False)
+    assert refused.status == 403
+    assert b"whole address" in refused.read()
+
+
+def test_a_browser_that_knew_the_token_once_is_known_by_its_cookie(viewer: Viewer):
+    origin = origin_of(viewer.address)
+    cookie = (request(viewer, "/").getheader("Set-Cookie") or "").partition(";")[0]
+    assert cookie
+    with connect(socket_address(f"{origin}/?"), origin=Origin(origin), additional_headers={"Cookie": cookie}):
+        pass
+    with pytest.raises(InvalidStatus, match="403"):
+        connect(
+            socket_address(f"{origin}/?"),
+            origin=Origin("http://evil.example"),
+            additional_headers={"Cookie": cookie},
+        )
 
 
 def test_a_page_that_joins_late_gets_the_whole_scene(viewer: Viewer):
@@ -320,7 +351,7 @@ def test_an_address_that_cannot_be_had():
 
 
 def test_a_request_with_two_names_is_turned_away(viewer: Viewer):
-    host, port = viewer.address.removeprefix("http://").rstrip("/").rsplit(":", 1)
+    host, port = origin_of(viewer.address).removeprefix("http://").rsplit(":", 1)
     with socket.create_connection((host, int(port)), PATIENCE) as peer:
         name = f"Host: {host}:{port}\r\n"
         peer.sendall(f"GET / HTTP/1.1\r\n{name}{name}\r\n".encode())

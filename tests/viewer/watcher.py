@@ -15,6 +15,16 @@ from carom.viewer.messages import decoded
 from carom.viewer.readings import CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS
 
 
+def socket_address(address: str) -> str:
+    """Where the socket of a page is, by the address of the page."""
+    return address.replace("http", "ws", 1).replace("/?", "/socket?", 1)
+
+
+def origin_of(address: str) -> str:
+    """What a browser says of the page at an address."""
+    return address.partition("/?")[0]
+
+
 class Watcher:
     """Connected to the socket of a viewer.
 
@@ -27,7 +37,7 @@ class Watcher:
     """
 
     def __init__(self, address: str, **options: Any) -> None:
-        self._socket = connect(address.replace("http", "ws") + "socket", **options)
+        self._socket = connect(socket_address(address), **options)
         self.shown: dict[tuple[str, Any], dict[str, Any]] = {}
         self.payloads: dict[tuple[str, Any], bytes] = {}
         self.frame: dict[str, Any] = {}

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import json
 import os
-import stat
 import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from carom.remote.errors import RemoteError
+from carom.remote.private_folder import is_private, make_private, private_folder
 
 # Of a note [bytes].
 _GREATEST_SIZE = 4096
@@ -42,8 +41,8 @@ class Note:
             RemoteError: The folder belongs to somebody else.
             OSError: It cannot be written to.
         """
-        folder = _folder()
-        _make_private(folder)
+        folder = private_folder()
+        make_private(folder)
         handle, draft = tempfile.mkstemp(dir=folder)
         try:
             with os.fdopen(handle, "w", encoding="ascii") as file:
@@ -64,7 +63,7 @@ def find(name: str) -> Note | None:
     """The note of a name; None when there is none, or none that this user has left."""
     try:
         with _path(name).open("rb") as file:
-            if not _is_private(os.fstat(file.fileno())):
+            if not is_private(os.fstat(file.fileno())):
                 return None
             content = json.loads(file.read(_GREATEST_SIZE))
         host, port, key = content["host"], content["port"], bytes.fromhex(content["key"])
@@ -75,27 +74,4 @@ def find(name: str) -> Note | None:
 
 
 def _path(name: str) -> Path:
-    return _folder() / f"{name}.json"
-
-
-def _folder() -> Path:
-    if os.name == "nt":
-        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "carom" / "servers"
-    runtime = os.environ.get("XDG_RUNTIME_DIR")
-    if runtime and os.path.isabs(runtime) and os.access(runtime, os.W_OK):
-        return Path(runtime) / "carom"
-    return Path(tempfile.gettempdir()) / f"carom-{os.getuid()}"
-
-
-def _make_private(folder: Path) -> None:
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    status = folder.lstat()
-    if not stat.S_ISDIR(status.st_mode) or not _is_private(status):
-        raise RemoteError(f"{folder} is not a folder that only you can use; remove it.")
-
-
-def _is_private(status: os.stat_result) -> bool:
-    # On Windows what lies in the user's own folder is private by its access list.
-    if os.name == "nt":
-        return True
-    return status.st_uid == os.getuid() and not status.st_mode & 0o077
+    return private_folder() / f"{name}.json"

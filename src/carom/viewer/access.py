@@ -1,10 +1,11 @@
 """Who may talk to the server.
 
-The server listens on this machine alone unless it is told otherwise, but that is not enough: any page in the
-user's browser could open a socket to it, or reach it under a name of its own that it lets point here. So a
-request has to name the server by an address no other site can have, and a socket has to come from the
-server's own page. Behind a proxy, as of a notebook, names are others: there a token does, which only those
-know who were given the whole address. Where other machines can reach the server, all have to know it.
+The server listens on this machine alone unless it is told otherwise, but that is not enough: other users may
+work on it, and any page in the user's browser could open a socket to it, or reach it under a name of its own
+that it lets point here. So whoever asks has to know a token, which is part of the address that the user is
+told; a browser that has asked with it once keeps it in a cookie. With the cookie, or under a name that is
+allowed, a request has to name the server by an address no other site can have, and a socket has to come from
+the server's own page. The token alone does behind a proxy, as of a notebook, where names are others.
 """
 
 from __future__ import annotations
@@ -15,8 +16,9 @@ from dataclasses import dataclass, field
 from ipaddress import ip_address
 from urllib.parse import parse_qs, urlsplit
 
+from carom.remote.user_token import fresh_token
+
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
-TOKEN_BYTES = 16
 # Nothing is sent there: it only makes the system choose the address by which others reach this machine.
 _ANYWHERE = ("192.0.2.1", 9)
 _EVERYWHERE = frozenset({"0.0.0.0", "::"})
@@ -28,36 +30,35 @@ class Access:
 
     Attributes:
         host: What the server listens on.
-        token: What those have to know who are not on this machine.
+        token: What whoever asks has to know.
         names: Names, besides its own, by which the server may be asked for.
     """
 
     host: str = "127.0.0.1"
-    token: str = field(default_factory=lambda: secrets.token_urlsafe(TOKEN_BYTES))
+    token: str = field(default_factory=fresh_token)
     names: frozenset[str] = frozenset()
-
-    @property
-    def needs_token(self) -> bool:
-        """Whether everybody has to know the token, as others can reach the server."""
-        return not is_loopback(self.host)
 
     def address(self, port: int) -> str:
         """What to open in a browser: on this machine or, if others are to reach it, on any."""
         host = reachable_host(self.host)
         name = f"[{host}]" if ":" in host else host
-        return f"http://{name}:{port}/" + (f"?token={self.token}" if self.needs_token else "")
+        return f"http://{name}:{port}/?token={self.token}"
 
-    def may_connect(self, path: str, host_header: str | None, origin: str | None) -> bool:
+    def may_connect(
+        self, path: str, host_header: str | None, origin: str | None, cookies: str | None = None
+    ) -> bool:
         """Whether a socket may be opened.
 
         Args:
             path: What is asked for, with the query.
             host_header: `Host` of the request.
             origin: `Origin` of the request; programs that are no browsers name none.
+            cookies: `Cookie` of the request.
         """
         if self.knows_token(path):
             return True
-        return not self.needs_token and self.is_own(host_header) and origin_allowed(host_header, origin)
+        own = self.is_own(host_header) and origin_allowed(host_header, origin)
+        return own and self.is_known(path, host_header, cookies)
 
     def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
         """Whether a file of the page may be given out; they are the same for everybody.
@@ -68,14 +69,24 @@ class Access:
             cookies: `Cookie` of the request. The page itself is asked for with the token; its parts come with
                 a cookie instead.
         """
-        return (
-            self.is_own(host_header) or self.knows_token(path) or self.cookie in (cookies or "").split("; ")
-        )
+        return self.is_own(host_header) or self.knows_token(path) or self.has_cookie(cookies)
+
+    def is_known(self, path: str, host_header: str | None, cookies: str | None) -> bool:
+        """Whether whoever asks knows the token, or asks under a name that the user has allowed."""
+        named = _name(f"//{host_header}") in self.names
+        return named or self.knows_token(path) or self.has_cookie(cookies)
 
     @property
     def cookie(self) -> str:
         """What a browser is given that has asked with the token."""
         return f"carom-{self.token[:4]}={self.token}"
+
+    def has_cookie(self, cookies: str | None) -> bool:
+        """Whether a browser has asked with the token before."""
+        return any(
+            secrets.compare_digest(cookie.encode(), self.cookie.encode())
+            for cookie in (cookies or "").split("; ")
+        )
 
     def is_own(self, host_header: str | None) -> bool:
         """Whether a request names this server."""

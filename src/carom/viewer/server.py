@@ -29,6 +29,8 @@ _quiet = logging.getLogger("carom.viewer.sockets")
 _quiet.setLevel(logging.CRITICAL)
 _THREAD_NAME = "carom viewer"
 
+_WHOLE_ADDRESS = "Open the whole address that the simulation has printed, with its token.\n"
+
 
 def _not_of_a_server(record: logging.LogRecord) -> bool:
     return record.threadName != _THREAD_NAME
@@ -203,9 +205,11 @@ class PageServer:
             return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         path = request.path.partition("?")[0]
         if path == "/socket":
-            if self.access.may_connect(request.path, host, origins[0] if origins else None):
+            if self.access.may_connect(request.path, host, origins[0] if origins else None, cookies):
                 return None
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
+        if path == "/" and not self.access.is_known(request.path, host, cookies):
+            return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
         file = _files().get(path)
         if file is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "There is no such file.\n")

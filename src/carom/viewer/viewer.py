@@ -10,7 +10,8 @@ from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
-from carom.viewer.access import Access
+from carom.remote.user_token import fresh_token, user_token
+from carom.viewer.access import Access, is_loopback
 from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
 from carom.viewer.details import NOTHING, Details, Wish
@@ -156,7 +157,11 @@ class Viewer:
             self._step_lock = None
         boards[world] = self._board
         named = frozenset(name.lower() for name in names)
-        access = Access(host, names=named) if token is None else Access(host, token, named)
+        if token is None:
+            # The user's own token lets an open page come back to the next script. Others are given an address
+            # for one script only.
+            token = user_token() if is_loopback(host) else fresh_token()
+        access = Access(host, token, named)
         self._server = PageServer(access, port, self._board, self._frame, self._receive, self._page_gone)
 
     @property

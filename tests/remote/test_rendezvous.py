@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from carom.remote import rendezvous
+from carom.remote import private_folder
 from carom.remote.errors import RemoteError
 from carom.remote.rendezvous import Note, find
 
@@ -15,7 +15,7 @@ NOTE = Note("127.0.0.1", 1234, b"\0key\xff")
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("LOCALAPPDATA" if os.name == "nt" else "XDG_RUNTIME_DIR", str(tmp_path))
-    return rendezvous._folder()
+    return private_folder.private_folder()
 
 
 def test_a_note_is_found_under_its_name(folder: Path) -> None:
@@ -84,6 +84,6 @@ class TestPrivacy:
 
     def test_without_a_runtime_folder(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         monkeypatch.delenv("XDG_RUNTIME_DIR")
-        monkeypatch.setattr(rendezvous.tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
+        monkeypatch.setattr(private_folder.tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
         NOTE.leave("a")
         assert find("a") == NOTE

@@ -1,0 +1,41 @@
+"""A folder for what only this user may know."""
+
+from __future__ import annotations
+
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+from carom.remote.errors import RemoteError
+
+
+def private_folder() -> Path:
+    """Where it is, or would be."""
+    if os.name == "nt":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "carom" / "servers"
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    if runtime and os.path.isabs(runtime) and os.access(runtime, os.W_OK):
+        return Path(runtime) / "carom"
+    return Path(tempfile.gettempdir()) / f"carom-{os.getuid()}"
+
+
+def make_private(folder: Path) -> None:
+    """Make the folder if it is not there.
+
+    Raises:
+        RemoteError: It is there and others may use it.
+        OSError: It cannot be made.
+    """
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode) or not is_private(status):
+        raise RemoteError(f"{folder} is not a folder that only you can use; remove it.")
+
+
+def is_private(status: os.stat_result) -> bool:
+    """Whether a file or folder belongs to this user alone."""
+    # On Windows what lies in the user's own folder is private by its access list.
+    if os.name == "nt":
+        return True
+    return status.st_uid == os.getuid() and not status.st_mode & 0o077
