@@ -41,6 +41,13 @@ def arm(client: int) -> int:
     return p.loadURDF("kuka_iiwa/model.urdf")
 
 
+def test_a_log_with_columns_beyond_all_memory_is_refused(client: int, tmp_path: Path) -> None:
+    path = tmp_path / "robots.bin"
+    with pytest.raises(p.error, match="maxLogDof is 2147483647"):
+        p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, str(path), maxLogDof=2**31 - 1)
+    assert not path.exists()
+
+
 def test_a_fraction_beyond_all_angles_is_refused() -> None:
     with pytest.raises(p.error, match=r"interpolationFraction is 1\.7e\+308"):
         p.getQuaternionSlerp([0.1, 0.2, 0.3, 0.9], [0.4, -0.2, 0.1, 0.7], 1.7e308)

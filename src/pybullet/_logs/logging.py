@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
 _DEFAULT_ROOM = 12
+# More than the joints of any body that can be simulated at a useful speed.
+_MOST_ROOM = 10_000
 
 
 @exported
@@ -62,7 +64,7 @@ def startStateLogging(
         fileName: The file; one that is there is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
         objectUniqueIds: Bodies to log; none for all, but a Minitaur has to be named. Those with more
             joints than columns, or with spherical or planar joints, are left out.
-        maxLogDof: Number of joints there are columns for; 12 when negative.
+        maxLogDof: Number of joints there are columns for, 10,000 at most; 12 when negative.
         bodyUniqueIdA: Of contacts: only those of this body; -1 for any.
         bodyUniqueIdB: Of contacts: and of this one.
         linkIndexA: Of contacts: only those of this link of `bodyUniqueIdA`; -2 for any.
@@ -92,6 +94,8 @@ def startStateLogging(
     given = () if objectUniqueIds is None else sequence(objectUniqueIds, problem, "objectUniqueIds")
     bodies = [integer(body, "objectUniqueIds") for body in given]
     room, flags = integer(maxLogDof, "maxLogDof"), integer(logFlags, "logFlags")
+    if room > _MOST_ROOM:
+        fail(problem, f"maxLogDof is {room}; at most {_MOST_ROOM} are possible.")
     sides = (
         (integer(bodyUniqueIdA, "bodyUniqueIdA"), integer(linkIndexA, "linkIndexA")),
         (integer(bodyUniqueIdB, "bodyUniqueIdB"), integer(linkIndexB, "linkIndexB")),
