@@ -32,7 +32,7 @@ class Launch:
         kernel: The kernel.
     """
 
-    __slots__ = ("_bounds", "_keep_alive", "_packed", "kernel")
+    __slots__ = ("_addresses", "_bounds", "_keep_alive", "_packed", "kernel")
 
     def __init__(self, kernel: Kernel, count: int | tuple[int, ...], arguments: Sequence[Any]) -> None:
         """Pack the arguments of a kernel.
@@ -49,6 +49,8 @@ class Launch:
             raise TypeError(f"{kernel.name} takes {', '.join(kernel.indices)}; {len(arguments)} were given")
         self.kernel = kernel
         self._keep_alive = list(arguments)
+        # Arguments are changed in place.
+        self._addresses: dict[tuple[str, ...], list[int]] = {}
         counts = count if isinstance(count, tuple) else (count,)
         self._bounds = _bounds(len(counts))(counts, math.prod(counts), 1)
         self._packed: Any = _packed_arguments(
@@ -74,12 +76,17 @@ class Launch:
             Addresses of the function, of its two arguments, and of these numbers; 0 where there is no such
             argument.
         """
-        packed = ctypes.addressof(self._packed)
-        indices, fields = self.kernel.indices, type(self._packed)
-        places = [
-            packed + getattr(fields, f"p{indices[name]}").offset if name in indices else 0 for name in scalars
-        ]
-        return [self.kernel.address, ctypes.addressof(self._bounds), packed, *places]
+        found = self._addresses.get(scalars)
+        if found is None:
+            packed = ctypes.addressof(self._packed)
+            indices, fields = self.kernel.indices, type(self._packed)
+            places = [
+                packed + getattr(fields, f"p{indices[name]}").offset if name in indices else 0
+                for name in scalars
+            ]
+            found = [self.kernel.address, ctypes.addressof(self._bounds), packed, *places]
+            self._addresses[scalars] = found
+        return found
 
     @property
     def function(self) -> Callable[[], None]:

@@ -166,8 +166,9 @@ class JointConstraints:
             ):
                 parent, child = root(tags[user.parent.id]), root(tags[user.child.id])
                 above[parent] = child
-        active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
-        return active, [root(tags[constraint.moving_body.id]) for constraint in active]
+        moving = [(constraint, constraint.moving_body.id) for constraint in self.all]
+        active = [(constraint, body) for constraint, body in moving if body in tags]
+        return [constraint for constraint, _ in active], [root(tags[body]) for _, body in active]
 
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
@@ -211,8 +212,9 @@ class JointConstraints:
             else user_rows[constraint.user.id]
             for constraint in ordered
         ]
-        for name in ("lower", "upper", "twist", "max_impulse"):
-            model[f"constraint_{name}"][:, :count] = [getattr(constraint, name) for constraint in ordered]
+        numbers = np.array([(c.lower, c.upper, c.twist, c.max_impulse) for c in ordered]).reshape(count, 4)
+        for column, name in enumerate(("lower", "upper", "twist", "max_impulse")):
+            model[f"constraint_{name}"][:, :count] = numbers[:, column]
 
         tree_count = arrays.used["tree"]
         model["tree_constraint_count"][:tree_count] = np.bincount(
