@@ -40,7 +40,7 @@ def test_closing_the_window_ends_the_server(key: int) -> None:
 def test_a_paused_window_holds_steps_and_nothing_else(key: int) -> None:
     p.connect(p.GUI_SERVER, key, "--port=0")
     viewer = clients[0].window.viewer  # pyright: ignore[reportAttributeAccessIssue]
-    viewer.gate.close()
+    viewer.pause_control.close()
     viewer.on_hold(True)
     with another(key) as stepping, another(key) as looking:
         stepping.tell("p.stepSimulation()")
@@ -51,7 +51,7 @@ def test_a_paused_window_holds_steps_and_nothing_else(key: int) -> None:
         assert looking.ask("p.getNumBodies()") == "1"
         assert clients[0].world.time == 0.0
         viewer.on_hold(False)
-        viewer.gate.open()
+        viewer.pause_control.open()
         assert stepping.hear() == "()"
         own.join(10.0)
         assert clients[0].world.time == pytest.approx(2 / 240)
