@@ -20,6 +20,10 @@
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
+#   make wine         step the libraries for Windows under Wine: the same bits as here
+#   make aarch64      the wheel for aarch64 under emulation: conformance; needs Debian, and its qemu-user
+#   make installed    the tests with the wheel alone, as a user who may write nowhere; PYTHON= names another Python
+#   make oldest       the same with the oldest versions of what Carom requires
 #   make clean        remove what the above have made, the recordings and reports excepted
 
 SHELL := /bin/bash
@@ -37,7 +41,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report wheels clean
+.PHONY: help demo test check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -147,6 +151,29 @@ clients: .clients/carom/clients .clients/oracle/clients
 wheels: $(VENV)/dev
 	$(PIP) install 'hatchling>=1.26,<2'
 	PYTHONPATH=. $(RUN) -m tools.wheels.build
+
+OLDEST_TESTS ?= tests/conformance tests/pybullet tests/native tests/render tests/formats tests/geometry tests/model
+
+# The Python of this machine, and the kernels of Windows in another process.
+wine: $(VENV)/dev
+	@command -v wine >/dev/null || { echo "needs Wine, 64 bits of it: Debian's package wine64" >&2; exit 1; }
+	for level in $$($(RUN) -c "from carom.native.cpu import cpu_levels; print(*cpu_levels())"); do \
+		WINEDEBUG=-all PYTHONPATH=. $(RUN) -m tools.wheels.elsewhere.run --level $$level \
+			pytest -q tests/native/test_same_bits.py -k long_runs || exit; \
+	done
+	WINEDEBUG=-all PYTHONPATH=. $(RUN) -m tools.wheels.elsewhere.run --level v3 pytest -q tests/conformance/test_golden.py
+
+aarch64: $(VENV)/dev
+	$(PIP) install 'hatchling>=1.26,<2'
+	PYTHONPATH=. $(RUN) -m tools.wheels.emulated
+
+installed: $(VENV)/dev
+	$(PIP) install 'hatchling>=1.26,<2'
+	PYTHONPATH=. $(RUN) -m tools.wheels.installed --python $(PYTHON)
+
+oldest: $(VENV)/dev
+	$(PIP) install 'hatchling>=1.26,<2'
+	PYTHONPATH=. $(RUN) -m tools.wheels.installed --python $(PYTHON) --oldest $(OLDEST_TESTS)
 
 gpu-report: $(VENV)/dev
 	PYTHONPATH=. $(RUN) -m tools.gpu.report

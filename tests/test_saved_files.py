@@ -10,12 +10,14 @@ import sys
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from types import GenericAlias
+from typing import Any, TypeVar
 
 import pytest
 
 import pybullet as p
 from carom.world_files import container
+from carom.world_files.records import Reader
 from carom.world_files.references import is_image, references
 
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(20)
@@ -203,3 +205,12 @@ def test_damaged_archives_are_refused(tmp_path: Path, method: int) -> None:
         if slot >= 0:
             p.executePluginCommand(plugin, "", [p.RemoveFileIOAction, slot])
     p.disconnect(client)
+
+
+def test_aliases_of_types_are_looked_through(tmp_path: Path) -> None:
+    # As `NDArray` is one of NumPy from 2.5 on, where Python has statements for them.
+    class Alias:
+        __value__ = list[TypeVar("Item")]  # type: ignore[misc]
+
+    reader = Reader(tmp_path, memoryview(b""), [])
+    assert reader.read(GenericAlias(Alias(), (int,)), [1, 2], "here") == [1, 2]  # type: ignore[arg-type]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 from io import BytesIO
-from math import inf, radians, tan
+from math import inf, radians
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from carom.checks import Array, positive, vector
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, quaternion_from_matrix
+from carom.native.products import length, product
+from carom.native.trigonometry import tan
 from carom.render.lights import Light
 from carom.render.projection import look_at, pinhole_projection, poses_to_matrices
 from carom.render.renderer import renderer_of
@@ -142,7 +144,7 @@ class CameraImage:
         if frame == "world":
             position, orientation = self.camera_pose
             rotation = poses_to_matrices(np.concatenate([position, orientation])[None])[0, :3, :3]
-            points = points @ rotation.T + position
+            points = product(points, rotation.T) + position
         return PointCloud(points, self.colour[rows, columns], self.body_ids[rows, columns])
 
     def _matching(self, body: Body | int | str) -> list[int]:
@@ -276,9 +278,9 @@ class Camera:
         """
         x, y, z = vector(position, 3, "position").tolist()
         quaternion = vector(orientation, 4, "orientation")
-        length = float(np.linalg.norm(quaternion))
-        positive(length, "the length of orientation")
-        qx, qy, qz, qw = (quaternion / length).tolist()
+        size = length(quaternion)
+        positive(size, "the length of orientation")
+        qx, qy, qz, qw = (quaternion / size).tolist()
         self._local = Pose((x, y, z), (qx, qy, qz, qw))
 
     def look_at(self, eye: ArrayLike, target: ArrayLike, up: Sequence[float] = (0.0, 0.0, 1.0)) -> Camera:
@@ -296,7 +298,7 @@ class Camera:
             ValueError: The points coincide or are not three finite numbers.
         """
         start, end = vector(eye, 3, "eye"), vector(target, 3, "target")
-        positive(float(np.linalg.norm(end - start)), "the distance from eye to target")
+        positive(length(end - start), "the distance from eye to target")
         a, b, c = vector(up, 3, "up").tolist()
         rotation = (_EYE_FROM_CAMERA @ look_at(start, end, (a, b, c)))[:3, :3].T
         m = [(float(row[0]), float(row[1]), float(row[2])) for row in rotation]
@@ -340,8 +342,7 @@ class Camera:
         if world is None:
             raise ValueError("a camera that is not mounted needs to be told which world to look at")
         pose = self.pose
-        camera_to_world = poses_to_matrices(np.concatenate(pose)[None])[0]
-        view = _EYE_FROM_CAMERA @ np.linalg.inv(camera_to_world)
+        view = _EYE_FROM_CAMERA @ _inverse(poses_to_matrices(np.concatenate(pose)[None])[0])
         fx, fy, cx, cy = self._intrinsics.tolist()
         projection = pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
         image = renderer_of(world).draw(world, view, projection, self.width, self.height, self.light)
@@ -353,3 +354,11 @@ class Camera:
             self._intrinsics,
             world.bodies,
         )
+
+
+def _inverse(matrix: Array) -> Array:
+    """The inverse of a rotation and a shift, as a matrix of shape (4, 4)."""
+    inverse = np.eye(4)
+    inverse[:3, :3] = matrix[:3, :3].T
+    inverse[:3, 3:] = -product(matrix[:3, :3].T, matrix[:3, 3:])
+    return inverse

@@ -7,10 +7,11 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from robot_descriptions.loaders.pybullet import load_robot_description
 
 import pybullet as p
 import pybullet_data
+
+loaders = pytest.importorskip("robot_descriptions.loaders.pybullet", reason="its loader is tried")
 
 ROBOTS = {
     "panda_description": "franka_panda/panda.urdf",
@@ -28,7 +29,7 @@ def test_a_description_is_loaded_as_its_file_is(name: str, monkeypatch: pytest.M
     monkeypatch.setitem(sys.modules, description.__name__, description)
     p.connect(p.DIRECT)
     try:
-        described = load_robot_description(name, useFixedBase=True)
+        described = loaders.load_robot_description(name, useFixedBase=True)
         loaded = p.loadURDF(str(path), useFixedBase=True)
         joints = range(p.getNumJoints(loaded))
         assert joints

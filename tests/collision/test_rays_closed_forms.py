@@ -48,7 +48,7 @@ def random_rays() -> tuple[np.ndarray, np.ndarray, np.ndarray, Rotation]:
     """Starts, ends, and a pose."""
     starts = RNG.normal(size=(RAYS, 3))
     starts *= 1.5 / np.linalg.norm(starts, axis=1)[:, None]
-    return starts, -starts + RNG.normal(size=(RAYS, 3)) * 0.4, RNG.normal(size=3), Rotation.random(rng=RNG)
+    return starts, -starts + RNG.normal(size=(RAYS, 3)) * 0.4, RNG.normal(size=3), Rotation.random(None, RNG)
 
 
 def cast(shape, starts, ends, position, turn):

@@ -127,6 +127,7 @@ def test_the_robot_stands_takes_the_push_and_sits_down(example):
 
 
 def test_the_demo_writes_a_table_and_a_plot(example, tmp_path, capsys):
+    pytest.importorskip("matplotlib", reason="draws the plot")
     results, plot = example("demo").main(duration=0.25, output=tmp_path)
     assert plot.read_bytes().startswith(b"\x89PNG")
     table = capsys.readouterr().out

@@ -8,6 +8,8 @@ from tools.gpu.resources import Resources, find_assembler, parse_report, resourc
 
 from carom.native.kernel_modules import CUDA_MODULES
 
+pytest.importorskip("warp", reason="compiles kernels for GPUs")
+
 SPILLS = {
     "pair_candidates_kernel": 12_000,
     "island_contacts_kernel": 11_000,

@@ -4,6 +4,9 @@ from contextlib import ExitStack
 
 import numpy as np
 import pytest
+
+pytest.importorskip("warp", reason="launches the kernels")
+
 from tests.gpu.scenes import scene
 from tests.gpu.side_by_side import SideBySide
 

@@ -9,6 +9,9 @@ import pkgutil
 
 import numpy as np
 import pytest
+
+pytest.importorskip("warp", reason="its types are compared with those of the layouts")
+
 import warp as wp
 
 import carom.layouts

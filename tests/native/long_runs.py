@@ -13,6 +13,9 @@ import sys
 from itertools import pairwise
 
 import pybullet as p
+from carom import Camera, World
+from carom.description import Box, Cylinder, Sphere, Visual
+from carom.model.body_spec import BodySpec, LinkSpec
 
 IDENTITY = (0.0, 0.0, 0.0, 1.0)
 
@@ -140,14 +143,61 @@ def questions() -> list[float]:
     return numbers
 
 
-RUNS = (arm, stack, tied, questions)
+def images() -> list[float]:
+    """What cameras see of shapes of all kinds: colours, depths and labels, with and without shadows."""
+    _begin()
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    box = p.createVisualShape(p.GEOM_BOX, halfExtents=[0.25, 0.125, 0.25], rgbaColor=[0.75, 0.25, 0.125, 1])
+    capsule = p.createVisualShape(p.GEOM_CAPSULE, radius=0.125, length=0.5, rgbaColor=[0.25, 0.5, 1, 1])
+    shapes = {
+        box: p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.25, 0.125, 0.25]),
+        capsule: p.createCollisionShape(p.GEOM_CAPSULE, radius=0.125, height=0.5),
+        -1: p.createCollisionShape(p.GEOM_CYLINDER, radius=0.1875, height=0.25),
+    }
+    for number in range(9):
+        look = list(shapes)[number % 3]
+        place = [0.375 * (number % 3), 0.25 * (number % 4), 0.5 + 0.25 * number]
+        p.createMultiBody(1.0, shapes[look], look, place)
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.25)
+    p.createMultiBody(1.0, ball, -1, [-0.5, 0.25, 0.5])
+    _chain(4, 1.5)
+    numbers: list[float] = []
+    for turn in range(8):
+        for _ in range(30):
+            p.stepSimulation()
+        view = p.computeViewMatrixFromYawPitchRoll([0, 0, 0.5], 3.0 + 0.25 * turn, 47.0 * turn, -35.0, 3.0, 2)
+        if turn % 3 == 2:
+            view = p.computeViewMatrix([2.0, 0.25 * turn, 1.5], [0, 0, 0.5], [0, 0, 1])
+        lens = p.computeProjectionMatrixFOV(40.0 + 5.0 * turn, 1.25, 0.125, 16.0)
+        *_, colour, depth, label = p.getCameraImage(
+            160, 128, view, lens, lightDirection=[1, 0.5 * turn - 2, 3], shadow=turn % 2
+        )
+        for picture in (colour, depth, label):
+            numbers += picture.ravel().tolist()
+    return [*numbers, *_mounted_camera()]
 
 
-def digests() -> dict[str, str]:
-    """A digest of the bits of all numbers of each run."""
+def _mounted_camera() -> list[float]:
+    """What a camera with parallel light sees."""
+    world = World()
+    looks = Visual(Box((0.25, 0.125, 0.0625))), Visual(Sphere(0.125)), Visual(Cylinder(0.125, 0.25))
+    for number in range(6):
+        base = LinkSpec("base", mass=1.0, inertia=(1.0, 1.0, 1.0), visuals=(looks[number % 3],))
+        world.load(BodySpec("thing", base), (0.25 * number, 0.5, 0.25 * number))
+    camera = Camera.with_field_of_view(128, 96, 55.0).look_at([2.0, 1.0, 1.5], [0.5, 0.25, 0.25])
+    image = camera.capture(world)
+    points = image.point_cloud().points
+    return [*image.colour.ravel().tolist(), *image.depth.ravel().tolist(), *points.ravel().tolist()]
+
+
+RUNS = (arm, stack, tied, questions, images)
+
+
+def digests(*names: str) -> dict[str, str]:
+    """A digest of the bits of all numbers of each run, or of those that are named."""
     p.connect(p.DIRECT)
     results = {}
-    for run in RUNS:
+    for run in (run for run in RUNS if not names or run.__name__ in names):
         numbers = run()
         results[run.__name__] = hashlib.blake2b(
             struct.pack(f"<{len(numbers)}d", *numbers), digest_size=8
@@ -157,4 +207,4 @@ def digests() -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    json.dump(digests(), sys.stdout)
+    json.dump(digests(*sys.argv[1:]), sys.stdout)

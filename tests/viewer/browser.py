@@ -36,9 +36,8 @@ _ARGUMENTS = [
 @contextmanager
 def chromium(*arguments: str) -> Iterator:
     """The browser, with more arguments of its command line; it is closed at the end."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
+    driver = pytest.importorskip("playwright.sync_api", reason="drives the browser")
+    with driver.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=BROWSER or "", args=[*_ARGUMENTS, *arguments])
         yield browser
         browser.close()

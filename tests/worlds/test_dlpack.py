@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import torch
 
 import pybullet_data
 from carom import World, Worlds
+
+torch = pytest.importorskip("torch", reason="is given the arrays")
 
 
 @pytest.fixture

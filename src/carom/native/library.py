@@ -71,6 +71,12 @@ class Library:
         function.restype = None
         return function
 
+    def maths(self, name: str) -> Any:
+        """The C function that replaces a number, whose address it takes, by its sine and the like."""
+        function = getattr(self._loaded, f"carom_{name}_of")
+        function.restype = None
+        return function
+
     def _entry(self, kernel: str) -> Mapping[str, Any]:
         entry = self._kernels.get(kernel)
         if entry is None:
@@ -121,11 +127,12 @@ def _library() -> Library:
 
 def _built(target: Target, level: str, digest: str) -> Path:
     """The library for a CPU level, from the cache or compiled now."""
-    from carom.native.building.cache import cache_folder, is_there, library_place
+    from carom.native.building.cache import cache_folder, is_there, library_place, mark_used
 
     # What builds it is imported where something has to be built.
     path = library_place(cache_folder(), digest, target.library_name(level))
     if is_there(path):
+        mark_used(path.parent)
         return path
     from carom.native.building.library import build
     from carom.native.building.zig import BuildError

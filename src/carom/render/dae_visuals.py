@@ -15,6 +15,7 @@ from carom.formats.files import read_bounded
 from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, primitives, referenced
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.xml_element import Element
+from carom.native.products import product
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 Floats = NDArray[np.float64]
@@ -63,7 +64,9 @@ def _placed(corners: _Corners, placement: Floats) -> _Corners:
     # Rows of cofactors turn normals as the inverse transpose does, and need no inverse.
     cofactors = np.stack([np.cross(linear[i - 2], linear[i - 1]) for i in range(3)])
     return _Corners(
-        corners.positions @ linear.T + placement[:3, 3], corners.normals @ cofactors.T, corners.uvs
+        product(corners.positions, linear.T) + placement[:3, 3],
+        product(corners.normals, cofactors.T),
+        corners.uvs,
     )
 
 

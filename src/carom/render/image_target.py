@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from carom.layouts.images import Picture
 from carom.native.kernels import image_kernel
 from carom.native.launch import Launch
+from carom.native.products import product
 from carom.native.tables import put_zeros
 from carom.render.lights import Light
 from carom.render.parallel import run_all
-from carom.render.projection import Matrix
+from carom.render.projection import Matrix, unit_vector
 from carom.render.scene import SceneArrays
 from carom.render.shadows import ShadowCamera, shadow_camera
 from carom.render.view_buffers import Task, ViewBuffers
@@ -97,17 +98,17 @@ class ImageTarget:
             light: The light.
             projector: World to homogeneous texture coordinates, or None.
         """
-        self._view.look(projection @ view, link_to_world)
+        self._view.look(product(projection, view), link_to_world)
         self._link_rotation[:] = link_to_world[:, :3, :3]
         if projector is not None:
-            np.matmul(projector, link_to_world, out=self._link_to_projector, casting="same_kind")
+            self._link_to_projector[:] = product(projector, link_to_world)
         self._set_lighting(light, projector is not None)
         image_tasks = self._image_tasks
         if light.shadow:
             camera = shadow_camera(light, self._scene, link_to_world, projection, *self._size)
             shadows = self._shadows_of_size(camera.width, camera.height)
             self._set_bias(camera)
-            shadows.view.look(camera.projection @ camera.view, link_to_world, two_sided=True)
+            shadows.view.look(product(camera.projection, camera.view), link_to_world, two_sided=True)
             run_all(self._view.project + shadows.view.project)
             run_all(shadows.depth_tasks)
             image_tasks = shadows.image_tasks
@@ -131,8 +132,7 @@ class ImageTarget:
 
     def _set_lighting(self, light: Light, projected: bool) -> None:
         lighting = self._lighting[0]
-        direction = np.array(light.direction)
-        lighting["direction"] = direction / np.linalg.norm(direction)
+        lighting["direction"] = unit_vector(np.array(light.direction))
         lighting["colour"] = light.colour
         lighting["ambient"] = light.ambient
         lighting["diffuse"] = light.diffuse

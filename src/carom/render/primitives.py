@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
 from carom.description.pose import Vector3
+from carom.native.trigonometry import cos, sin
 from carom.render.render_mesh import RenderMesh, mesh_of
 
 SEGMENTS = 48
@@ -94,7 +95,8 @@ def _plane_axes(n: Vector3) -> tuple[Vector3, Vector3]:
 def _circle(segments: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points (segments + 1, 2) once around a circle of radius 1, and the fraction of the turn at each."""
     turn = np.linspace(0.0, 1.0, segments + 1)
-    return np.stack([np.cos(2.0 * np.pi * turn), np.sin(2.0 * np.pi * turn)], axis=1), turn
+    angles = (2.0 * np.pi * turn).tolist()
+    return np.array([(cos(angle), sin(angle)) for angle in angles]), turn
 
 
 def _cylinder(radius: float, length: float, segments: int) -> RenderMesh:
@@ -130,7 +132,7 @@ def _rounded(radius: float, length: float, segments: int) -> RenderMesh:
         halves = np.insert(halves, middle, -0.5 * length)
     positions, normals, uvs = [], [], []
     for angle, shift in zip(angles, halves, strict=True):
-        normal = np.column_stack([np.cos(angle) * circle, np.full(segments + 1, np.sin(angle))])
+        normal = np.column_stack([cos(angle) * circle, np.full(segments + 1, sin(angle))])
         normals.append(normal)
         positions.append(radius * normal + (0.0, 0.0, shift))
         uvs.append(np.column_stack([turn, np.full(segments + 1, angle / np.pi + 0.5)]))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.pose import Vector3
+from carom.native.products import length, product
 
 Matrix = NDArray[np.float64]
 
@@ -34,13 +35,13 @@ def facing_sign(world_to_pixel: Matrix) -> float:
     Returns:
         1 or -1; 0 if the matrix shows nothing.
     """
-    columns_rows_w = world_to_pixel[[0, 1, 3]]
-    perspective = np.linalg.det(columns_rows_w[:, :3])
-    if abs(perspective) > 1e-12 * np.prod(np.linalg.norm(columns_rows_w[:, :3], axis=1)):
+    column, row, depth, w = world_to_pixel[:, :3]
+    # The direction in which neither column nor row changes: that of parallel rays.
+    along = np.cross(column, row)
+    perspective = _dot(along, w)
+    if abs(perspective) > 1e-12 * length(column) * length(row) * length(w):
         return -float(np.sign(perspective))
-    # Parallel rays: they run along the direction in which neither column nor row changes.
-    along = np.cross(world_to_pixel[0, :3], world_to_pixel[1, :3])
-    return -float(np.sign(along @ world_to_pixel[2, :3]))
+    return -float(np.sign(_dot(along, depth)))
 
 
 def is_singular(matrix: Matrix) -> bool:
@@ -51,16 +52,25 @@ def is_singular(matrix: Matrix) -> bool:
 def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:
     """World to eye: x to the right, y up, z backwards; another up direction where `up` is no help."""
     forward = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
-    forward /= np.linalg.norm(forward)
+    forward = unit_vector(forward)
     right = np.cross(forward, up)
-    if np.linalg.norm(right) < 1e-9:
+    if length(right) < 1e-9:
         right = np.cross(forward, (0.0, 1.0, 0.0))
-    right /= np.linalg.norm(right)
+    right = unit_vector(right)
     rotation = np.stack([right, np.cross(right, forward), -forward])
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
-    matrix[:3, 3] = -rotation @ np.asarray(eye, dtype=np.float64)
+    matrix[:3, 3] = product(-rotation, np.asarray(eye, dtype=np.float64)[:, None])[:, 0]
     return matrix
+
+
+def unit_vector(vector: Matrix) -> Matrix:
+    """A vector of shape (3,), shortened to length 1."""
+    return vector / length(vector)
+
+
+def _dot(a: Matrix, b: Matrix) -> float:
+    return float(product(a[None], b[:, None])[0, 0])
 
 
 def parallel_projection(half_size: float, near: float, far: float) -> Matrix:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
+from carom.native.products import product
 from carom.native.tables import put_array
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
@@ -133,13 +134,13 @@ class SceneArrays:
         frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
         rotation = np.array(rotation_matrix(frame.orientation))
         for piece in pieces_of(shape.mesh):
-            columns.positions.append(piece.positions @ rotation.T + frame.position)
-            columns.normals.append(piece.normals @ rotation.T)
+            columns.positions.append(product(piece.positions, rotation.T) + frame.position)
+            columns.normals.append(product(piece.normals, rotation.T))
             columns.uvs.append(piece.uvs)
             columns.triangles.append(piece.triangles)
             columns.vertex_counts.append(len(piece.positions))
             columns.triangle_counts.append(len(piece.triangles))
-            columns.centres.append(rotation @ piece.centre + frame.position)
+            columns.centres.append(product(piece.centre[None], rotation.T)[0] + frame.position)
             columns.radii.append(piece.radius)
             columns.links.append(slot)
             columns.labels.append(body.id + ((link - BASE) << LINK_SHIFT))

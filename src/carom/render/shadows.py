@@ -7,8 +7,9 @@ from math import isinf
 
 import numpy as np
 
+from carom.native.products import product
 from carom.render.lights import Light
-from carom.render.projection import Matrix, look_at, parallel_projection
+from carom.render.projection import Matrix, look_at, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
 
 PARALLEL_MAP_SIDE = 1024
@@ -59,7 +60,7 @@ def shadow_camera(
         width: Columns of the image.
         height: Rows of the image.
     """
-    direction = np.array(light.direction) / np.linalg.norm(light.direction)
+    direction = unit_vector(np.array(light.direction))
     if not isinf(light.distance):
         eye = light.distance * direction
         view = look_at(eye, eye - direction)
@@ -80,7 +81,7 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, float]:
     if not casts.any():
         return np.zeros(3), 1.0
     poses = link_to_world[scene.part_links[casts]]
-    centres = np.einsum("nij,nj->ni", poses[:, :3, :3], scene.part_centres[casts]) + poses[:, :3, 3]
+    centres = product(poses[:, :3, :3], scene.part_centres[casts][:, :, None])[:, :, 0] + poses[:, :3, 3]
     radii = scene.part_radii[casts][:, None]
     low, high = (centres - radii).min(axis=0), (centres + radii).max(axis=0)
     middle = 0.5 * (low + high)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 
-import numpy as np
-
 from carom.layouts.images import View
 from carom.native.kernels import depth_kernel, project_kernel
 from carom.native.launch import Launch
+from carom.native.products import product
 from carom.native.tables import put_zeros
 from carom.render.parallel import worker_count
 from carom.render.projection import Matrix, facing_sign, to_pixels
@@ -70,6 +69,6 @@ class ViewBuffers:
             link_to_world: (links, 4, 4) poses of the links.
             two_sided: Triangles are seen from behind, too.
         """
-        world_to_pixel = self._to_pixels @ world_to_clip
+        world_to_pixel = product(self._to_pixels, world_to_clip)
         self._facing[0] = 0.0 if two_sided else facing_sign(world_to_pixel)
-        np.matmul(world_to_pixel, link_to_world, out=self._link_to_pixel, casting="same_kind")
+        self._link_to_pixel[:] = product(world_to_pixel, link_to_world)

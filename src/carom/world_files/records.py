@@ -105,6 +105,7 @@ class Reader:
         Raises:
             DescriptionError: It is not of that type.
         """
+        hint = _without_alias(hint)
         if get_origin(hint) in (Union, types.UnionType):
             return self._one_of(get_args(hint), data, where)
         if get_origin(hint) is np.ndarray:
@@ -239,6 +240,12 @@ _CONTAINERS: dict[Any, Callable[[Reader, tuple[Any, ...], Any, str], Any]] = {
     tuple: Reader._tuple,
     dict: Reader._dict,
 }
+
+
+def _without_alias(hint: Any) -> Any:
+    """What an alias stands for: `NDArray` is one that Python keeps apart from NumPy 2.5 on."""
+    meant = getattr(get_origin(hint), "__value__", None)
+    return hint if meant is None else meant[get_args(hint)]
 
 
 @cache

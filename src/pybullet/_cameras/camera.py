@@ -101,16 +101,17 @@ def getCameraImage(
     if view is None or projection is None:
         view, projection = view_of_window(client), _projection_of_window(client)
 
+    from carom.native.products import product
     from carom.render.appearance import appearance_of
     from carom.render.renderer import renderer_of
 
     projector = None
     if options & ER_USE_PROJECTIVE_TEXTURE:
-        projector = projection @ view
+        projector = product(projection, view)
         place = _matrix(projectiveTextureView, "projectiveTextureView")
         cast = _matrix(projectiveTextureProj, "projectiveTextureProj")
         if place is not None and cast is not None:
-            projector = cast @ place
+            projector = product(cast, place)
     with client.lock:
         appearance = appearance_of(client.world)
         light = _changed_light(

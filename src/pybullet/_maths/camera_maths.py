@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, pi, radians, sin, tan
+from math import hypot, pi, radians
 
 from carom.description.pose import Vector3
 from carom.description.transform import dot
+from carom.native.trigonometry import cos, sin, tan
 from pybullet._calls.arguments import Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail

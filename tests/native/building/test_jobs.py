@@ -11,6 +11,8 @@ from carom.native.building.progress import ProgressLine
 from carom.native.building.zig import BuildError, find_zig
 from carom.native.targets import NoTarget, this_target
 
+pytest.importorskip("ziglang", reason="kernels are compiled by Zig")
+
 
 def _job(code: str, done: list[str]) -> Job:
     return Job("this", [sys.executable, "-c", code], lambda: done.append(code))

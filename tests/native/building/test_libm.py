@@ -12,6 +12,8 @@ from carom.native.building.libm import called_functions, include_folders, maths_
 from carom.native.building.zig import find_zig
 from carom.native.targets import Target
 
+pytest.importorskip("ziglang", reason="kernels are compiled by Zig")
+
 _TWO = {"atan2", "pow", "fmod", "hypot"}
 
 

@@ -43,6 +43,17 @@ def is_there(library: Path) -> bool:
     return library.exists() and (library.parent / MANIFEST).exists()
 
 
+def mark_used(entry: Path) -> None:
+    """Note that something in the cache is of use now.
+
+    Args:
+        entry: A file or folder directly in one of the cache's folders.
+    """
+    # Somebody else's, or one that cannot be written, is as good unmarked.
+    with contextlib.suppress(OSError):
+        os.utime(entry)
+
+
 def content_key(*contents: bytes | str) -> str:
     """A name for what is made from contents.
 

@@ -20,6 +20,7 @@ from carom.native.building.cache import (
     is_there,
     keep,
     library_place,
+    mark_used,
     work_folder,
 )
 from carom.native.building.flags import C_FLAGS, CPP_FLAGS, PLATFORM_FLAGS
@@ -27,6 +28,7 @@ from carom.native.building.jobs import Job, run_all
 from carom.native.building.libm import called_functions, include_folders, maths_sources
 from carom.native.building.link import link_command
 from carom.native.building.progress import ProgressLine
+from carom.native.building.prune import prune
 from carom.native.building.zig import BuildError, Zig, find_zig
 from carom.native.digest import source_digest
 from carom.native.kernel_modules import KERNEL_MODULES
@@ -95,8 +97,10 @@ def build(
                         _Build(root, tuple(modules), target, level, digest, cache, zig, _warp_folder(), line),
                         library,
                     )
+                    prune(cache)
                 finally:
                     line.end()
+    mark_used(library.parent)
     return library
 
 
@@ -140,6 +144,7 @@ def _generated_code(parts: _Build) -> Path:
     key = content_key(parts.digest, (parts.warp / "config.py").read_bytes(), *parts.modules)
     folder = parts.cache / "code" / key
     if folder.is_dir():
+        mark_used(folder)
         return folder
     with work_folder(parts.cache) as work:
         code = work / "code"
@@ -204,6 +209,7 @@ def _objects(
         kept = parts.cache / "objects" / f"{key}.o"
         objects.append((source.name, kept))
         if kept.exists():
+            mark_used(kept)
             continue
         made = work / f"{key}.o"
         arguments = [*flags, *(f"-I{folder}" for folder in includes), "-c", source, "-o", made]

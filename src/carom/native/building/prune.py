@@ -1,0 +1,50 @@
+"""Keeping the cache small: what nothing has used for long is removed, the oldest first."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import time
+from pathlib import Path
+
+_MOST_SECONDS = 30 * 24 * 3600.0
+_MOST_BYTES = 400 << 20
+# Folders of builds that were killed; those of builds that go on are younger.
+_MOST_WORK_SECONDS = 24 * 3600.0
+# What is compiled again where it is missing. Zig looks after its own.
+_FOLDERS = ("libraries", "code", "objects")
+
+
+def prune(cache: Path, most_bytes: int = _MOST_BYTES) -> None:
+    """Remove what has not been used for 30 days, and the oldest of the rest until it is small enough.
+
+    Args:
+        cache: The cache folder; nobody else builds with it meanwhile.
+        most_bytes: How large libraries, code and objects may be together.
+    """
+    now = time.time()
+    entries = [
+        entry for folder in _FOLDERS if (cache / folder).is_dir() for entry in (cache / folder).iterdir()
+    ]
+    kept_bytes = 0
+    for used, entry in sorted(((entry.stat().st_mtime, entry) for entry in entries), reverse=True):
+        kept_bytes += _size(entry)
+        if now - used > _MOST_SECONDS or kept_bytes > most_bytes:
+            _remove(entry)
+    for entry in cache.glob("work-*"):
+        if now - entry.stat().st_mtime > _MOST_WORK_SECONDS:
+            _remove(entry)
+
+
+def _size(entry: Path) -> int:
+    files = entry.rglob("*") if entry.is_dir() else [entry]
+    return sum(file.stat().st_size for file in files)
+
+
+def _remove(entry: Path) -> None:
+    # On Windows a library that a process has loaded stays until another build.
+    if entry.is_dir():
+        shutil.rmtree(entry, ignore_errors=True)
+    else:
+        with contextlib.suppress(OSError):
+            entry.unlink()

@@ -1,0 +1,34 @@
+"""Sums of products that are the same bits on every machine.
+
+Products of matrices by `@` are left to a library that adds in the order that suits the processor.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def product(a: Floats, b: Floats) -> Floats:
+    """Product of matrices, or of stacks of them, with terms added in the order in which they stand.
+
+    Args:
+        a: Shape (..., n, k).
+        b: Shape (..., k, m).
+
+    Returns:
+        Shape (..., n, m).
+    """
+    total = a[..., :, :1] * b[..., :1, :]
+    for k in range(1, a.shape[-1]):
+        total += a[..., :, k, None] * b[..., k, None, :]
+    return total
+
+
+def length(vector: Floats) -> float:
+    """Length of a vector of shape (n,)."""
+    return sqrt(sum(x * x for x in vector.tolist()))
