@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.algorithms.joint_frames import JointFrames
 from carom.layouts.chain import Chain, ChainSizes
-from carom.layouts.codes import DOF_COUNT, POSITION_COUNT, JointCode
+from carom.layouts.codes import DOF_COUNT, POSITION_COUNT, SLIDING_JOINTS, JointCode
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 # Of an unlimited joint: the range that new starts are drawn from, either way from 0 [rad or m].
-_UNLIMITED_RANGE = {JointCode.PRISMATIC: 1.0}
+_UNLIMITED_RANGE = {code: 1.0 if code in SLIDING_JOINTS else pi for code in JointCode}
 
 
 class BodyChain:
@@ -52,7 +52,7 @@ class BodyChain:
         chain = self.arrays.numpy
         for joint, code in enumerate(codes):
             for k in range(DOF_COUNT[code]):
-                is_angle_of_ball = code == JointCode.SPHERICAL
+                is_angle_of_ball = POSITION_COUNT[code] != DOF_COUNT[code]
                 chain["dof_coordinate"][first_dof[joint] + k] = (
                     -1 if is_angle_of_ball else first_coordinate[joint] + k
                 )
@@ -100,7 +100,7 @@ def _ancestors(body: Body, links: Sequence[int]) -> list[int]:
 
 def _range(body: Body, link: int, code: JointCode) -> tuple[float, float]:
     spec = body.spec.links[link]
-    if spec.limited and code in (JointCode.REVOLUTE, JointCode.PRISMATIC) and spec.upper - spec.lower < inf:
+    if spec.limited and DOF_COUNT[code] == 1 and spec.upper - spec.lower < inf:
         return spec.lower, spec.upper
-    half = _UNLIMITED_RANGE.get(code, pi)
+    half = _UNLIMITED_RANGE[code]
     return -half, half

@@ -13,7 +13,6 @@ import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
 from carom.description.transform import compose, conjugate, multiplied, turn_of_z
-from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ class JointFrames:
 
     def _turn_of_axis(self, link: int) -> Quaternion:
         """The turn that takes z to the axis of a hinge or slider, in the inertial frame of its link."""
-        if self._body.joint_types[link] not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+        if self._body.velocity_count[link] != 1:
             return _NO_TURN
         return turn_of_z(_vector(self._model["link_unit_axis"][self._row(link)]))
 

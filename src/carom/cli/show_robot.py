@@ -9,7 +9,7 @@ from pathlib import Path
 from carom.errors import DescriptionError
 from carom.formats.any_file import read_robots
 from carom.formats.search import AssetSearch
-from carom.layouts.codes import JointCode
+from carom.layouts.codes import SLIDING_JOINTS
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.scene.body import Body
@@ -77,9 +77,9 @@ class RobotView:
 
     def _add_sliders(self, body: Body) -> None:
         for joint, code in enumerate(body.joint_types):
-            if code not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+            if body.velocity_count[joint] != 1:
                 continue
-            reach = _FULL_TURN if code == JointCode.REVOLUTE else _SLIDE
+            reach = _SLIDE if code in SLIDING_JOINTS else _FULL_TURN
             lower, upper = body.joints[joint].limits
             if not (isfinite(lower) and isfinite(upper) and lower < upper):
                 lower, upper = -reach, reach

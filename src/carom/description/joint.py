@@ -20,6 +20,15 @@ class JointType(Enum):
     SPHERICAL = "spherical"
 
 
+# What files have to say of a joint, by its kind.
+WITHOUT_AXIS = (JointType.FIXED, JointType.FLOATING)
+NEEDS_AXIS = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.PLANAR)
+WITHOUT_LIMIT = (JointType.CONTINUOUS,)
+NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
+# Its positions are lengths, which scale with the robot.
+SLIDES = (JointType.PRISMATIC,)
+
+
 @dataclass(frozen=True, slots=True)
 class JointLimit:
     """Bounds of a joint; `lower > upper` means unlimited.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from carom.description import JointType
+from carom.description.joint import SLIDES
 
 
 class JointCode(IntEnum):
@@ -85,6 +86,19 @@ DOF_COUNT = {
     JointCode.FIXED: 0,
 }
 POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
+# Joints whose positions are lengths, not angles.
+SLIDING_JOINTS = tuple(JOINT_CODE[kind] for kind in SLIDES)
+# The motor and the limit that a joint can have.
+MOTOR_KIND: dict[int, ConstraintKind] = {
+    JointCode.REVOLUTE: ConstraintKind.MOTOR,
+    JointCode.PRISMATIC: ConstraintKind.MOTOR,
+    JointCode.SPHERICAL: ConstraintKind.SPHERICAL_MOTOR,
+}
+LIMIT_KIND: dict[int, ConstraintKind] = {
+    JointCode.REVOLUTE: ConstraintKind.LIMIT,
+    JointCode.PRISMATIC: ConstraintKind.LIMIT,
+    JointCode.SPHERICAL: ConstraintKind.SPHERICAL_LIMIT,
+}
 
 BASE_POSITIONS = 7
 BASE_VELOCITIES = 6

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from carom.description import Joint, JointType, Link, Robot
+from carom.description.joint import NEEDS_LIMIT
 from carom.description.pose import Pose, Vector3
+from carom.layouts.codes import JOINT_CODE, LIMIT_KIND, ConstraintKind
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
@@ -127,8 +129,8 @@ def _simulated_type(joint: Joint) -> JointType:
 
 def _is_limited(joint: Joint) -> bool:
     limit = joint.limit
-    if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC):
+    if joint.type in NEEDS_LIMIT:
         return limit.lower <= limit.upper
-    if joint.type is JointType.SPHERICAL:
+    if LIMIT_KIND.get(JOINT_CODE[joint.type]) == ConstraintKind.SPHERICAL_LIMIT:
         return min(limit.lower, limit.upper, limit.twist, limit.effort) > 0.0
     return False

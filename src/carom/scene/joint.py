@@ -57,6 +57,10 @@ class Joint:
         return self.spec.joint_type
 
     @property
+    def _has_quaternion(self) -> bool:
+        return self.body.position_count[self.index] != self.body.velocity_count[self.index]
+
+    @property
     def axis(self) -> Vector3:
         """Unit axis in the frame of the link it moves."""
         return self.spec.joint_axis
@@ -131,7 +135,7 @@ class Joint:
         """
         world_of(self.body)  # refuses joints of a body that is gone
         position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
-        if self.type is JointType.SPHERICAL and not position.any():
+        if self._has_quaternion and not position.any():
             raise ValueError("position must be a quaternion other than 0")
         velocity = np.broadcast_to(finite(velocity, "velocity"), self.degrees_of_freedom)
         self.body.set_joint_state(self.index, position.tolist(), velocity.tolist())
@@ -239,7 +243,7 @@ class Joint:
             damping: Share of the angular velocity taken away per substep.
             max_force: Greatest torque about each axis; `effort_limit` by default.
         """
-        if self.type is not JointType.SPHERICAL:
+        if not self._has_quaternion:
             raise ValueError(f"joint {self.name!r} is {self.type.value}, not spherical")
         quaternion = vector(target, 4, "target")
         length = np.linalg.norm(quaternion)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description import JointType
-from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT, ConstraintKind, JointCode
+from carom.layouts.codes import LIMIT_KIND, MAX_ROWS_PER_CONSTRAINT, MOTOR_KIND, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
@@ -66,8 +65,8 @@ class JointConstraints:
     def add_body(self, body: Body) -> None:
         """Append the limits, then the motors, of a new body."""
         self.tags.add(body.id, moving_links(body))
-        for joint, link in enumerate(body.spec.links):
-            if link.joint_type == JointType.SPHERICAL:
+        for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
+            if LIMIT_KIND.get(code) == ConstraintKind.SPHERICAL_LIMIT:
                 if link.lower > 0.0 and link.upper > 0.0 and link.twist > 0.0 and link.effort > 0.0:
                     self.all.append(
                         JointConstraint(
@@ -83,10 +82,8 @@ class JointConstraints:
             elif link.limited:
                 self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper))
         for joint, code in enumerate(body.joint_types):
-            if code in (JointCode.REVOLUTE, JointCode.PRISMATIC):
-                self.all.append(JointConstraint(body, joint, ConstraintKind.MOTOR))
-            elif code == JointCode.SPHERICAL:
-                self.all.append(JointConstraint(body, joint, ConstraintKind.SPHERICAL_MOTOR))
+            if code in MOTOR_KIND:
+                self.all.append(JointConstraint(body, joint, MOTOR_KIND[code]))
 
     def way_back(self) -> Callable[[], None]:
         """What takes away all that is added from now on."""

@@ -17,7 +17,6 @@ from carom.layouts.codes import (
     MOTOR_MAX_IMPULSE,
     MOTOR_POSITION,
     MOTOR_VELOCITY,
-    JointCode,
 )
 from carom.model.body_spec import BASE
 
@@ -31,7 +30,6 @@ CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
 # More contacts than these are more than anybody can look at.
 _MOST_CONTACTS = 5000
 _GREATEST_FRICTION = 10.0
-_ONE_FREEDOM = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 
 
 def contacts(world: World) -> Columns:
@@ -165,4 +163,4 @@ class JointReadings:
 
 
 def _movable(body: Body) -> list[int]:
-    return [joint for joint, code in enumerate(body.joint_types) if code in _ONE_FREEDOM]
+    return [joint for joint, freedoms in enumerate(body.velocity_count) if freedoms == 1]

@@ -15,7 +15,7 @@ from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.parameters import EngineParameters
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
-from carom.layouts.codes import ConstraintKind, JointCode, UserConstraintKind
+from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
 from carom.scene.changes import append, begin, change_base_freedom, note_additions
 from carom.scene.joint_constraints import JointConstraint
@@ -36,14 +36,6 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _NONE = -1
-# Which joints a constraint can be of.
-_ONE_FREEDOM, _BALL = (JointCode.REVOLUTE, JointCode.PRISMATIC), (JointCode.SPHERICAL,)
-_JOINTS = {
-    ConstraintKind.MOTOR: _ONE_FREEDOM,
-    ConstraintKind.LIMIT: _ONE_FREEDOM,
-    ConstraintKind.SPHERICAL_MOTOR: _BALL,
-    ConstraintKind.SPHERICAL_LIMIT: _BALL,
-}
 # What reading a document that means nothing may raise on its way through the engine.
 _MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionError)
 
@@ -429,7 +421,7 @@ def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bo
         kind_and_place = (ConstraintKind.USER, tie.parent, tie.parent_link)
         return (record.kind, body, record.joint) == kind_and_place
     joint = body.joint_types[_index(record.joint, body.spec.links)]
-    return joint in _JOINTS.get(record.kind, ())
+    return record.kind in (MOTOR_KIND.get(joint), LIMIT_KIND.get(joint))
 
 
 def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> None:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._calls.arguments import Vector, check_rotation, integer, numbers, one_body, required
 from pybullet._calls.builtin import exported, exported_as
-from pybullet._calls.constants import JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of, clients
 from pybullet._clients.lookup import body_of
@@ -205,9 +204,9 @@ def calculateJacobian(
         pass
     body = body_of(client_of(physicsClientId), bodyUniqueId, _JACOBIAN_SIZES)
     link = integer(linkIndex, "linkIndex")
-    if JOINT_SPHERICAL in body.joint_types:
+    if body.position_count != body.velocity_count:
         fail("Spherirical joints are not supported in the pybullet binding")
-    if JOINT_PLANAR in body.joint_types:
+    if max(body.velocity_count, default=0) > 1:
         fail("Planar joints are not supported in the pybullet binding")
     freedoms = sum(body.velocity_count)
     lists = {
@@ -288,20 +287,21 @@ def calculateMassMatrix(
 
 def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
     """Positions as the engine has them: quaternions of spherical joints instead of three angles."""
-    if JOINT_SPHERICAL not in body.joint_types:
+    if body.position_count == body.velocity_count:
         return values
     result: list[float] = []
     first = 0
-    for kind, freedoms in zip(body.joint_types, body.velocity_count, strict=True):
+    for coordinates, freedoms in zip(body.position_count, body.velocity_count, strict=True):
         own = values[first : first + freedoms]
-        result += getQuaternionFromEuler(own) if kind == JOINT_SPHERICAL else own
+        result += getQuaternionFromEuler(own) if coordinates != freedoms else own
         first += freedoms
     return tuple(result)
 
 
 def _check_extended(body: Body, positions: tuple[float, ...], problem: str) -> None:
     """Checks that a body has extended coordinates, and that their quaternions are rotations."""
-    if JOINT_PLANAR in body.joint_types:
+    counts = zip(body.position_count, body.velocity_count, strict=True)
+    if any(coordinates == freedoms > 1 for coordinates, freedoms in counts):
         fail(
             problem, f"Body {body.id} ({body.name}) has a planar joint, for which flags=1 has no coordinates."
         )

@@ -22,7 +22,7 @@ from pybullet._calls.arguments import (
     vector3,
 )
 from pybullet._calls.builtin import exported, exported_as
-from pybullet._calls.constants import IK_DLS, IK_SDLS, JOINT_SPHERICAL
+from pybullet._calls.constants import IK_DLS, IK_SDLS
 from pybullet._calls.errors import fail, warn_once
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import body_of
@@ -352,12 +352,12 @@ def _check_link(body: Body, link: int) -> None:
 
 def _result(body: Body, coordinates: tuple[float, ...]) -> tuple[float, ...]:
     """Positions as scripts have them: roll, pitch and yaw of spherical joints instead of a quaternion."""
-    if JOINT_SPHERICAL not in body.joint_types:
+    if body.position_count == body.velocity_count:
         return coordinates
     result: list[float] = []
     first = 0
-    for kind, count in zip(body.joint_types, body.position_count, strict=True):
+    for count, freedoms in zip(body.position_count, body.velocity_count, strict=True):
         own = coordinates[first : first + count]
-        result += getEulerFromQuaternion(own) if kind == JOINT_SPHERICAL else own
+        result += getEulerFromQuaternion(own) if count != freedoms else own
         first += count
     return tuple(result)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from carom.description.pose import Quaternion, Vector3
 from pybullet._calls.arguments import Vector, integer, rotation, vector3
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import JOINT_FIXED, JOINT_PLANAR, JOINT_SPHERICAL
 from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_vector3
 from pybullet._clients.clients import client_of, clients
@@ -167,12 +166,10 @@ def computeDofCount(bodyUniqueId: int, physicsClientId: int = 0) -> int:
     body = client_of(physicsClientId).body(bodyUniqueId)
     if body is None:
         return 0
-    for kind in body.joint_types:
-        if kind == JOINT_SPHERICAL:
-            return _HAS_SPHERICAL
-        if kind == JOINT_PLANAR:
-            return _HAS_PLANAR
-    return sum(kind != JOINT_FIXED for kind in body.joint_types)
+    for coordinates, freedoms in zip(body.position_count, body.velocity_count, strict=True):
+        if freedoms > 1:
+            return _HAS_PLANAR if coordinates == freedoms else _HAS_SPHERICAL
+    return sum(body.velocity_count)
 
 
 @exported

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import Quaternion, Vector3
 from pybullet._bodies.link_access import LinkAccess
-from pybullet._calls.constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE
 from pybullet._joints.joint_access import JointAccess, joint_access
 from pybullet._joints.joint_groups import JointGroups
 from pybullet._joints.joint_info import JointInfo, joint_info
@@ -64,7 +63,7 @@ class BodyAccess:
     @cached_property
     def tree(self) -> MovingTree | None:
         """Its equations of motion, if none of its joints has more than one freedom."""
-        if not {JOINT_REVOLUTE, JOINT_PRISMATIC, JOINT_FIXED}.issuperset(self.body.joint_types):
+        if any(freedoms > 1 for freedoms in self.body.velocity_count):
             return None
         from carom.algorithms.moving_tree import moving_tree
 

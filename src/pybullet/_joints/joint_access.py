@@ -23,10 +23,6 @@ from carom.layouts.codes import (
 )
 from pybullet._calls.arguments import integer
 from pybullet._calls.constants import (
-    JOINT_FIXED,
-    JOINT_PRISMATIC,
-    JOINT_REVOLUTE,
-    JOINT_SPHERICAL,
     PD_CONTROL,
     POSITION_CONTROL,
     TORQUE_CONTROL,
@@ -290,7 +286,7 @@ class MultiDofJoint(JointAccess):
 
     def __init__(self, client: Client, body: Body, index: int) -> None:
         super().__init__(client, body, index)
-        self.spherical = body.joint_types[index] == JOINT_SPHERICAL
+        self.spherical = body.position_count[index] != body.velocity_count[index]
         # PyBullet reports two of the three coordinates of a planar joint.
         self.position_count = 4 if self.spherical else 2
         self.dofs = 3 if self.spherical else 2
@@ -388,10 +384,10 @@ class MultiDofJoint(JointAccess):
 
 def joint_access(client: Client, body: Body, index: int) -> JointAccess:
     """Access to one joint, by its kind."""
-    kind = body.joint_types[index]
-    if kind in (JOINT_REVOLUTE, JOINT_PRISMATIC):
+    freedoms = body.velocity_count[index]
+    if freedoms == 1:
         return AxisJoint(client, body, index)
-    return JointAccess(client, body, index) if kind == JOINT_FIXED else MultiDofJoint(client, body, index)
+    return MultiDofJoint(client, body, index) if freedoms else JointAccess(client, body, index)
 
 
 def _is_triple(values: float | Sequence[float]) -> TypeGuard[Sequence[float]]:

@@ -14,7 +14,6 @@ from carom.description.transform import (
     rotate,
     rotation_matrix,
 )
-from pybullet._calls.constants import JOINT_PRISMATIC, JOINT_REVOLUTE
 
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
@@ -47,15 +46,14 @@ _NOT_AVAILABLE = b"not available"
 def joint_info(body: Body, index: int) -> JointInfo:
     """The 17 fields of `getJointInfo` for one joint."""
     link = body.spec.links[index]
-    kind = body.joint_types[index]
-    has_motor = kind in (JOINT_REVOLUTE, JOINT_PRISMATIC)
+    has_motor = body.velocity_count[index] == 1
     q, u = body.position_index[index], body.velocity_index[index]
     parent = body.spec.link(link.parent)
     in_parent = compose(inverse(parent.inertial_frame), link.joint_frame)
     return (
         index,
         link.joint_name.encode() or _NOT_AVAILABLE,
-        kind,
+        body.joint_types[index],
         q - body.first_position if q >= 0 else -1,
         u - body.first_velocity if u >= 0 else -1,
         _HAS_MOTOR if has_motor else 0,

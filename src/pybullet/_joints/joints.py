@@ -16,7 +16,6 @@ from pybullet._calls.arguments import (
     sequence,
 )
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import JOINT_SPHERICAL
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of, clients
 from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no_joint, state_access
@@ -354,7 +353,7 @@ def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[floa
     body, index = joint.body, joint.index
     if not position or len(position) != body.position_count[index]:
         return
-    if body.joint_types[index] == JOINT_SPHERICAL and not any(position):
-        fail("targetValue is a quaternion of length 0, which is no rotation.")
     freedoms = body.velocity_count[index]
+    if len(position) != freedoms and not any(position):
+        fail("targetValue is a quaternion of length 0, which is no rotation.")
     body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)

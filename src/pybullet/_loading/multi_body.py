@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose, Robot
+from carom.description.joint import NEEDS_AXIS
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
 from pybullet._calls.arguments import (
@@ -36,13 +37,12 @@ Shape = TypeVar("Shape")
 
 _FAILED = "createMultiBody failed."
 
-_JOINT_TYPES = {
+JOINT_TYPES = {
     JOINT_REVOLUTE: JointType.REVOLUTE,
     JOINT_PRISMATIC: JointType.PRISMATIC,
     JOINT_SPHERICAL: JointType.SPHERICAL,
     JOINT_FIXED: JointType.FIXED,
 }
-_NEEDS_AXIS = (JointType.REVOLUTE, JointType.PRISMATIC)
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -277,9 +277,9 @@ def _rotation(values: Any, name: str) -> Quaternion:
 
 def _joint_type(value: Any, name: str) -> JointType:
     kind = integer(value, name)
-    if kind not in _JOINT_TYPES:
+    if kind not in JOINT_TYPES:
         fail(_FAILED, f"{name} is {kind}, which is no joint that can be made here.")
-    return _JOINT_TYPES[kind]
+    return JOINT_TYPES[kind]
 
 
 def _check_tree(parents: list[int]) -> None:
@@ -324,7 +324,7 @@ def _joint(
 ) -> Joint:
     x, y, z = axis
     length = (x * x + y * y + z * z) ** 0.5
-    if length == 0.0 and kind in _NEEDS_AXIS:
+    if length == 0.0 and kind in NEEDS_AXIS:
         fail(_FAILED, f"linkJointAxis[{number - 1}] has no length.")
     unit = (x / length, y / length, z / length) if length else (1.0, 0.0, 0.0)
     return Joint(

@@ -21,19 +21,13 @@ from carom.description import (
     Sphere,
     TriangleMesh,
 )
+from carom.layouts.codes import JOINT_CODE
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import LinkSpec
+from pybullet._loading.multi_body import JOINT_TYPES
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
-
-_JOINTS = {
-    JointType.REVOLUTE: "p.JOINT_REVOLUTE",
-    JointType.CONTINUOUS: "p.JOINT_REVOLUTE",
-    JointType.PRISMATIC: "p.JOINT_PRISMATIC",
-    JointType.SPHERICAL: "p.JOINT_SPHERICAL",
-}
-_FIXED = "p.JOINT_FIXED"
 
 
 class Raw(str):
@@ -60,6 +54,11 @@ def written(value: Any) -> str:
     return repr(float(value)) if isinstance(value, np.floating) else repr(value)
 
 
+def _joint_type(kind: JointType) -> Raw:
+    code = JOINT_CODE[kind]
+    return Raw(f"p.JOINT_{code.name}" if code in JOINT_TYPES else "p.JOINT_FIXED")
+
+
 def multi_body(body: Body, position: Sequence[float], orientation: Sequence[float]) -> str:
     """The call of `createMultiBody` that makes a body like this one, with its shapes.
 
@@ -81,7 +80,7 @@ def multi_body(body: Body, position: Sequence[float], orientation: Sequence[floa
             "linkInertialFramePositions": [link.inertial_frame.position for link in spec.links],
             "linkInertialFrameOrientations": [link.inertial_frame.orientation for link in spec.links],
             "linkParentIndices": [link.parent + 1 for link in spec.links],
-            "linkJointTypes": [Raw(_JOINTS.get(link.joint_type, _FIXED)) for link in spec.links],
+            "linkJointTypes": [_joint_type(link.joint_type) for link in spec.links],
             "linkJointAxis": [
                 [component * link.joint_axis_length for component in link.joint_axis] for link in spec.links
             ],

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.codes import JointCode
 from pybullet._calls.constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
 
 if TYPE_CHECKING:
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
 _BASE_COLUMNS = (("pos", "XYZ"), ("ori", "XYZW"), ("vel", "XYZ"), ("omega", "XYZ"))
 _MARKER = b"\xaa\xbb"
-_LINKS_THAT_SHIFT = (JointCode.REVOLUTE, JointCode.PRISMATIC)
-_LINKS_THAT_FIT = (*_LINKS_THAT_SHIFT, JointCode.FIXED)
 ANY_LINK = -2
 ANY_BODY = -1
 
@@ -137,8 +134,8 @@ class RobotLog(BinaryLog):
         self._next(self._world.parameters.substep_time)
 
     def _write_body(self, body: Body) -> None:
-        joints = [index for index, kind in enumerate(body.joint_types) if kind in _LINKS_THAT_SHIFT]
-        if len(joints) > self._room or any(kind not in _LINKS_THAT_FIT for kind in body.joint_types):
+        joints = [index for index, freedoms in enumerate(body.velocity_count) if freedoms == 1]
+        if len(joints) > self._room or any(freedoms > 1 for freedoms in body.velocity_count):
             self._records.append(_MARKER)
             return
         world = self._world

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from carom.description import JointLimit, JointType
+from carom.description.joint import NEEDS_LIMIT
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
-
-WITHOUT_AXIS = (JointType.FIXED, JointType.FLOATING)
-_NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
 
 
 def read_joint_type(context: FileContext, element: Element, types: Mapping[str, JointType]) -> JointType:
@@ -41,7 +39,7 @@ def read_limit(context: FileContext, owner: Element, kind: JointType, scale: flo
     """
     element = owner.first("limit")
     if element is None:
-        if kind in _NEEDS_LIMIT:
+        if kind in NEEDS_LIMIT:
             raise context.error(owner, f"a {kind.value} joint needs a <limit>")
         return JointLimit()
     # Limits left out are scaled like stated ones: it shows in what getJointInfo reports.

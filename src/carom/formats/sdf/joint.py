@@ -5,9 +5,10 @@ from __future__ import annotations
 from math import hypot
 
 from carom.description import Joint, JointLimit, JointType, Pose
+from carom.description.joint import NEEDS_AXIS, WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
-from carom.formats.robot.joint import WITHOUT_AXIS, link_index, read_dynamics, read_joint_type, read_limit
+from carom.formats.robot.joint import link_index, read_dynamics, read_joint_type, read_limit
 from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
@@ -43,7 +44,7 @@ def read_sdf_joint(
     axis_element = element.first("axis")
     if axis_element is not None and kind not in WITHOUT_AXIS:
         axis, length = _read_axis(context, axis_element, kind)
-        if kind is not JointType.CONTINUOUS:
+        if kind not in WITHOUT_LIMIT:
             # Not scaled in PyBullet, not even for prismatic joints.
             limit = read_limit(context, axis_element, kind)
         damping, friction = read_dynamics(context, axis_element)
@@ -76,7 +77,7 @@ def _read_axis(context: SdfContext, element: Element, kind: JointType) -> tuple[
     x, y, z = vector
     length = hypot(x, y, z)
     if length == 0.0:
-        if kind is JointType.SPHERICAL:
+        if kind not in NEEDS_AXIS:
             return _X, 1.0
         raise context.error(element, f"the axis of a {kind.value} joint has no length")
     return (x / length, y / length, z / length), length

@@ -5,15 +5,15 @@ from __future__ import annotations
 from math import hypot
 
 from carom.description import Joint, JointType, Mimic, SafetyController
+from carom.description.joint import NEEDS_AXIS, SLIDES, WITHOUT_AXIS
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.robot.context import shown
-from carom.formats.robot.joint import WITHOUT_AXIS, link_index, read_dynamics, read_joint_type, read_limit
+from carom.formats.robot.joint import link_index, read_dynamics, read_joint_type, read_limit
 from carom.formats.urdf.context import UrdfContext
 from carom.formats.xml_element import Element
 
 _TYPES = {kind.value: kind for kind in JointType}
-_NEEDS_AXIS_LENGTH = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.PLANAR)
 
 
 def read_joint(context: UrdfContext, element: Element, link_indices: dict[str, int]) -> Joint:
@@ -65,7 +65,7 @@ def _read_axis(context: UrdfContext, joint: Element, kind: JointType) -> tuple[V
     x, y, z = vector
     length = hypot(x, y, z)
     if length == 0.0:
-        if kind in _NEEDS_AXIS_LENGTH:
+        if kind in NEEDS_AXIS:
             raise context.error(element, f"the axis of a {kind.value} joint has no length")
         return (1.0, 0.0, 0.0), 1.0
     if length == 1.0:
@@ -75,7 +75,7 @@ def _read_axis(context: UrdfContext, joint: Element, kind: JointType) -> tuple[V
 
 def _length_scale(context: UrdfContext, kind: JointType) -> float:
     """Factor on positions of a joint of this type."""
-    return context.scale if kind is JointType.PRISMATIC else 1.0
+    return context.scale if kind in SLIDES else 1.0
 
 
 def _read_mimic(context: UrdfContext, joint: Element, kind: JointType) -> Mimic | None:

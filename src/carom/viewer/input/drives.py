@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from carom.layouts.codes import JointCode
 from carom.scene.joint_motor import aim_at_position
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def drive(world: World, body_id: int, joint: int, target: float, *, place: bool)
     body = world.bodies.get(body_id)
     if body is None or not 0 <= joint < body.joint_count or not isfinite(target):
         return
-    if body.joint_types[joint] not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+    if body.velocity_count[joint] != 1:
         return
     if place:
         body.set_joint_state(joint, [target], [0.0])
