@@ -1,0 +1,155 @@
+"""Files and functions that pages for developers name exist, and their lists of places are complete."""
+
+import ast
+import re
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src"
+PAGES = ("CONTRIBUTING.md", "docs/architecture.md", "docs/solver.md")
+MOST_PLACES = 12
+
+JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR"}
+KINDS_OF_SHAPE = {"SPHERE", "BOX", "CAPSULE", "CYLINDER", "PLANE", "HULL", "TRIANGLES", "HEIGHTFIELD"}
+SHAPES = {"Sphere", "Box", "Capsule", "Cylinder", "Plane"}
+PRIMITIVES = {f"GEOM_{name.upper()}" for name in SHAPES}
+# A kind of user constraint has the name of a kind of joint.
+NOT_JOINTS = {"src/pybullet/_joints/constraints.py"}
+
+
+def section(title: str) -> str:
+    """A section of CONTRIBUTING.md, without those below it."""
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    found = re.search(rf"^#+ {re.escape(title)}\n(.*?)(?=^#|\Z)", page, re.MULTILINE | re.DOTALL)
+    assert found is not None, title
+    return found[1]
+
+
+def places(*titles: str) -> list[str]:
+    """What the items of lists in sections of CONTRIBUTING.md begin with."""
+    return [place for title in titles for place in re.findall(r"^- `([^`]+)`", section(title), re.MULTILINE)]
+
+
+@cache
+def names_in(path: Path) -> frozenset[tuple[str, str]]:
+    """Members of enums that a module names, and what it imports: (enum or module, name)."""
+    return frozenset(found_names(path))
+
+
+def found_names(path: Path) -> Iterator[tuple[str, str]]:
+    """As `names_in`, one by one."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            yield node.value.id, node.attr
+        elif isinstance(node, ast.ImportFrom) and node.module is not None:
+            yield from ((node.module, alias.name) for alias in node.names)
+        elif isinstance(node, ast.Assign) and path.name == "constants.py":
+            yield from (("constants", name.id) for name in node.targets if isinstance(name, ast.Name))
+        elif isinstance(node, ast.ClassDef) and path.name in ("codes.py", "joint.py", "geometry.py"):
+            members = (name for item in node.body if isinstance(item, ast.Assign) for name in item.targets)
+            yield from ((node.name, name.id) for name in members if isinstance(name, ast.Name))
+            yield "carom.description.geometry", node.name
+
+
+def singles_out_joints(owner: str, name: str) -> bool:
+    """Whether a name is that of a kind of joint that moves."""
+    if owner in ("JointCode", "JointType", "carom.layouts.codes"):
+        return name in JOINTS
+    return owner in ("constants", "pybullet._calls.constants") and name.removeprefix("JOINT_") in JOINTS
+
+
+def singles_out_shapes(owner: str, name: str) -> bool:
+    """Whether a name is that of a primitive shape."""
+    if owner in ("carom.description", "carom.description.geometry"):
+        return name in SHAPES
+    return owner in ("constants", "pybullet._calls.constants") and name in PRIMITIVES
+
+
+def singles_out_kinds_of_shape(owner: str, name: str) -> bool:
+    """Whether a name is that of a kind of shape in kernels."""
+    return owner in ("ShapeKind", "carom.layouts.codes") and name in KINDS_OF_SHAPE
+
+
+def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
+    """The modules of the simulator and the drop-in that name one of some kinds."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for package in ("carom", "pybullet")
+        for path in (SOURCE / package).rglob("*.py")
+        if any(single_out(owner, name) for owner, name in names_in(path))
+    }
+
+
+@pytest.mark.parametrize(
+    ("single_out", "titles", "others"),
+    [
+        (
+            singles_out_joints,
+            ("Adding a joint type", "Joint types with a quaternion, or with another name in files"),
+            NOT_JOINTS,
+        ),
+        (
+            singles_out_shapes,
+            ("Adding a collision shape", "Collision shapes in files, and special treatment"),
+            set[str](),
+        ),
+        (singles_out_kinds_of_shape, ("Kinds of shape in kernels",), set[str]()),
+    ],
+)
+def test_lists_of_places_are_what_the_code_says(
+    single_out: Callable[[str, str], bool], titles: tuple[str, ...], others: set[str]
+):
+    assert modules_that(single_out) - others == set(places(*titles))
+
+
+@pytest.mark.parametrize("title", ["Adding a joint type", "Adding a collision shape"])
+def test_a_new_kind_needs_few_places(title: str):
+    assert 0 < len(places(title)) <= MOST_PLACES
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_files_that_pages_name_exist(page: str):
+    files = {
+        path.relative_to(ROOT).as_posix()
+        for folder in ("src", "tests", "tools", "docs", "benchmarks")
+        for path in (ROOT / folder).rglob("*")
+    }
+    named = re.findall(r"`([\w./-]+\.(?:py|cpp|js|md|json)|(?:src|tests)/[\w./-]+)`", text_of(page))
+    lost = [name for name in named if not any(f"/{path}".endswith(f"/{name.rstrip('/')}") for path in files)]
+    assert not lost
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_modules_that_pages_name_exist(page: str):
+    named = re.findall(r"`((?:carom|pybullet)(?:\.\w+)+)`", text_of(page))
+    assert not [name for name in named if not is_there(name)]
+
+
+def test_functions_that_the_page_about_the_solver_names_exist():
+    words = set(re.findall(r"\w+", "".join(path.read_text("utf-8") for path in SOURCE.rglob("*.py"))))
+    named = re.findall(r"`([A-Za-z_.]+)(?:\[\w+\])?`", text_of("docs/solver.md"))
+    parts = {part for name in named for part in name.split(".") if "/" not in part}
+    assert parts <= words
+
+
+def text_of(page: str) -> str:
+    """A page without its blocks of code."""
+    return re.sub(
+        r"^```.*?^```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
+
+
+def is_there(name: str) -> bool:
+    """Whether a dotted name is a module, or something that a module has or imports."""
+    parts = name.split(".")
+    for length in range(len(parts), 0, -1):
+        base = SOURCE.joinpath(*parts[:length])
+        for module in (base.with_suffix(".py"), base / "__init__.py"):
+            if module.is_file():
+                text = module.read_text(encoding="utf-8")
+                return all(re.search(rf"\b{part}\b", text) for part in parts[length:][:1])
+    return False
