@@ -2,6 +2,7 @@
 #
 #   make demo         the Panda and the one-joint arm at work: a table, and a plot in demo-output/
 #   make test         the test suite
+#   make quick        lint and the tests that matter most, in under a minute on two cores
 #   make check        lint, types and tests
 #   make docs         the documentation, in site/
 #   make figures      the plots of the tutorials and the pictures of the viewer, by running them; needs Chromium
@@ -41,7 +42,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -111,6 +112,17 @@ test: $(VENV)/dev
 # --- what developers run -------------------------------------------------------------------------
 
 check: lint types test
+
+# Physics, contacts and solver against closed forms; every scenario against real PyBullet; the drop-in's surface;
+# rooms, and what the pages for developers say.
+QUICK := tests/physics tests/collision tests/geometry tests/model tests/kernels tests/native/test_tables.py \
+	tests/conformance/test_golden.py tests/pybullet/test_surface.py tests/pybullet/test_bad_input.py \
+	tests/test_world.py tests/test_body.py tests/formats/test_urdf_reader.py \
+	tests/test_layers.py tests/docs/test_named_places.py tests/docs/test_statements.py
+
+quick: lint
+	$(RUN) -m carom warmup
+	$(RUN) -m pytest --quiet --numprocesses auto $(QUICK)
 
 lint: $(VENV)/dev
 	$(RUN) -m ruff check
