@@ -1,4 +1,4 @@
-"""The arrays of everything bodies do to each other: shapes, contacts, constraints between them."""
+"""Contact arrays: shapes, contacts, user constraints."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class ContactArrays:
         self.contacts.numpy["count_contacts"][:] = 0
 
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
-        """Let no contact start from its last impulses: somebody has put a body elsewhere.
+        """Let no contact be warm started in the next step: a body has been put elsewhere.
 
         So what follows depends on where everything is put, and not on what was there before.
 

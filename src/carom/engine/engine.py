@@ -125,7 +125,7 @@ class Engine:
         """Make the launches of a step for the bodies and constraints there are.
 
         Args:
-            watched: Somebody wants to know of every substep.
+            watched: Something is called after every substep.
         """
         self._watched = watched
         plan = self._find_plan()
@@ -254,7 +254,7 @@ class Engine:
         return self.status[worlds, STEPS_DONE]
 
     def sleep_changed(self) -> None:
-        """Let steps look for sleepers again, if somebody has put a world with some back."""
+        """Let steps look for sleeping bodies again, after a world with some was restored."""
         if self._plan is not None and not self._plan.sleeping and can_sleep(self.arrays):
             self.changed()
 

@@ -34,7 +34,7 @@ class EngineParameters:
         deterministic_overlapping_pairs: Pairs are kept in a fixed order.
         joint_feedback_mode: Bit 1: force-torque sensors in world axes; bit 2: about the joint.
         allowed_ccd_penetration: Depth that continuous collision detection allows [m].
-        warm_starting_factor: What PyBullet knows by this name; it has no effect on multibodies.
+        warm_starting_factor: PyBullet's parameter of this name, which has no effect on multibodies.
         contact_warm_starting: Share of their last impulses that the contacts of rigid bodies at rest start
             from. 0 is what PyBullet does; the rest poses are the same, but take more sweeps to hold.
         noncontact_inner_iterations: Passes over joint rows per sweep.

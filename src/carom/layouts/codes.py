@@ -41,9 +41,9 @@ class Activity(IntEnum):
     """Whether a tree takes part in the simulation."""
 
     ACTIVE = 0
-    WANTS_SLEEP = 1  # takes part, but will not as soon as nobody of its island is active
+    WANTS_SLEEP = 1  # takes part, but will not as soon as no tree of its island is active
     ASLEEP = 2
-    WOKEN = 3  # was asleep until this substep; else as DROWSY
+    WOKEN = 3  # was asleep until this substep; else as WANTS_SLEEP
 
 
 class ShapeKind(IntEnum):
@@ -153,6 +153,6 @@ USER_FIXED = int(UserConstraintKind.FIXED)
 USER_POINT_TO_POINT = int(UserConstraintKind.POINT_TO_POINT)
 USER_GEAR = int(UserConstraintKind.GEAR)
 
-# What link forces are computed for; see `physics.dynamics.link_bias_forces`.
+# What link forces are computed for; see `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION = 0
 CONSTRAINT_FEEDBACK = 1

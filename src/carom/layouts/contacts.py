@@ -158,7 +158,7 @@ class Pairs:
     previous_anchor_a: Vector3Rows
     previous_anchor_b: Vector3Rows
     previous_impulse: Vector4Rows
-    previous_taken: IntRows  # 1 once a contact has inherited from it
+    previous_taken: IntRows  # 1 once a contact has been matched with it
 
     # Its columns are PAIRS and so on.
     count_pairs: IntRows
@@ -179,7 +179,7 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    # Of the last substep: normal, along directions 1 and 2; then what `resting.next_warm_start` says.
+    # Of the last substep: normal, along directions 1 and 2; then what `warm_starting.next_warm_start` says.
     contact_impulse: Vector4Rows
     count_contacts: IntRows  # its column is THERE
 
@@ -208,7 +208,7 @@ class UserConstraints:
 
 @struct
 class ManifoldBlock:
-    """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.manifold_blocks`.
+    """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.rigid_manifolds`.
 
     Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
     response is what an impulse does to the velocities of the dofs of a tree, one of a gain by how much it
@@ -217,7 +217,7 @@ class ManifoldBlock:
     """
 
     place: Index4  # as `row_place`
-    run: Int32  # where in `run_block` the matrices of trees that are not small are, or -1
+    run: Int32  # where in `run_block` the matrices of articulated trees are, or -1
     members: Index4  # its contacts, -1 for none
     count: Int32
     friction: Vector4  # coefficients
@@ -320,7 +320,7 @@ class PairRows:
     visit_row: IntRows  # rows of motors, limits and user constraints in their order: -1 - row of the latter
 
 
-# Couplings that show another array's blocks entry by entry.
+# Fields that show another array's blocks entry by entry.
 ROW_ENTRY_VIEWS = {
     "entry_row": "jacobian_row",
     "entry_response": "jacobian_response",

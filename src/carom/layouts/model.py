@@ -80,7 +80,7 @@ class TreeModel:
     batch_constraints: Int32  # of its batch, if it is the first tree of one; else 0
     can_sleep: Int32
     can_wake: Int32  # by moving
-    sleep_threshold: real  # sum of its squared velocities below which it grows tired
+    sleep_threshold: real  # sum of its squared velocities below which it wants to sleep, after a while
 
 
 @struct

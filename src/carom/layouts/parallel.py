@@ -32,7 +32,7 @@ class IslandProgress:
     made: Index4  # what `solver.island_rows` returned
     units: Index4  # what `units.write_units` returned
     resting: Int32  # 1: its contacts start from their last impulses
-    outcome: Int32  # see `resting.NOT_RESTING`
+    outcome: Int32  # see `warm_starting.NOT_RESTING`
     stage: Int32  # see `UNWRITTEN`
     residual: real
     sweeps: Int32

@@ -1,4 +1,4 @@
-"""Poses and bounds of all shapes in world axes."""
+"""Axis-aligned bounding boxes (AABBs) and poses of all shapes, in world axes."""
 
 import warp as wp
 

@@ -1,4 +1,4 @@
-"""How far apart two shapes may be and still be in contact, as Bullet has it.
+"""Contact margins: how far apart two shapes may be and still be in contact, as Bullet has it.
 
 A contact is given up where its points are further apart than the smaller *breaking distance* of the
 two shapes, and most pairs make one as early as that, so that it can slow them in time.
@@ -22,7 +22,7 @@ def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
 
 @func
 def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
-    """Whether Bullet would wrap this shape in a compound: it has company or is not at the link's origin."""
+    """Whether Bullet would wrap a shape in a compound: its link has others, or it is not at the origin."""
     if shapes.link_shape_count[shapes.shape_link[shape]] > 1:
         return True
     pose = shapes.shape_pose[shape]

@@ -1,4 +1,4 @@
-"""A hierarchy of bounds over the bounded shapes of a world, rebuilt from nothing whenever it is used.
+"""A bounding volume hierarchy over the bounded shapes of a world, rebuilt from nothing whenever it is used.
 
 Shapes are sorted along a space-filling curve; a leaf holds a few neighbours in that order. The nodes
 are those of a complete binary tree: node 1 is the root, 2n and 2n + 1 are below n, and the leaves are

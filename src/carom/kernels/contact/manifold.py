@@ -1,4 +1,4 @@
-"""Contacts that last: what a contact point knew in the last step is passed on to its successor."""
+"""Contact matching: contacts take over impulses and friction anchors from those of the last step."""
 
 import math
 
@@ -30,7 +30,7 @@ def friction_direction(normal: Vector3) -> Vector3:
 
 @func
 def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
-    """Put aside the contacts of the last substep, for new ones to inherit from.
+    """Copy the contacts of the last substep, for new ones to be matched with.
 
     Those at the start of a step stay there until it ends, to be restored if it is abandoned.
 
@@ -137,7 +137,7 @@ def predecessor(
 
 @func
 def keep_for_matching(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
-    """Pass on what the previous contact `before`, -1 for none, leaves to contact `row`."""
+    """Give contact `row` the impulses and friction anchor of the previous contact `before`; -1 for none."""
     if before >= 0:
         contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
         contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
@@ -186,7 +186,7 @@ def write_contact(
     pair: Index4,
     candidate: Int32,
 ):
-    """Write where a candidate is as contact `row`; it has still to inherit (`keep_for_matching`)."""
+    """Write where a candidate is as contact `row`; impulses come from `keep_for_matching`."""
     link_a = shapes.shape_link[pair[0]]
     link_b = shapes.shape_link[pair[1]]
     point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
@@ -232,7 +232,7 @@ def write_new_contact(
     )
     keep_for_matching(contacts, pairs, world, before, row)
     if before < 0 and last > first:
-        # Another corner of what touched already is no reason to distrust the rest.
+        # A new point of a manifold that was there before does not end the warm starting of the others.
         contacts.contact_impulse[world, row][3] = minimum(pairs.previous_impulse[world, first][3], 1.0)
 
 

@@ -49,7 +49,7 @@ def gather_constraint_forces(
 def measure_joint_wrenches(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, add: Int32
 ):
-    """Store in (or add to) the sensors what their joints carry.
+    """Store in (or add to) the sensors the wrenches that their joints carry.
 
     Expects the accelerations in `dof_force` and the gathered bias forces of `generalized_forces`.
     """

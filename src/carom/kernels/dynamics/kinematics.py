@@ -1,4 +1,4 @@
-"""Where the links are, how the joints can move them, and how fast they go."""
+"""Forward kinematics: poses of links, motion subspaces of joints, velocities of links."""
 
 import warp as wp
 

@@ -1,4 +1,4 @@
-"""Joint motors: velocity-level constraint rows with gains and a bound on their impulse.
+"""Joint motors (POSITION_CONTROL, VELOCITY_CONTROL): constraint rows with gains and a greatest impulse.
 
 A motor asks for a joint rate after the step; the solver gives the impulse that reaches it, as far
 as the motor's greatest impulse allows. Explicit drives (PD, joint damping) are forces instead.
@@ -37,7 +37,7 @@ def unless_nan(value: real, other: real) -> real:
 
 @func
 def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
-    """Viscous joint friction as an explicit torque at the rates before the step."""
+    """Joint damping: viscous friction as an explicit torque, from the rates before the step."""
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
         state.dof_torque[world, dof] -= model.dof_damping[world, dof] * state.dof_velocity[world, dof]

@@ -106,8 +106,8 @@ def angular_inverse_mass(
 def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: Int32, link: Int32) -> Vector3:
     """Effective masses of the three axes of a spherical joint.
 
-    The responses of both links add as if they were strangers, as Bullet has it; the rows converge
-    all the same, only by smaller steps.
+    The responses of both links add as if they were independent, as Bullet has it. That makes effective
+    masses too small: the rows converge all the same, by smaller steps.
     """
     result = Vector3(0.0, 0.0, 0.0)
     first = model.link[link].first_dof

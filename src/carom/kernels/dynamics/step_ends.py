@@ -1,4 +1,4 @@
-"""How a step begins and ends, and how one is called off."""
+"""How a step begins, ends, and is abandoned."""
 
 import warp as wp
 

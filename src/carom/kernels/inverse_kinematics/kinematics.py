@@ -1,4 +1,4 @@
-"""Where a chain's ends are, how far from their targets, and how its joints move them."""
+"""Forward kinematics of a chain: poses of its ends, their errors, and their Jacobian."""
 
 import warp as wp
 

@@ -33,12 +33,12 @@ _TRIES = wp.constant(6)
 # So many steps of so little progress mean a local minimum.
 _LITTLE_PROGRESS = real(0.999)
 _SLOW_STEPS = wp.constant(3)
-# Distance [m] that the patient do without: who asks again in each step comes nearer each time.
+# Tolerance [m], at least, where there is `patience`: called in each step, the search comes nearer each time.
 _NEAR = real(0.02)
 # Poses to try at least where limits are to be kept: often only another pose of the arm arrives within them.
 _WITHIN_LIMITS = wp.constant(300)
-# Share of the best squared errors that makes another pose, which does not arrive either, worth going there:
-# who asks in each step does not want the arm to jump for little.
+# Hysteresis: another pose that does not arrive either must have at most this share of the squared errors,
+# lest an arm that is asked in each step jumps for little.
 _WORTH_A_JUMP = real(0.8)
 # Share of the joints' ranges within which the first new start is drawn.
 _FIRST_SPREAD = real(0.05)
@@ -240,7 +240,7 @@ def inverse_kinematics_kernel(
     if error[0] <= bearable and outside == 0:
         return
 
-    # PyBullet looks at distances only. Where it is content, nothing but better angles will do.
+    # PyBullet's iteration ends by distances alone. Where it has ended, only smaller angles count as better.
     content = error[0] <= goal and outside == 0
     best = error[2]
     if step_kind == DAMPED:

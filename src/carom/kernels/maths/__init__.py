@@ -1,1 +1,1 @@
-"""Rotations, blocks of numbers, least and greatest entries."""
+"""Rotations, blocks of numbers, minimum and maximum."""

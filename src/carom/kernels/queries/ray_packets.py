@@ -120,7 +120,7 @@ def meets(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> boo
 
 @func
 def lane_of(numbers: Vector4, lane: Int32) -> real:
-    """The number of a lane; unlike an index it leaves them all where vector instructions want them."""
+    """The number of a lane; by comparisons, as an index would move the vector out of its register."""
     return wp.where(
         lane < 2, wp.where(lane == 0, numbers[0], numbers[1]), wp.where(lane == 2, numbers[2], numbers[3])
     )

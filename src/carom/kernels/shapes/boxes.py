@@ -1,4 +1,4 @@
-"""Two boxes with sharp edges: the axis along which they overlap least."""
+"""Two boxes with sharp edges: separating axis test, for the axis along which they overlap least."""
 
 import warp as wp
 

@@ -1,4 +1,4 @@
-"""The face, edge or vertex that a core turns to its opponent."""
+"""Supporting feature of a core in a direction: a face, edge or vertex."""
 
 import warp as wp
 

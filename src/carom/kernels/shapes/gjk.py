@@ -175,7 +175,7 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
             nearest = weighted(differences, weights)
             distance = wp.length(nearest)
             if least >= 0.0 and distance >= least:
-                # Rounding has the last word: what was found before stands.
+                # Only rounding makes progress from here on: the simplex before is the result.
                 searching = Int32(0)
             else:
                 least = distance

@@ -1,4 +1,4 @@
-"""How deep two overlapping cores are in each other (the expanding polytope algorithm).
+"""Penetration depth of two overlapping cores: the expanding polytope algorithm (EPA).
 
 The set of all differences a - b of points of two overlapping cores contains the origin. A polytope
 inside that set grows, always at the face nearest to the origin, until that face is on the boundary:

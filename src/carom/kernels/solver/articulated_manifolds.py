@@ -1,4 +1,4 @@
-"""Manifold blocks of trees of any size; see `manifold_blocks`.
+"""Manifold blocks of trees of any size; see `rigid_manifolds`.
 
 Their matrices are in `PairRows.run_block`, one after the other, each for tree a and then tree b: the
 weighted Jacobians of the normals, a vector for each dof; those of friction, two for each; the responses
@@ -17,7 +17,7 @@ from carom.kernels.solver.rigid_manifolds import (
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Index4, Int32, func, real
 
-# Vectors of all matrices of a articulated manifold block for each block of dofs of its trees.
+# Vectors of all matrices of an articulated manifold block for each block of dofs of its trees.
 RUN_PER_BLOCK = 24
 
 

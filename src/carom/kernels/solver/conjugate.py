@@ -1,4 +1,4 @@
-"""Conjugate directions: what makes the sweeps over the manifold blocks of an island at rest converge quickly.
+"""Nonsmooth conjugate gradients between the sweeps over an island at rest, so that these converge quickly.
 
 A sweep of projected Gauss-Seidel takes the place of the gradient in the method of Fletcher and Reeves.
 After it the impulses go on along what is left of the last direction; the next sweep takes back what their

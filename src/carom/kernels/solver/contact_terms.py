@@ -1,4 +1,4 @@
-"""What one contact asks of the velocities of its links, whichever way it is then solved."""
+"""Target velocity, softness and friction of a contact, whichever variety of rows it is solved by."""
 
 import warp as wp
 
@@ -257,7 +257,7 @@ def keep_contact_impulse(
         first: That along the first friction direction.
         second: That along the second.
         friction: Coefficient of lateral friction.
-        outcome: How the search for it went, see `resting.next_warm_start`.
+        outcome: How the search for it went, see `warm_starting.next_warm_start`.
     """
     warm_start = next_warm_start(contacts.contact_impulse[world, contact][3], outcome)
     contacts.contact_impulse[world, contact] = Vector4(normal, first, second, warm_start)

@@ -1,4 +1,4 @@
-"""Making manifold blocks of contacts, and reporting what they did; see `manifold_blocks`."""
+"""Making manifold blocks of contacts, and reporting what they did; see `rigid_manifolds`."""
 
 from carom.kernels.solver.articulated_manifold_rows import clear_run, write_long_contact
 from carom.kernels.solver.contact_terms import keep_contact_impulse

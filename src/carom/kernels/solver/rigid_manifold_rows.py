@@ -1,4 +1,4 @@
-"""Writing the rows of manifold blocks of rigid bodies; see `manifold_blocks`."""
+"""Writing the rows of manifold blocks of rigid bodies; see `rigid_manifolds`."""
 
 import warp as wp
 

@@ -1,8 +1,8 @@
-"""Which trees are asleep: those at rest do not take part until something in motion comes near.
+"""Sleeping (deactivation): trees at rest take no part in a step until something in motion comes near.
 
-A tree that hardly moves for `SLEEP_DELAY` seconds is *tired*. Trees that are near each other, touch or are
-tied together fall asleep together, when none of them is awake, and stir together when one is. As in
-Bullet neither forces nor motors wake anyone up.
+A tree that hardly moves for `SLEEP_DELAY` seconds wants to sleep. Trees that are near each other, touch or
+are tied together are an island: it falls asleep when none of its trees is active, and wakes up when one is.
+As in Bullet, neither forces nor motors wake a tree up.
 """
 
 import warp as wp
@@ -19,7 +19,7 @@ from carom.layouts.contacts import LEAVES, THERE
 
 # Time without motion after which a tree may fall asleep [s].
 SLEEP_DELAY = real(2.0)
-# Gap between the bounds of two trees up to which they fall asleep and stir together [m].
+# Gap between the bounds of two trees up to which they fall asleep and wake up together [m].
 NEAR = real(0.04)
 
 
@@ -117,9 +117,9 @@ def settle_kernel(
     touching: Int32,
     first_world: Int32,
 ):
-    """Before a substep: islands without anyone active fall asleep, others stir.
+    """Before a substep: islands without an active tree fall asleep, others wake up.
 
-    `touching` is 0 where there is no collision detection, so that nobody has neighbours.
+    `touching` is 0 where there is no collision detection, so that no tree has neighbours.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
@@ -132,7 +132,7 @@ def settle_kernel(
             if link_moves(model, pair[2]) and link_moves(model, pair[3]):
                 unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
     unite_tied(settings, model, state, users, world)
-    # From here on `tree_contacts` of a root says that someone of its island is active.
+    # From here on `tree_contacts` of a root says that a tree of its island is active.
     for tree in range(settings.tree_count):
         if state.tree_activity[world, tree] == ACTIVE and has_moving_shapes(model, shapes, tree):
             pair_rows.tree_contacts[world, island_of(state, world, tree)] = 1
@@ -166,7 +166,7 @@ def watch(model: Model, settings: Settings, state: State, world: Int32, tree: In
 
 @kernel
 def watch_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
-    """After a substep: see who moves, who has grown tired and who is awake again."""
+    """After a substep: which trees move, which want to sleep, which are active again."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         watch(model, settings, state, world, tree)

@@ -150,8 +150,7 @@ def resting_sweep(
 ) -> real:
     """Relax all rows of a resting island's manifold blocks once; returns the greatest change squared.
 
-    Patch by manifold block, friction right after the normals, first to last and last to first in turn: a load
-    passes through a whole stack in a sweep, whichever way it has to go.
+    Manifold block by manifold block, the friction of each right after its normals.
     """
     residual = real(0.0)
     manifold_block = Int32(0)

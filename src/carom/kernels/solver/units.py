@@ -1,4 +1,4 @@
-"""What the sweeps of an island relax, in order: manifold blocks, and contacts by themselves."""
+"""The contacts of an island as its sweeps relax them: in manifold blocks, or one by one."""
 
 from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes

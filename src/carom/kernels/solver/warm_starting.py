@@ -1,4 +1,4 @@
-"""Islands of rigid bodies at rest, whose contacts start from their last impulses.
+"""Warm starting, of islands of rigid bodies at rest: their contacts start from their last impulses.
 
 The solver then has little left to do, and goes on until it is done: a stack at rest takes a few sweeps
 instead of fifty. Bullet starts from nothing in every step, and gets nearly there. Wherever something moves,
@@ -43,15 +43,15 @@ RESTING_SWEEPS = 4
 NOT_RESTING, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
 # Share of the greatest friction, squared, from which on a contact slides.
 SLIDING = real(1.0 - 1e-9)
-# What makes trust of a contact in a manifold block that holds.
+# What `next_warm_start` says of a contact in a manifold block that holds; others go up to 1.
 HOLDS = real(2.0)
-# Steps without an attempt after one that failed.
+# Steps without warm starting after one that did not converge.
 PAUSE = real(60.0)
 
 
 @func
 def next_warm_start(warm_start: real, outcome: Int32) -> real:
-    """Whether a step may start from the last impulses of a contact: if at least 1; each step adds one."""
+    """Counter of a contact: from 1 on it may be warm started; each step adds one, up to 1."""
     if outcome == UNSOLVED:
         return 1.0 - PAUSE
     if outcome == SOLVED_AND_HOLDS:
@@ -61,7 +61,7 @@ def next_warm_start(warm_start: real, outcome: Int32) -> real:
 
 @func
 def slides(normal: real, first: real, second: real, friction: real) -> bool:
-    """Whether the friction of a contact, given its impulses, is as great as it can be."""
+    """Whether a contact slides: its friction impulse is on the bound of Coulomb's law."""
     bound = normal * friction
     return first * first + second * second >= bound * bound * SLIDING
 
@@ -77,7 +77,7 @@ def is_rigid(model: Model, tree: Int32) -> bool:
 
 @func
 def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
-    """Whether a link is rigid in contact and knows but lateral friction, alike in all directions."""
+    """Whether contacts of a link are rigid and have lateral friction only, isotropic."""
     return (
         shapes.link_stiffness[world, link] < 0.0
         and shapes.link_rolling_friction[world, link] == 0.0
@@ -88,7 +88,7 @@ def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
 
 @func
 def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact was there before, in a block that can be solved, and neither rolls nor gives."""
+    """Whether a contact can be warm started: not new, in a block, rigid, lateral friction only."""
     if contacts.contact_impulse[world, contact][3] < 1.0:
         return False
     pair = contacts.contact_shapes[world, contact]
@@ -115,7 +115,7 @@ def contact_traits(
 
 @func
 def rest_of(model: Model, state: State, pair_rows: PairRows, world: Int32, tree: Int32) -> Int32:
-    """What a tree lets its island be."""
+    """How much at rest a tree allows its island to be: `MOVING`, `RESTING` or `HELD`."""
     touches = pair_rows.tree_contacts[world, tree]
     motion = squared_motion(model, state, world, tree)
     if touches & HAS_OTHER_CONTACTS != 0 or motion >= REST or not is_rigid(model, tree):
