@@ -18,6 +18,7 @@
 #   make watching     what it costs to be watched, in a browser; needs Chromium
 #   make clients      other people's tests and scripts on PyBullet and on Carom; needs git and GitHub
 #   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
+#   make gpu          the tests of worlds on a GPU, and how fast they are there; needs an NVIDIA GPU
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps and thousands of loads and removals; memory must not grow
 #   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
@@ -42,7 +43,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report gpu wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -189,6 +190,13 @@ oldest: $(VENV)/dev
 
 gpu-report: $(VENV)/dev
 	PYTHONPATH=. $(RUN) -m tools.gpu.report
+
+GPU ?= cuda
+
+gpu: $(VENV)/dev
+	$(RUN) benchmarks/gpu.py --device $(GPU) --counts 1024 --seconds 0.2
+	CAROM_TEST_DEVICE=$(GPU) $(RUN) -m pytest tests/gpu/test_warp_device.py
+	$(RUN) benchmarks/gpu.py --device $(GPU)
 
 fuzz: $(VENV)/dev
 	$(RUN) -m tests.fuzz.api --operations 1000000

@@ -8,12 +8,18 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
+class OnDevice:
+    """Base of arrays on another device than the processor. Their numbers are not read back to be checked."""
+
+
 def finite(value: ArrayLike, name: str) -> Array:
     """A copy of `value` as an array of finite doubles.
 
     Raises:
         ValueError: Something in it is NaN or infinite; the message calls it `name`.
     """
+    if isinstance(value, OnDevice):
+        return value  # type: ignore[return-value]
     array = _numbers(value, name)
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite, not {value!r}")
@@ -62,6 +68,8 @@ def not_negative(value: ArrayLike, name: str) -> Array:
     Raises:
         ValueError: Something in it is not.
     """
+    if isinstance(value, OnDevice):
+        return value  # type: ignore[return-value]
     array = _numbers(value, name)
     if not (array >= 0.0).all():
         raise ValueError(f"{name} must be >= 0, not {value!r}")

@@ -8,10 +8,7 @@ import numpy as np
 from tests.gpu.native_device import NativeDevice
 
 from carom import World
-from carom.engine.can_collide import can_sleep
-from carom.engine.program import Plan
-from carom.engine.workspace import Workspace
-from carom.gpu.parallel_step import Extent, ParallelStep
+from carom.gpu.engine import DeviceEngine
 from carom.native.tables import ArrayTable
 
 
@@ -21,16 +18,21 @@ class SideBySide:
     There is room for all pairs, and for as many contacts and rows as are asked for.
 
     Attributes:
+        engine: What steps them.
         tables: Their arrays, by the names that kernels give them.
-        coupled: Whether their bodies can touch, are tied together or can fall asleep.
     """
 
     def __init__(self, worlds: Sequence[World], *, contacts: int = 256, rows: int = 512) -> None:
         for world in worlds:
             world.prepare()
         first = worlds[0]
-        arrays = first.arrays.repeated(len(worlds))
-        contact_arrays = first.contact_arrays.repeated(arrays)
+        self.engine = DeviceEngine.like(NativeDevice(), first.arrays, first.contact_arrays, len(worlds))
+        self.engine.update_settings(first.parameters)
+        arrays, contact_arrays, workspace = (
+            self.engine.arrays,
+            self.engine.contact_arrays,
+            self.engine.workspace,
+        )
         contact_arrays.contacts.reserve({"contact": contacts})
         contact_arrays.reserve()
         self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": contact_arrays.contacts}
@@ -45,30 +47,14 @@ class SideBySide:
         for number, world in enumerate(worlds):
             for ours, theirs in (*self._beside(world), *self._parameters_beside(world)):
                 ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
-        workspace = Workspace(len(worlds))
-        workspace.fit(arrays, contact_arrays)
         workspace.pairs.reserve({"pair": 256})
         workspace.pair_rows.reserve({"row": rows, "jacobian": 8 * rows, "run": 8 * rows})
-        shared = {
-            "settings": first.engine.structs()["settings"],
-            **arrays.structs(),
-            **contact_arrays.structs(),
-        }
-        touching, sleeping = first.engine.can_collide, can_sleep(first.arrays)
-        self.coupled = touching or sleeping or contact_arrays.user_count > 0
-        self.step = ParallelStep(
-            workspace.bind(shared),
-            Extent(
-                len(worlds),
-                arrays.used["tree"],
-                contact_arrays.shapes.shape_count,
-                contact_arrays.contacts.capacity["contact"],
-                workspace.pairs.capacity["pair"],
-            ),
-            max(1, first.parameters.substeps),
-            NativeDevice(),
-            Plan(touching, sleeping, self.coupled),
-        )
+        self.engine.due[0] = max(1, first.parameters.substeps)
+        self.engine.prepare()
+
+    def step(self) -> None:
+        """A step of all of them; worlds in which something does not fit stay where it began."""
+        self.engine.run(self.engine._steppers)
 
     def differences(self, number: int, world: World) -> list[str]:
         """Names of the arrays of which a bit differs between one of these worlds and a lone one."""

@@ -31,5 +31,7 @@ def can_collide(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
 
 def can_sleep(arrays: WorldArrays) -> bool:
     """Whether a body may fall asleep, or has to be woken up."""
-    model, state, count = arrays.model.numpy, arrays.state.numpy, arrays.used["tree"]
-    return bool(model["tree_can_sleep"][:count].any() or state["tree_activity"][:, :count].any())
+    count = arrays.used["tree"]
+    if arrays.model.numpy["tree_can_sleep"][:count].any():
+        return True
+    return bool(np.asarray(arrays.state.numpy["tree_activity"])[:, :count].any())

@@ -18,6 +18,7 @@ from carom.engine.workspace import Workspace
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
 
 ProgramMaker = Callable[[KernelStructs, Plan], Program]
 
@@ -54,23 +55,27 @@ class Engine:
         threads: How many threads share the worlds.
     """
 
+    # What steps and the search for contacts consist of.
+    step_program: ProgramMaker = staticmethod(step_program)
+    detection_program: Callable[[KernelStructs], Program] = staticmethod(detection_program)
+
     def __init__(self, arrays: WorldArrays, contact_arrays: ContactArrays, threads: int = 1) -> None:
         self.arrays = arrays
         self.contact_arrays = contact_arrays
-        self.status: np.ndarray = arrays.state.numpy["status_entry"]
+        self.status: np.ndarray = self._make_status()
         self._first_status = memoryview(self.status[0])
         self._settings = EngineSettings()
-        self._workspaces = [Workspace() for _ in range(threads)]
+        self._workspaces = self._make_workspaces(threads)
         self._all_worlds = np.arange(arrays.world_count, dtype=np.int32)
         self._worlds = self._all_worlds.copy()
         self.due = np.ones(MOST_STEPS, dtype=np.int32)
         self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
         self._threads = Threads(threads)
-        self._interpreters: list[Stepper] = self._make_interpreters(self.status, self.due)
+        self._interpreters: list[Stepper] = self._make_interpreters(self.due)
         # With no substep due, contacts are found and nothing moves.
-        self._detectors: list[Stepper] = self._make_interpreters(self.status, np.zeros(1, dtype=np.int32))
+        self._detectors: list[Stepper] = self._make_interpreters(np.zeros(1, dtype=np.int32))
         self._steppers = self._interpreters
-        self._make_program: ProgramMaker = step_program
+        self._make_program: ProgramMaker = self.step_program
         self.run_prepared: Callable[[], None] = self._steppers[0].run
         # What an interpreter would do when the one launch of a step goes wrong that is run without one.
         self._abandon: list[Launch] = []
@@ -199,7 +204,7 @@ class Engine:
 
     def _detect(self, worlds: np.ndarray | None = None) -> None:
         if not self._detection_ready:
-            self.load(self._detectors, detection_program)
+            self.load(self._detectors, self.detection_program)
             self._detection_ready = True
         self.run(self._detectors, worlds)
 
@@ -219,7 +224,27 @@ class Engine:
         self.growths += 1
         self.changed()
 
-    def _make_interpreters(self, status: np.ndarray, due: np.ndarray) -> list[Stepper]:
+    # What depends on where the worlds are
+
+    def take(self, value: Any) -> Any:
+        """Numbers that a user gave, where they are if that is where the worlds are, else as they are."""
+        return value
+
+    def table(self, struct: Any) -> ArrayTable:
+        """A table that kernels can work on along with those of the worlds."""
+        return ArrayTable(struct)
+
+    def _make_status(self) -> np.ndarray:
+        return self.arrays.state.numpy["status_entry"]
+
+    def _make_workspaces(self, threads: int) -> list[Workspace]:
+        return [Workspace() for _ in range(threads)]
+
+    def _make_interpreters(self, due: np.ndarray) -> list[Stepper]:
+        return [Interpreter(self.status, self._worlds, due, self._counter) for _ in self._workspaces]
+
+    def _make_task_interpreters(self) -> list[Stepper]:
+        status, due = np.zeros_like(self.status), np.zeros(1, dtype=np.int32)
         return [Interpreter(status, self._worlds, due, self._counter) for _ in self._workspaces]
 
     # Whatever else is to be done in all worlds
@@ -231,8 +256,7 @@ class Engine:
             make_launches: Makes its launches over the structs of a thread, again after arrays have moved.
                 Each has an argument `first_world`.
         """
-        interpreters = self._make_interpreters(np.zeros_like(self.status), np.zeros(1, dtype=np.int32))
-        return Task(self, make_launches, interpreters)
+        return Task(self, make_launches, self._make_task_interpreters())
 
     def spread(self, table: str, field: str) -> None:
         """Give each world a value of its own of a parameter, so far the one that all share.
@@ -241,13 +265,29 @@ class Engine:
             table: "model", "shapes" or "users".
             field: The field in it.
         """
-        tables = {
+        if self._parameters(table).spread(field, self.arrays.world_count):
+            self.changed()
+
+    def set_parameter(self, table: str, field: str, rows: int | slice, values: np.ndarray) -> None:
+        """Set a parameter, world by world.
+
+        Args:
+            table: "model", "shapes" or "users".
+            field: The field in it.
+            rows: Which rows.
+            values: With the worlds in front.
+        """
+        self.spread(table, field)
+        parameters = self._parameters(table)
+        parameters.numpy[field][:, rows] = values
+        parameters.written(field)
+
+    def _parameters(self, table: str) -> ArrayTable:
+        return {
             "model": self.arrays.model,
             "shapes": self.contact_arrays.shapes.table,
             "users": self.contact_arrays.users,
-        }
-        if tables[table].spread(field, self.arrays.world_count):
-            self.changed()
+        }[table]
 
     def steps_done(self, worlds: np.ndarray) -> np.ndarray:
         """How many of the steps asked for last some worlds have done."""

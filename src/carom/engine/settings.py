@@ -28,6 +28,7 @@ class EngineSettings:
         """Bring the struct up to date, and the gravity of all worlds; true if the struct has changed."""
         if parameters.gravity != self._gravity:
             arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
+            arrays.model.written("gravity_vector")
             self._gravity = parameters.gravity
         changed = False
         for name, value in _values(parameters, arrays, contact_arrays).items():

@@ -39,7 +39,7 @@ class Workspace:
         """Bring arrays that go with others to the length of those."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
         self.scratch.reserve(arrays.used)
-        self.pairs.reserve(scratch_capacity(contact_arrays.shapes.shape_count, contacts))
+        self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
         self.pair_rows.reserve(
             {
                 "tree": arrays.model.capacity["tree"],
@@ -52,6 +52,10 @@ class Workspace:
                 "user": users,
             }
         )
+
+    def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:
+        """Rows that collision detection needs, by axis of `Pairs`, but for its pairs."""
+        return scratch_capacity(shape_count, contacts)
 
     def grow(self, pairs: int, *, rows: bool) -> None:
         """Make room for so many pairs of shapes, and if asked for twice as many rows over two trees."""

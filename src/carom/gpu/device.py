@@ -1,30 +1,69 @@
-"""What a step in fine launches is performed on."""
+"""What many worlds are kept on and stepped on in fine launches."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from importlib import import_module
 from typing import Any, Protocol
 
-import warp as wp
+import numpy as np
 
-from carom.kernels.warp_types import warp_type
+# The module in `carom.kernels` that has each kernel that is launched over worlds, on the processor as well.
+MODULES = {
+    "forward_kinematics_kernel": "dynamics.kinematics",
+    "link_poses_kernel": "dynamics.kinematics",
+    "link_twist_kernel": "dynamics.kinematics",
+    "prepare_rays_kernel": "queries.rays",
+    "rays_kernel": "queries.rays",
+    "touching_kernel": "queries.touching",
+}
 
-BLOCK_SIZE = 64
-"""Threads of a block. The solver's kernels take 255 registers a thread, of which a multiprocessor has enough
-for 256 threads: in smaller blocks they are shared out more evenly."""
+
+class FineLaunch(Protocol):
+    """A kernel with its arguments, ready to run many times over."""
+
+    def __call__(self) -> None:
+        """Run the kernel; this may return before it is done."""
+        ...
+
+    def replace(self, name: str, value: int) -> None:
+        """Change an argument that is a number, if the kernel has it, for all later runs."""
+        ...
 
 
 class Device(Protocol):
-    """Where arrays are and kernels run."""
+    """Where arrays are and kernels run.
 
-    def zeros(self, struct: Any, shapes: Mapping[str, Sequence[int]]) -> Any:
-        """A struct of arrays of zeros.
+    Arrays are NumPy's, or can be used like them as far as `carom.gpu.array.DeviceArray` says.
+
+    Attributes:
+        name: What users call it.
+    """
+
+    name: str
+
+    def zeros(self, shape: Sequence[int], dtype: np.dtype[Any]) -> Any:
+        """An array of zeros.
+
+        Raises:
+            MemoryError: There is no room for it.
+        """
+        ...
+
+    def struct(self, declared: Any, arrays: Mapping[str, Any]) -> Any:
+        """A struct for kernels, of arrays on the device.
 
         Args:
-            struct: The struct, as declared in `carom.layouts`.
-            shapes: Shape of the array of each field.
+            declared: The struct, as declared in `carom.layouts`.
+            arrays: The array of each field. Where a world axis has one row, all worlds are shown it.
         """
+        ...
+
+    def numbers(self, struct: Any) -> Any:
+        """A struct of numbers for kernels, from one of `carom.layouts`."""
+        ...
+
+    def take(self, value: Any) -> Any:
+        """What a user gave: as an array on the device if it is there already, else as it is."""
         ...
 
     def launch(
@@ -33,8 +72,8 @@ class Device(Protocol):
         kernel: str,
         dim: Sequence[int],
         structs: Mapping[str, Any],
-        scalars: Mapping[str, int],
-    ) -> Callable[[], None]:
+        scalars: Mapping[str, float],
+    ) -> FineLaunch:
         """A kernel with its arguments, ready to run.
 
         Args:
@@ -46,50 +85,13 @@ class Device(Protocol):
         """
         ...
 
-
-class WarpDevice(Device):
-    """A device that Warp runs kernels on.
-
-    Args:
-        name: Warp's name of it: "cuda:0".
-
-    Attributes:
-        name: The same.
-    """
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-
-    def zeros(self, struct: Any, shapes: Mapping[str, Sequence[int]]) -> Any:  # noqa: D102
-        made = warp_type(struct)()
-        for field, shape in shapes.items():
-            dtype = warp_type(struct.fields[field].entry)
-            setattr(made, field, wp.zeros(tuple(shape), dtype=dtype, device=self.name))
-        return made
-
-    def launch(  # noqa: D102
-        self,
-        module: str,
-        kernel: str,
-        dim: Sequence[int],
-        structs: Mapping[str, Any],
-        scalars: Mapping[str, int],
-    ) -> Callable[[], None]:
-        function: Any = getattr(import_module(f"carom.kernels.{module}"), kernel)
-        names = [argument.label for argument in function.adj.args]
-        command: Any = wp.launch(
-            function,
-            dim=tuple(dim),
-            inputs=[scalars[name] if name in scalars else structs[name] for name in names],
-            device=self.name,
-            record_cmd=True,
-            block_dim=BLOCK_SIZE,
-        )
-        return command.launch
-
     def capture(self, launches: Callable[[], None]) -> Callable[[], None]:
-        """Launches as one CUDA graph."""
-        with wp.ScopedCapture(device=self.name) as capture:
-            launches()
-        graph: Any = capture.graph
-        return lambda: wp.capture_launch(graph)
+        """A sequence of launches as one, which does what they would do now.
+
+        What cannot be captured is launched one by one, in the same order.
+        """
+        ...
+
+    def free_memory(self) -> int | None:
+        """Bytes that can still be had; None where that is not known."""
+        ...

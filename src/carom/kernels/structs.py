@@ -22,12 +22,13 @@ if TYPE_CHECKING:
     from carom.layouts.model import Dofs, Model, Scratch, Settings, State, Trees
     from carom.layouts.motor_commands import MotorCommands
     from carom.layouts.moving_tree import Control, Ends, Tree, TreeSizes
-    from carom.layouts.parallel import IslandProgress, IslandWork, PairWork
-    from carom.layouts.queries import ContactReport, Places, Rays, Searches
+    from carom.layouts.parallel import IslandProgress, IslandWork, PairWork, RunWork
+    from carom.layouts.queries import ContactReport, Places, Rays, Searches, Touching
 else:
     IslandProgress = warp_type(parallel.IslandProgress)
     IslandWork = warp_type(parallel.IslandWork)
     PairWork = warp_type(parallel.PairWork)
+    RunWork = warp_type(parallel.RunWork)
     ChainSizes = warp_type(chain.ChainSizes)
     Chain = warp_type(chain.Chain)
     Search = warp_type(chain.Search)
@@ -59,3 +60,4 @@ else:
     ContactReport = warp_type(queries.ContactReport)
     Searches = warp_type(queries.Searches)
     Rays = warp_type(queries.Rays)
+    Touching = warp_type(queries.Touching)

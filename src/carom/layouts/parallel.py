@@ -21,6 +21,10 @@ from carom.layouts.types import (
 # A pair leaves at most so many candidates.
 MOST_CANDIDATES = 4
 
+# What a world is to do in a run of steps: begin it; go on after the steps it has done; stay as it is; or what
+# it is doing already.
+BEGIN, RESUME, STAY, GO_ON = 0, 1, 2, 3
+
 # Where parts of an island's window begin, or how long they are.
 Window = Type("int32", (8,), "vector")
 
@@ -57,6 +61,14 @@ class IslandWork:
     tree_free_fault: IntRows
     tree_motion_fault: IntRows
     terms: TermsRows
+
+
+@struct
+class RunWork:
+    """Which worlds have a part in a run of steps, and what becomes of it."""
+
+    world_part: Ints  # what it is to do: `BEGIN` and so on
+    trouble: Ints  # its first entry: 1 since something went wrong or did not fit in some world
 
 
 @struct

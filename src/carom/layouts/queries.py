@@ -1,6 +1,23 @@
 """What questions about a world work on: rays, nearest points, lists of contacts."""
 
-from carom.layouts.types import IntRows, Ints, Reals, Vector8Rows, Vectors3, struct
+from typing import TYPE_CHECKING, Any
+
+from carom.layouts.types import (
+    ArrayType,
+    IntRows,
+    Ints,
+    Reals,
+    Type,
+    Vector8Rows,
+    Vectors3,
+    struct,
+)
+
+if TYPE_CHECKING:
+    Truths = Any
+else:
+    # 0 or 1: what NumPy has as booleans.
+    Truths = ArrayType(Type("uint8"))
 
 # Links from this one down stand for any link.
 ANY_LINK = -2
@@ -32,6 +49,20 @@ class ContactReport:
     report_direction1: Vectors3
     report_direction2: Vectors3
     report_count: Ints  # the first one: how many there are
+
+
+@struct
+class Touching:
+    """How some links touch some others in each world."""
+
+    link_place: Ints  # by row of link: its place among those that are asked for, or -1
+    link_other: Ints  # 1: one of the others
+    world_number: Ints  # contact points
+    world_touching: Truths  # whether one of them pushes
+    world_impulse: Vectors3  # on the links that are asked for, in world axes
+    world_distance: Reals  # of the deepest point
+    world_deepest: Vectors3  # that point on those links, in world axes
+    place_touching: Truths  # world after world: which of the links have a contact point
 
 
 @struct

@@ -5,5 +5,5 @@
 STATUS, PAIRS_WANTED, CONTACTS_WANTED, STEPS_DONE = 0, 1, 2, 3
 
 # Values of the first column, besides 1 + the tree whose velocities were not finite: all is well; pairs,
-# contacts or rows did not fit.
-WELL, OVERFLOW = 0, -1
+# contacts or rows did not fit; the world has no part in what is being done, where all are launched together.
+WELL, OVERFLOW, LEFT_OUT = 0, -1, -2

@@ -15,6 +15,7 @@ KERNEL_MODULES = (
     "carom.kernels.queries.closest",
     "carom.kernels.queries.contact_report",
     "carom.kernels.queries.rays",
+    "carom.kernels.queries.touching",
     "carom.kernels.solver.sleeping",
     "carom.kernels.solver.stages",
 )
@@ -27,7 +28,10 @@ PARALLEL_MODULES = (
     "carom.kernels.parallel.sweeps",
     "carom.kernels.parallel.trees",
     "carom.kernels.parallel.joint_rows",
+    "carom.kernels.parallel.runs",
 )
+# What arrays on a GPU are worked on with between steps.
+ARRAY_MODULES = ("carom.kernels.arrays.arithmetic",)
 # What a GPU has other kernels for: they take a world through a whole stage.
 _WHOLE_WORLDS = {
     "carom.kernels.contact.stages",
@@ -35,4 +39,8 @@ _WHOLE_WORLDS = {
     "carom.kernels.dynamics.step_ends",
     "carom.kernels.solver.stages",
 }
-CUDA_MODULES = (*PARALLEL_MODULES, *(name for name in KERNEL_MODULES if name not in _WHOLE_WORLDS))
+CUDA_MODULES = (
+    *PARALLEL_MODULES,
+    *ARRAY_MODULES,
+    *(name for name in KERNEL_MODULES if name not in _WHOLE_WORLDS),
+)

@@ -117,7 +117,11 @@ class ArrayTable:
     """
 
     def __init__(
-        self, struct: Any, world_count: int = 1, entry_views: Mapping[str, str] | None = None
+        self,
+        struct: Any,
+        world_count: int = 1,
+        entry_views: Mapping[str, str] | None = None,
+        first_capacity: int = _FIRST_CAPACITY,
     ) -> None:
         """Make the arrays with the least capacity.
 
@@ -125,6 +129,7 @@ class ArrayTable:
             struct: Struct whose fields are all arrays.
             world_count: Length of the world axis.
             entry_views: Fields that show the vectors of another field scalar by scalar.
+            first_capacity: Rows there are on each axis to begin with.
         """
         self._struct = struct
         self._entry_views = dict(entry_views or {})
@@ -132,20 +137,24 @@ class ArrayTable:
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
         self._world_counts = dict.fromkeys(self._fields, world_count)
-        self.capacity: dict[str, int] = {field.axis: _FIRST_CAPACITY for field in self._fields.values()}
+        self.capacity: dict[str, int] = {field.axis: first_capacity for field in self._fields.values()}
         self.replacements: int = 0
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         self._made: Any = None
         self._bytes: dict[str, memoryview[int]] = {}
-        self._replace({name: self._allocate(name, _FIRST_CAPACITY) for name in self._fields})
+        self._replace({name: self._allocate(name, first_capacity) for name in self._fields})
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
         field = self._fields[name]
         shape: tuple[int, ...] = (capacity,)
         if field.per_world:
             shape = (self._world_counts[name], *shape)
-        return zeros((*shape, *field.shape), field.scalar)
+        return self._new_array((*shape, *field.shape), field.scalar)
+
+    def _new_array(self, shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
+        """An array of zeros where those of this table are."""
+        return zeros(shape, dtype)
 
     def _replace(self, arrays: Mapping[str, np.ndarray]) -> None:
         """Put arrays that are ready in the place of others, all at once."""
@@ -323,16 +332,24 @@ class ArrayTable:
 
     def _make_struct(self) -> Any:
         struct = self._struct()
-        shown = {**self._memory}
-        for name, source in self._entry_views.items():
-            array = self._memory[source]
-            shown[name] = array.reshape(*array.shape[:-2], -1)
+        shown = self._shown()
         fields = fields_of(self._struct)
         for name, array in shown.items():
             setattr(struct, name, array_view(array, 2 if fields[name].per_world else 1))
         # Setting a field copies the view, which no longer keeps the array alive.
         struct.memory = shown
         return struct
+
+    def _shown(self) -> dict[str, np.ndarray]:
+        """The arrays of all fields, those included that show others entry by entry."""
+        shown = {**self._memory}
+        for name, source in self._entry_views.items():
+            array = self._memory[source]
+            shown[name] = array.reshape(*array.shape[:-2], -1)
+        return shown
+
+    def written(self, name: str) -> None:
+        """Let kernels see what has been written to an array, by its name in `numpy`; here they do already."""
 
     def clear(self) -> None:
         """Set every entry to zero."""

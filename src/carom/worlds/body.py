@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, finite
+from carom.checks import Array, OnDevice, finite
 from carom.description import JointType
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
@@ -37,6 +37,7 @@ class BodyBatch:
         self._scene = scene
         self._engine = engine
         self._state = engine.arrays.state.numpy
+        self._take = engine.take
         self._count = engine.arrays.world_count
         self._poses = PoseFinder(engine, body.rows.tree)
         self.rows = body.rows
@@ -61,7 +62,7 @@ class BodyBatch:
     @joint_positions.setter
     def joint_positions(self, value: ArrayLike) -> None:
         view = self.joint_positions
-        view[:] = broadcast(value, view.shape, "joint_positions")
+        view[:] = broadcast(self._take(value), view.shape, "joint_positions")
 
     @property
     def joint_velocities(self) -> Array:
@@ -71,7 +72,7 @@ class BodyBatch:
     @joint_velocities.setter
     def joint_velocities(self, value: ArrayLike) -> None:
         view = self.joint_velocities
-        view[:] = broadcast(value, view.shape, "joint_velocities")
+        view[:] = broadcast(self._take(value), view.shape, "joint_velocities")
 
     @property
     def joint_torques(self) -> Array:
@@ -113,12 +114,15 @@ class BodyBatch:
     def enable_sensors(self, *joints: int | str) -> None:
         """Switch the force-torque sensors of joints on in all worlds; all joints if none is named."""
         chosen = joints or tuple(range(self._body.joint_count))
-        model = self._engine.arrays.model.numpy
+        table = self._engine.arrays.model
+        model = table.numpy
         for joint in chosen:
             row = self._body.first_link + 1 + choose("joint", self.joint_names, joint)
             model["link_sensor"][row] = 1
         links = slice(self._body.first_link, self._links.stop)
         model["tree_sensor_count"][self.rows.tree] = int(model["link_sensor"][links].sum())
+        table.written("link_sensor")
+        table.written("tree_sensor_count")
 
     @property
     def sensor_wrenches(self) -> Array:
@@ -161,12 +165,12 @@ class BodyBatch:
             self._state["dof_motor"],
             dofs,
             self._scene.parameters.substep_time,
-            np.clip(np.asarray(targets, dtype=np.float64), lower[places], upper[places]),
-            velocities,
-            gains,
-            velocity_gains,
+            np.clip(self._numbers(targets), lower[places], upper[places]),
+            self._take(velocities),
+            self._take(gains),
+            self._take(velocity_gains),
             self._forces(max_forces, places),
-            max_velocities,
+            self._take(max_velocities),
         )
 
     def set_velocity_targets(
@@ -183,8 +187,8 @@ class BodyBatch:
             self._state["dof_motor"],
             dofs,
             self._scene.parameters.substep_time,
-            targets,
-            gains,
+            self._take(targets),
+            self._take(gains),
             self._forces(max_forces, places),
         )
 
@@ -201,8 +205,8 @@ class BodyBatch:
         """`Joint.set_spring` for joints in all worlds; arguments as for `set_position_targets`."""
         dofs, places = self._chosen(joints)
         joint_motor.pull_like_a_spring(
-            self._state["dof_pd"], dofs, targets, velocities, stiffness, damping,
-            self._forces(max_forces, places),
+            self._state["dof_pd"], dofs, self._take(targets), self._take(velocities), self._take(stiffness),
+            self._take(damping), self._forces(max_forces, places),
         )  # fmt: skip
 
     def set_torques(self, torques: ArrayLike, joints: list[int | str] | None = None) -> None:
@@ -214,7 +218,7 @@ class BodyBatch:
         """
         dofs, places = self._chosen(joints, one_freedom=joints is not None)
         count = len(places) if joints is not None else self._dofs.stop - self._dofs.start
-        self._state["dof_torque"][:, dofs] = broadcast(torques, (self._count, count), "torques")
+        self._state["dof_torque"][:, dofs] = broadcast(self._take(torques), (self._count, count), "torques")
 
     def disable_motors(self, joints: list[int | str] | None = None) -> None:
         """Let go of joints: neither their motors nor their springs act any more."""
@@ -248,9 +252,9 @@ class BodyBatch:
         Raises:
             ValueError: A shape does not fit, something is not finite, or a quaternion is 0.
         """
-        worlds = world_numbers(where, self._count)
-        position = broadcast(positions, (len(worlds), 3), "positions")
-        turn = broadcast(orientations, (len(worlds), 4), "orientations")
+        worlds = world_numbers(self._take(where), self._count)
+        position = broadcast(np.asarray(self._take(positions)), (len(worlds), 3), "positions")
+        turn = broadcast(np.asarray(self._take(orientations)), (len(worlds), 4), "orientations")
         squared = np.square(turn).sum(axis=1, keepdims=True)
         if not squared.all():
             raise ValueError("orientations must be quaternions other than 0")
@@ -277,8 +281,8 @@ class BodyBatch:
             velocities: (6,) or (n, 6) for the n worlds chosen, as `base_velocities` has them.
             where: Which worlds: a mask (count,) or their numbers; None for all.
         """
-        worlds = world_numbers(where, self._count)
-        values = broadcast(velocities, (len(worlds), BASE_VELOCITIES), "velocities")
+        worlds = world_numbers(self._take(where), self._count)
+        values = broadcast(self._take(velocities), (len(worlds), BASE_VELOCITIES), "velocities")
         first = self._body.first_velocity
         self._state["dof_velocity"][worlds, first : first + 3] = values[:, 3:]
         self._state["dof_velocity"][worlds, first + 3 : first + BASE_VELOCITIES] = values[:, :3]
@@ -323,7 +327,7 @@ class BodyBatch:
         Args:
             where: In which worlds: a mask (count,) or their numbers; None for all.
         """
-        self._poses.update(world_numbers(where, self._count))
+        self._poses.update(world_numbers(self._take(where), self._count))
 
     def apply_forces(
         self, link: int | str, forces: ArrayLike, points: ArrayLike | None = None, torques: ArrayLike = 0.0
@@ -337,10 +341,12 @@ class BodyBatch:
             torques: [N m] in world axes, likewise.
         """
         (row,) = self.link_rows(link)
-        force = broadcast(forces, (self._count, 3), "forces")
-        torque = broadcast(torques, (self._count, 3), "torques")
+        force = broadcast(self._take(forces), (self._count, 3), "forces")
+        torque = broadcast(self._take(torques), (self._count, 3), "torques")
         if points is not None:
-            lever = broadcast(points, (self._count, 3), "points") - self._poses.poses()[:, row, :3]
+            lever = (
+                broadcast(self._take(points), (self._count, 3), "points") - self._poses.poses()[:, row, :3]
+            )
             torque = torque + np.cross(lever, force)
         wrench = self._state["link_wrench"][:, row]
         wrench[:, :3] += force
@@ -378,6 +384,11 @@ class BodyBatch:
             return -1
         return choose("link", self.link_names, link)
 
+    def _numbers(self, value: ArrayLike) -> Array:
+        """What a user gave as doubles, where they are if that is on the worlds' device."""
+        taken = self._take(value)
+        return taken if isinstance(taken, OnDevice) else np.asarray(taken, dtype=np.float64)  # type: ignore[return-value]
+
     def _chosen(
         self, joints: list[int | str] | None, *, one_freedom: bool = True
     ) -> tuple[slice | np.ndarray, np.ndarray]:
@@ -403,7 +414,8 @@ class BodyBatch:
     def _forces(self, max_forces: ArrayLike | None, places: np.ndarray) -> ArrayLike:
         if max_forces is None:
             return self._body.joints.effort_limits[places]
-        return finite(max_forces, "max_forces") if np.isscalar(max_forces) else max_forces
+        forces = self._take(max_forces)
+        return finite(forces, "max_forces") if np.isscalar(forces) else forces
 
 
 def _following(first: int, count: int) -> slice:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from carom.checks import Array
+from carom.checks import Array, OnDevice
 
 Mask = NDArray[np.bool_]
 
@@ -16,7 +17,7 @@ def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bo
     """`value` as doubles of a shape, one value standing for all worlds, or all joints.
 
     Args:
-        value: What a user gave.
+        value: What a user gave; numbers on another device stay there, and are not checked.
         shape: The shape wanted, worlds first.
         name: What messages call it.
         finite: Whether infinities are refused; NaN always is.
@@ -24,10 +25,16 @@ def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bo
     Raises:
         ValueError: It does not broadcast to that shape, or something in it is not finite.
     """
+    if isinstance(value, OnDevice):
+        return _spread(value, shape, name)
     array = np.asarray(value, dtype=np.float64)
     good = np.isfinite(array).all() if finite else not np.isnan(array).any()
     if not good:
         raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, and is not everywhere")
+    return _spread(array, shape, name)
+
+
+def _spread(array: Any, shape: tuple[int, ...], name: str) -> Array:
     try:
         return np.broadcast_to(array, shape)
     except ValueError:

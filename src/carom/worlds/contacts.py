@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.layouts.contacts import THERE
+from carom.layouts.queries import Touching
+from carom.native.kernels import touching_kernel
+from carom.native.launch import KernelStructs, Launch
 
 
 class ContactSummary(NamedTuple):
@@ -24,76 +26,73 @@ class ContactSummary(NamedTuple):
     """
 
     touching: NDArray[np.bool_]
-    number: NDArray[np.int64]
+    number: NDArray[np.int32]
     forces: Array
     distances: Array
     deepest: Array
 
 
-def summarise_contacts(
-    engine: Engine, first: np.ndarray, second: np.ndarray | None, substep_time: float
-) -> ContactSummary:
-    """The contacts of some links with others.
+class ContactFinder:
+    """Finds how links touch others in all worlds.
 
     Args:
         engine: The worlds.
-        first: Rows of links.
-        second: Rows of other links; None for any.
-        substep_time: Of a substep [s]; makes forces of impulses.
     """
-    contacts = engine.contact_arrays.contacts.numpy
-    counts = contacts["count_contacts"][:, THERE]
-    rows = slice(int(counts.max(initial=0)))
-    there = np.arange(rows.stop) < counts[:, None]
-    on_a, on_b = contacts["contact_shapes"][:, rows, 2], contacts["contact_shapes"][:, rows, 3]
-    is_a, is_b = np.isin(on_a, first), np.isin(on_b, first)
-    if second is not None:
-        is_a, is_b = is_a & np.isin(on_b, second), is_b & np.isin(on_a, second)
-    # Within a body a contact has its first link on side a.
-    is_b &= ~is_a
-    is_a, is_b = is_a & there, is_b & there
-    chosen = is_a | is_b
-    impulses = contacts["contact_impulse"][:, rows]
-    directions = [contacts[f"contact_{name}"][:, rows] for name in ("normal", "direction1", "direction2")]
-    on_side_a = sum(impulses[..., axis, None] * way for axis, way in enumerate(directions))
-    # Normals point from b to a and the impulses along them push a away.
-    sign = np.where(is_a, 1.0, -1.0)[..., None] * chosen[..., None]
-    forces = (sign * on_side_a).sum(axis=1) / substep_time
-    distance = np.where(chosen, contacts["contact_distance"][:, rows], np.inf)
-    touching = np.asarray((chosen & (impulses[..., 0] > 0.0)).any(axis=1))
-    if rows.stop == 0:
-        nowhere = np.full((len(counts), 3), np.nan)
-        return ContactSummary(touching, chosen.sum(axis=1), forces, np.full(len(counts), np.inf), nowhere)
-    lowest = distance.argmin(axis=1)
-    worlds = np.arange(len(counts))
-    point = np.where(
-        is_a[worlds, lowest, None],
-        contacts["contact_point_a"][worlds, lowest],
-        contacts["contact_point_b"][worlds, lowest],
-    )
-    least = distance[worlds, lowest]
-    deepest = np.where(np.isfinite(least)[:, None], point, np.nan)
-    return ContactSummary(touching, chosen.sum(axis=1), forces, least, deepest)
 
+    def __init__(self, engine: Engine) -> None:
+        self._count = engine.arrays.world_count
+        self._table = engine.table(Touching)
+        self._table.reserve({"world": self._count, "link": engine.arrays.used["link"]})
+        self._links = 0
+        self._anything = False
+        # The links asked for last, and the others.
+        self._asked: tuple[bytes, bytes] | None = None
+        self._find = engine.task(self._launches)
 
-def links_in_contact(engine: Engine, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
-    """Which of some links have a contact point with some others in each world.
+    def summary(self, first: np.ndarray, second: np.ndarray | None, substep_time: float) -> ContactSummary:
+        """The contacts of some links with others.
 
-    Args:
-        engine: The worlds.
-        first: Rows of links, which follow each other.
-        second: Rows of the others, likewise.
+        Args:
+            first: Rows of links.
+            second: Rows of other links; None for any.
+            substep_time: Of a substep [s]; makes forces of impulses.
+        """
+        self._ask(first, second)
+        touching, number, impulse, distance, deepest = (
+            self._table.numpy[f"world_{name}"][: self._count].copy()
+            for name in ("touching", "number", "impulse", "distance", "deepest")
+        )
+        return ContactSummary(touching.view(np.bool_), number, impulse / substep_time, distance, deepest)
 
-    Returns:
-        (worlds, links) booleans.
-    """
-    contacts = engine.contact_arrays.contacts.numpy
-    counts = contacts["count_contacts"][:, THERE]
-    touching = np.zeros((len(counts), len(first)), dtype=bool)
-    worlds, points = np.nonzero(np.arange(counts.max(initial=0)) < counts[:, None])
-    sides = contacts["contact_shapes"][worlds, points, 2:4]
-    for own, other in (sides.T, sides.T[::-1]):
-        places = own - first[0]
-        chosen = (places >= 0) & (places < len(first)) & (other >= second[0]) & (other <= second[-1])
-        touching[worlds[chosen], places[chosen]] = True
-    return touching
+    def links(self, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
+        """Which of some links have a contact point with some others in each world: (worlds, links) booleans.
+
+        Args:
+            first: Rows of links.
+            second: Rows of the others.
+        """
+        self._ask(first, second)
+        touching = self._table.numpy["place_touching"][: self._count * len(first)].copy()
+        return touching.view(np.bool_).reshape(self._count, len(first))
+
+    def _ask(self, first: np.ndarray, second: np.ndarray | None) -> None:
+        others = np.zeros(0, dtype=np.int64) if second is None else second
+        asked = first.tobytes(), others.tobytes()
+        moved = self._table.reserve({"place": self._count * len(first)})
+        if moved or (self._links, self._anything) != (len(first), second is None):
+            self._links, self._anything = len(first), second is None
+            self._find.renew()
+        if moved or asked != self._asked:
+            links = self._table.capacity["link"]
+            places, is_other = np.full(links, -1, dtype=np.int32), np.zeros(links, dtype=np.int32)
+            places[first] = np.arange(len(first))
+            is_other[others] = 1
+            self._table.numpy["link_place"][:] = places
+            self._table.numpy["link_other"][:] = is_other
+            self._asked = asked
+        self._find()
+
+    def _launches(self, structs: KernelStructs) -> list[Launch]:
+        structs.update(touching=self._table.struct())
+        anything = int(self._anything)
+        return [structs.launch(touching_kernel, links=self._links, anything=anything, first_world=0)]

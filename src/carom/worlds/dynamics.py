@@ -40,7 +40,10 @@ def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str,
         raise TypeError(f"there is no parameter {unknown[0]!r} that can differ; there are {', '.join(_ALL)}")
     values = {
         name: broadcast(
-            value, (count, 3) if name == "inertia" else (count,), name, finite=name not in _LIMITS
+            np.asarray(engine.take(value)),
+            (count, 3) if name == "inertia" else (count,),
+            name,
+            finite=name not in _LIMITS,
         )
         for name, value in changes.items()
     }
@@ -49,11 +52,7 @@ def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str,
             raise ValueError(f"{name} must not be negative")
     writes = list(_writes(engine, body, link, values))
     for table, field, rows, numbers in writes:
-        engine.spread(table, field)
-        array = (engine.contact_arrays.shapes.table if table == "shapes" else engine.arrays.model).numpy[
-            field
-        ]
-        array[:, rows] = numbers
+        engine.set_parameter(table, field, rows, numbers)
 
 
 def _writes(

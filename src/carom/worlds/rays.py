@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
 from carom.engine.row_maps import row_map_struct
-from carom.layouts.queries import Rays
+from carom.layouts.queries import Places, Rays
 from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
 from carom.native.launch import KernelStructs, Launch
-from carom.native.tables import NUMPY_REAL, ArrayTable
+from carom.native.tables import NUMPY_REAL
 
 
 class RayHits(NamedTuple):
@@ -46,14 +46,17 @@ class RayCaster:
     def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:
         self._count = engine.arrays.world_count
         self._engine = engine
-        self._places = row_map_struct(places)
-        self._rays = ArrayTable(Rays)
+        self._places = row_map_struct(places, engine.table(Places))
+        self._rays = engine.table(Rays)
         self._asked: tuple[int, int] = (0, -1)
         self._cast = engine.task(self._launches)
 
     def __call__(self, starts: ArrayLike, ends: ArrayLike, mask: int) -> RayHits:
         """Cast rays; see `Worlds.rays`."""
-        starts, ends = self._points(starts, "starts"), self._points(ends, "ends")
+        starts, ends = (
+            self._points(self._engine.take(points), name)
+            for points, name in ((starts, "starts"), (ends, "ends"))
+        )
         if starts.shape[1] != ends.shape[1]:
             raise ValueError(f"there are {starts.shape[1]} starts and {ends.shape[1]} ends")
         number = starts.shape[1]

@@ -36,7 +36,7 @@ class SavedWorlds:
     @classmethod
     def take(cls, engine: Engine, worlds: np.ndarray, times: Array, unspent_times: Array) -> SavedWorlds:
         """The present states of some worlds."""
-        counts = engine.contact_arrays.contacts.numpy["count_contacts"][worlds, THERE]
+        counts = np.asarray(engine.contact_arrays.contacts.numpy["count_contacts"])[worlds, THERE]
         most = int(counts.max(initial=0))
         state = {name: array[worlds] for name, array in _fields(engine.arrays.state)}
         contacts = {
@@ -76,7 +76,7 @@ class SavedWorlds:
             name: array.shape[1:] for name, array in self.state.items()
         }:
             raise ValueError("these are states of worlds with other bodies")
-        most = int(self.contacts["count_contacts"][rows, THERE].max(initial=0))
+        most = int(np.asarray(self.contacts["count_contacts"])[rows, THERE].max(initial=0))
         if engine.contact_arrays.contacts.reserve({"contact": most}):
             engine.changed()
         for name, array in fields.items():

@@ -11,26 +11,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
-from carom.engine.engine import MOST_STEPS, Engine
+from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
-from carom.native.cpu import core_count
 from carom.scene.body import Body
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.checks import Mask, broadcast, world_numbers
-from carom.worlds.contacts import ContactSummary, links_in_contact, summarise_contacts
+from carom.worlds.contacts import ContactFinder, ContactSummary
+from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, take_images
 from carom.worlds.lone import copy_coordinates, lone_world
-from carom.worlds.memory import check_memory
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
 
 if TYPE_CHECKING:
     from carom.camera import Camera
+    from carom.gpu.device import Device
 
-_CPU = "cpu"
 _MOST_NAMED = 8
 """Worlds that are named when many halt at once."""
 
@@ -44,6 +43,7 @@ class Worlds:
 
     Attributes:
         count: How many there are.
+        device: Where they are.
         time_step: Duration of a step [s].
         times: Simulated time of each world [s], shape (count,).
         halted: Which worlds stand still because a velocity in them came out as NaN or infinite, (count,).
@@ -52,30 +52,29 @@ class Worlds:
     Args:
         world: What each of them is like. It is copied, and stays as it is.
         count: How many there are to be.
-        device: Where they are kept and stepped: "cpu".
-        threads: How many threads share them; None for as many as the process may use processors.
+        device: Where they are kept and stepped: "cpu", "cuda" or a GPU by number such as "cuda:1". On a GPU
+            what is a view here is an array there, `carom.gpu.array.DeviceArray`; docs/gpu.md has more.
+            ("warp-cpu" tries on the processor what a GPU would be asked for.)
+        threads: How many threads share them on the processor; None for as many as the process may use.
 
     Raises:
-        ValueError: A number is less than 1, or the device is unknown.
+        ValueError: A number is less than 1, or there is no such device.
+        ImportError: For a GPU Warp has to be installed.
         MemoryError: There is no room for so many.
     """
 
-    def __init__(self, world: World, count: int, *, device: str = _CPU, threads: int | None = None) -> None:
+    def __init__(
+        self, world: World, count: int, *, device: str | Device = CPU, threads: int | None = None
+    ) -> None:
         if count < 1:
             raise ValueError(f"count must be at least 1, not {count}")
         if threads is not None and threads < 1:
             raise ValueError(f"threads must be at least 1, not {threads}")
-        if device != _CPU:
-            raise ValueError(f"device must be 'cpu', not {device!r}: GPUs are not supported yet")
         self.count: int = count
         self._scene = world.copy()
         self._scene.prepare()
-        state, contacts = self._scene.arrays.state, self._scene.contact_arrays.contacts
-        check_memory(count, state.bytes_per_world(self._scene.arrays.used) + contacts.bytes_per_world())
-        arrays = self._scene.arrays.repeated(count)
-        self._engine = Engine(
-            arrays, self._scene.contact_arrays.repeated(arrays), min(count, threads or core_count())
-        )
+        self._engine = make_engine(self._scene, count, device, threads)
+        self.device: str = device if isinstance(device, str) else device.name
         self._engine.update_settings(self._scene.parameters)
         self.time_step: float = world.parameters.time_step
         self.times: Array = np.full(count, world.time)
@@ -117,7 +116,7 @@ class Worlds:
             count: How many steps.
             where: Which worlds: a mask (count,) or their numbers; None for all.
         """
-        chosen = None if where is None else np.unique(world_numbers(where, self.count))
+        chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
             steps = min(count, MOST_STEPS)
             self._step(steps, chosen)
@@ -179,7 +178,7 @@ class Worlds:
         Args:
             where: Which worlds: a mask (count,) or their numbers; None for all.
         """
-        worlds = world_numbers(where, self.count)
+        worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
@@ -193,7 +192,7 @@ class Worlds:
         Raises:
             ValueError: The states are of other bodies, or there are not as many as are needed.
         """
-        worlds = world_numbers(where, self.count)
+        worlds = world_numbers(self._engine.take(where), self.count)
         rows = start.rows_for(worlds, self.count)
         start.put_back(self._engine, worlds, rows)
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
@@ -241,9 +240,8 @@ class Worlds:
 
     @gravity.setter
     def gravity(self, value: ArrayLike) -> None:
-        self._engine.spread("model", "gravity_vector")
-        gravity = broadcast(value, (self.count, 3), "gravity")
-        self._engine.arrays.model.numpy["gravity_vector"][:, 0] = gravity
+        gravity = broadcast(np.asarray(self._engine.take(value)), (self.count, 3), "gravity")
+        self._engine.set_parameter("model", "gravity_vector", 0, gravity)
 
     def enable_constraint(self, constraint: UserConstraint | int, enabled: ArrayLike) -> None:
         """Switch a user constraint on or off, world by world.
@@ -259,10 +257,9 @@ class Worlds:
         number = constraint if isinstance(constraint, int) else constraint.id
         if self._scene.user_constraints.get(number) is None:
             raise KeyError(f"there is no constraint {number}")
-        holds = broadcast(np.asarray(enabled, dtype=bool), (self.count,), "enabled") != 0.0
+        holds = broadcast(np.asarray(self._engine.take(enabled), dtype=bool), (self.count,), "enabled") != 0.0
         row = self._scene.user_constraints.rows[number]
-        self._engine.spread("users", "user_enabled")
-        self._engine.contact_arrays.users.numpy["user_enabled"][:, row] = holds
+        self._engine.set_parameter("users", "user_enabled", row, holds)
 
     # Questions
 
@@ -285,8 +282,7 @@ class Worlds:
         first, second = self[body], None if other is None else self[other]
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")
-        return summarise_contacts(
-            self._engine,
+        return self._contact_finder.summary(
             first.link_rows(link),
             None if second is None else second.link_rows(other_link),
             self._scene.parameters.substep_time,
@@ -307,7 +303,11 @@ class Worlds:
         Returns:
             (count, links + 1) booleans, the base first.
         """
-        return links_in_contact(self._engine, self[body].link_rows(None), self[other].link_rows(other_link))
+        return self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+
+    @cached_property
+    def _contact_finder(self) -> ContactFinder:
+        return ContactFinder(self._engine)
 
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """What rays hit in each world.
@@ -331,4 +331,6 @@ class Worlds:
             camera: A `Camera`, mounted on a link of the world they are copies of or standing in the world.
             where: Which worlds: a mask (count,) or their numbers; None for all.
         """
-        return take_images(self._scene, self._engine, camera, world_numbers(where, self.count))
+        return take_images(
+            self._scene, self._engine, camera, world_numbers(self._engine.take(where), self.count)
+        )

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.step import free_motion
 from carom.kernels.parallel.trees import begin_tree, move_or_stop
-from carom.kernels.parallel.workspace import state_of_tree
+from carom.kernels.parallel.workspace import is_called_off, state_of_tree
 from carom.kernels.solver.joint_solver import is_constrained, solve_joints
 from carom.kernels.structs import IslandWork, Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, func, kernel
@@ -36,13 +36,13 @@ def batch_step_kernel(
     root, world = wp.tid()
     work.tree_free_fault[world, root] = 0
     work.tree_motion_fault[world, root] = 0
-    if model.tree[root].batch != root:
+    if is_called_off(state, world) or model.tree[root].batch != root:
         return
     own_state = state_of_tree(state, work.tree_free_fault, root)
     own_scratch = scratch_of_batch(model, scratch, root)
     for tree in range(root, settings.tree_count):
         if model.tree[tree].batch == root:
-            begin_tree(model, state, scratch, pairs, world, tree)
+            begin_tree(model, state, scratch, pairs, world, tree, 1)
     for _substep in range(substeps):
         for tree in range(root, settings.tree_count):
             if model.tree[tree].batch == root:

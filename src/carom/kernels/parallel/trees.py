@@ -2,14 +2,13 @@
 
 import warp as wp
 
-from carom.kernels.contact.manifold import restore_contacts
 from carom.kernels.dynamics.kinematics import update_link_poses
 from carom.kernels.dynamics.motors import joint_damping
 from carom.kernels.dynamics.quarantine import keep_start
 from carom.kernels.dynamics.step import free_motion, move_on
-from carom.kernels.dynamics.step_ends import abandon_tree, begin_world, clear_forces
+from carom.kernels.dynamics.step_ends import abandon_tree, clear_forces
 from carom.kernels.parallel.layout import lay_out_islands
-from carom.kernels.parallel.workspace import is_called_off, state_of_tree
+from carom.kernels.parallel.workspace import is_called_off, state_of_tree, went_wrong
 from carom.kernels.solver.activity import is_asleep, stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
 from carom.kernels.structs import (
@@ -25,23 +24,32 @@ from carom.kernels.structs import (
     UserConstraints,
 )
 from carom.kernels.types import Int32, IntRows, func, kernel
+from carom.layouts.contacts import NONE_KEPT, START_CONTACTS
 from carom.layouts.status import STATUS, WELL
 
 
 @func
-def begin_tree(model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, tree: Int32):
+def begin_tree(
+    model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, tree: Int32, moves: Int32
+):
     """Keep the start of the step; see `step_ends.begin_step_kernel`."""
     if tree == 0:
-        begin_world(state, pairs, world)
+        pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
     keep_start(model, state, scratch, world, tree)
-    joint_damping(model, state, world, tree)
+    if moves != 0:
+        joint_damping(model, state, world, tree)
 
 
 @kernel
-def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs):
-    """Begin the step of each tree, and of each world with its first."""
+def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs, moves: Int32):
+    """Begin the step of each tree, and of each world with its first.
+
+    `moves` is 0 where nothing but contacts are to be found. What `parallel.runs.ask_kernel` called off, and
+    what went wrong in a step before, has no part in it.
+    """
     tree, world = wp.tid()
-    begin_tree(model, state, scratch, pairs, world, tree)
+    if not is_called_off(state, world):
+        begin_tree(model, state, scratch, pairs, world, tree, moves)
 
 
 @kernel
@@ -122,18 +130,10 @@ def faults_kernel(settings: Settings, state: State, work: IslandWork):
 
 
 @kernel
-def end_kernel(model: Model, state: State, scratch: Scratch):
-    """End the step of each tree, or go back to where it began."""
+def end_kernel(model: Model, state: State, scratch: Scratch, moves: Int32):
+    """End the step of each tree, or go back to where it began; `moves` is as in `begin_kernel`."""
     tree, world = wp.tid()
-    if is_called_off(state, world):
+    if went_wrong(state, world):
         abandon_tree(model, state, scratch, world, tree)
-    else:
+    elif moves != 0 and not is_called_off(state, world):
         clear_forces(model, state, world, tree)
-
-
-@kernel
-def restore_kernel(state: State, contacts: Contacts, pairs: Pairs):
-    """Put the contacts of each world that went back there as well."""
-    world = wp.tid()
-    if is_called_off(state, world):
-        restore_contacts(contacts, pairs, world)

@@ -10,7 +10,7 @@ from carom.kernels.structs import IslandWork, PairRows, Scratch, State
 from carom.kernels.types import Int32, IntRows, func
 from carom.kernels.warp_types import warp_type
 from carom.layouts import parallel
-from carom.layouts.status import STATUS, WELL
+from carom.layouts.status import LEFT_OUT, STATUS, WELL
 
 # What a window has parts of: rows over one tree, rows to visit, units, manifold blocks, rows over two trees,
 # their blocks, the blocks of articulated manifold blocks, and contact terms.
@@ -24,8 +24,15 @@ Window = warp_type(parallel.Window)
 
 @func
 def is_called_off(state: State, world: Int32) -> bool:
-    """Whether a world is only waiting for the end of the step, to go back to where that began."""
+    """Whether a world has no part in the step, or only waits for its end, to go back to where it began."""
     return state.status_entry[world, STATUS] != WELL
+
+
+@func
+def went_wrong(state: State, world: Int32) -> bool:
+    """Whether a world is to go back to where the step began: something was not finite, or did not fit."""
+    status = state.status_entry[world, STATUS]
+    return status != WELL and status != LEFT_OUT
 
 
 @func

@@ -269,25 +269,25 @@ def rays_kernel(
     hit_number: Int32,
     separation: real,
 ):
-    """Cast the rays of a world, which come after those of the worlds before it.
+    """Cast the rays of some worlds; those of a world come after those of the worlds before it.
 
-    `prepare_rays_kernel` must have run for that world.
+    It runs `threads` times for each world, and `prepare_rays_kernel` must have run for them.
 
     Args:
         shapes: All shapes.
         pairs: Poses and hierarchy.
         places: What links are reported as.
         rays: The rays, and room for what they hit.
-        first_world: The world they are in.
+        first_world: The first of the worlds.
         count: How many there are in each world.
-        threads: How many threads share them.
+        threads: How many threads share the rays of a world.
         mask: Groups of links that are hit.
         hit_number: 0 for the first hit, n for the n-th after it, in the order along the ray.
         separation: Later hits on the same link less than this fraction after one are passed over.
     """
-    world = first_world
+    world = first_world + wp.tid() // threads
     start = world * count
-    for first in range(start + LANES * wp.tid(), start + count, LANES * threads):
+    for first in range(start + LANES * (wp.tid() % threads), start + count, LANES * threads):
         packet, limit = packet_of(rays, first, start + count)
         cast_packet(shapes, pairs, world, rays, packet, limit, mask, hit_number, separation)
         for ray in range(packet.first, packet.end):

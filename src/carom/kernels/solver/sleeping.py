@@ -16,6 +16,7 @@ from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Sh
 from carom.kernels.types import Int32, func, kernel, real
 from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
 from carom.layouts.contacts import LEAVES, THERE
+from carom.layouts.status import STATUS, WELL
 
 # Time without motion after which a tree may fall asleep [s].
 SLEEP_DELAY = real(2.0)
@@ -122,6 +123,8 @@ def settle_kernel(
     `touching` is 0 where there is no collision detection, so that no tree has neighbours.
     """
     world = first_world + wp.tid()
+    if state.status_entry[world, STATUS] != WELL:
+        return
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = tree
         pair_rows.tree_contacts[world, tree] = 0
@@ -168,6 +171,8 @@ def watch(model: Model, settings: Settings, state: State, world: Int32, tree: In
 def watch_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
     """After a substep: which trees move, which want to sleep, which are active again."""
     world = first_world + wp.tid()
+    if state.status_entry[world, STATUS] != WELL:
+        return
     for tree in range(settings.tree_count):
         watch(model, settings, state, world, tree)
         if state.tree_wants_sleep[world, tree] == 0:

@@ -1,0 +1,113 @@
+"""An engine whose worlds are on a device."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from carom.engine.contact_arrays import ContactArrays
+from carom.engine.engine import Engine
+from carom.engine.interpreter import Stepper
+from carom.engine.workspace import Workspace
+from carom.gpu.device import Device
+from carom.gpu.memory import check_room
+from carom.gpu.programs import parallel_detection_program, parallel_step_program
+from carom.gpu.stepper import StepStepper, TaskStepper
+from carom.gpu.tables import DeviceTable, MirroredTable
+from carom.gpu.workspace import DeviceStructs, DeviceWorkspace
+from carom.layouts.contacts import Contacts
+from carom.layouts.model import State
+from carom.layouts.status import STEPS_DONE
+from carom.model.builder import WorldArrays
+
+
+class DeviceEngine(Engine):
+    """Performs steps of many worlds on a device.
+
+    State, contacts and intermediate results are there and nowhere else; model, shapes and user constraints
+    are on the host, with a copy on the device. What steps consist of is said by other programs than on the
+    processor; how they are asked for, and repeated where something did not fit, is the same.
+
+    Args:
+        device: Where.
+        arrays: Model and state on it.
+        contact_arrays: Shapes, contacts and user constraints on it.
+    """
+
+    step_program = staticmethod(parallel_step_program)
+    detection_program = staticmethod(parallel_detection_program)
+
+    def __init__(self, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
+        self.device = device
+        super().__init__(arrays, contact_arrays)
+
+    @classmethod
+    def like(
+        cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
+    ) -> DeviceEngine:
+        """So many worlds like one there is.
+
+        Args:
+            device: Where they are to be.
+            arrays: Model and state of the one.
+            contact_arrays: Its shapes, contacts and user constraints.
+            count: How many there are to be.
+
+        Raises:
+            MemoryError: There is no room for them.
+        """
+        check_room(device, count, lambda counter: cls.made(counter, arrays, contact_arrays, count).structs())
+        return cls.made(device, arrays, contact_arrays, count)
+
+    @classmethod
+    def made(
+        cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
+    ) -> DeviceEngine:
+        """As `like`, whether there is room or not."""
+        own_arrays = arrays.repeated(1)
+        own_contact_arrays = contact_arrays.repeated(own_arrays)
+        rows = {**own_arrays.used, "user": own_contact_arrays.user_count, "status": STEPS_DONE + 1}
+        own_arrays.world_count = count
+        own_arrays.model = MirroredTable(device, own_arrays.model)
+        own_arrays.state = DeviceTable.repeated(device, own_arrays.state, State, count, rows)
+        own_contact_arrays.shapes.table = MirroredTable(device, own_contact_arrays.shapes.table)
+        own_contact_arrays.users = MirroredTable(device, own_contact_arrays.users)
+        own_contact_arrays.contacts = DeviceTable.repeated(
+            device, own_contact_arrays.contacts, Contacts, count, own_contact_arrays.contacts.capacity
+        )
+        return cls(device, own_arrays, own_contact_arrays)
+
+    def take(self, value: Any) -> Any:  # noqa: D102
+        return self.device.take(value)
+
+    def table(self, struct: Any) -> DeviceTable:  # noqa: D102
+        return DeviceTable(self.device, struct)
+
+    def update_settings(self, parameters: Any) -> None:  # noqa: D102
+        super().update_settings(parameters)
+        # They are in the launches.
+        self.changed()
+
+    def _make_status(self) -> np.ndarray:
+        return np.zeros((self.arrays.world_count, STEPS_DONE + 1), dtype=np.int32)
+
+    def _make_workspaces(self, threads: int) -> list[Workspace]:
+        return [DeviceWorkspace(self.device, self.arrays.world_count)]
+
+    def _make_interpreters(self, due: np.ndarray) -> list[Stepper]:
+        return [StepStepper(self._device_structs, self._state, self.status, self._worlds, due)]
+
+    def _make_task_interpreters(self) -> list[Stepper]:
+        return [TaskStepper(self._worlds)]
+
+    @property
+    def _device_structs(self) -> DeviceStructs:
+        structs = self.workspace.structs
+        assert isinstance(structs, DeviceStructs)
+        return structs
+
+    @property
+    def _state(self) -> Mapping[str, Any]:
+        return self.arrays.state.numpy

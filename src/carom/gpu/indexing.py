@@ -1,0 +1,91 @@
+"""What an index of an array means: which part of its memory, and which of that by a list."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class Part(NamedTuple):
+    """A part of an array.
+
+    Attributes:
+        offset: Where it begins [bytes].
+        shape: Its shape, that of the array along the axis that is picked from.
+        strides: Its strides [bytes].
+        axis: The axis that entries are picked from, or None.
+        picks: Which of them, (n,).
+    """
+
+    offset: int
+    shape: tuple[int, ...]
+    strides: tuple[int, ...]
+    axis: int | None
+    picks: np.ndarray | None
+
+    @property
+    def picked_shape(self) -> tuple[int, ...]:
+        """Its shape once entries have been picked."""
+        if self.axis is None or self.picks is None:
+            return self.shape
+        return (*self.shape[: self.axis], len(self.picks), *self.shape[self.axis + 1 :])
+
+
+def part_of(shape: tuple[int, ...], strides: tuple[int, ...], key: Any) -> Part:
+    """The part that an index stands for: integers, slices, an ellipsis, and one list of numbers or mask.
+
+    Args:
+        shape: Shape of the array.
+        strides: Its strides [bytes].
+        key: The index.
+
+    Raises:
+        IndexError: It has more axes than the array, is beyond its end, or picks along more than one axis.
+    """
+    offset, axis, picks = 0, None, None
+    kept_shape: list[int] = []
+    kept_strides: list[int] = []
+    for length, stride, index in zip(shape, strides, _whole_key(key, len(shape)), strict=True):
+        if isinstance(index, slice):
+            first, end, by = index.indices(length)
+            offset += first * stride
+            kept_shape.append(len(range(first, end, by)))
+            kept_strides.append(by * stride)
+        elif isinstance(index, int | np.integer):
+            place = int(index) + length * (index < 0)
+            if not 0 <= place < length:
+                raise IndexError(f"index {index} is out of range for an axis of {length}")
+            offset += place * stride
+        else:
+            if axis is not None:
+                raise IndexError("numbers can be picked along one axis only")
+            axis, picks = len(kept_shape), _numbers(index, length)
+            kept_shape.append(length)
+            kept_strides.append(stride)
+    return Part(offset, tuple(kept_shape), tuple(kept_strides), axis, picks)
+
+
+def _whole_key(key: Any, axes: int) -> list[Any]:
+    """An index with an entry for each axis."""
+    keys = list(key) if isinstance(key, tuple) else [key]
+    places = [place for place, index in enumerate(keys) if index is Ellipsis]
+    missing = axes - (len(keys) - len(places))
+    if missing < 0 or len(places) > 1:
+        raise IndexError(f"too many indices for an array of {axes} axes")
+    place = places[0] if places else len(keys)
+    return [*keys[:place], *[slice(None)] * missing, *keys[place + 1 :]]
+
+
+def _numbers(index: Any, length: int) -> np.ndarray:
+    picks = np.asarray(index)
+    if picks.dtype == np.bool_:
+        if picks.shape != (length,):
+            raise IndexError(f"a mask of shape {picks.shape} does not fit an axis of {length}")
+        picks = np.flatnonzero(picks)
+    if picks.ndim != 1 or (picks.size and not np.issubdtype(picks.dtype, np.integer)):
+        raise IndexError(f"an axis is picked from by a list of numbers or a mask, not {index!r}")
+    picks = np.where(picks < 0, picks + length, picks)
+    if picks.size and not 0 <= picks.min() <= picks.max() < length:
+        raise IndexError(f"there are {length} entries on the axis that is picked from")
+    return picks.astype(np.int32)

@@ -1,0 +1,108 @@
+"""A step of any number of worlds as a sequence of fine launches, for CUDA devices.
+
+Nothing is read back between them, so on a CUDA device the whole sequence can be captured as a graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from carom.engine.program import Plan, Program
+from carom.gpu.device import FineLaunch
+from carom.gpu.workspace import DeviceStructs
+from carom.native.launch import KernelStructs
+
+
+def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
+    """The launches of a step of all worlds that have a part in it.
+
+    Where something goes wrong or does not fit, the end of the step puts the world back to where it began.
+
+    Args:
+        structs: Structs over the arrays of a device.
+        plan: What steps have to look for.
+    """
+    launches = _Launches(structs)
+    if not plan.coupled:
+        return launches.uncoupled()
+    return _program(
+        begin=[launches.begin(moves=1)],
+        detection=launches.detection() if plan.touching else (),
+        motion=launches.motion(plan),
+        end=launches.end(moves=1),
+    )
+
+
+def parallel_detection_program(structs: KernelStructs) -> Program:
+    """The launches that find all contacts for the present coordinates."""
+    launches = _Launches(structs)
+    return _program(
+        begin=[launches.begin(moves=0)], detection=launches.detection(), end=launches.end(moves=0)
+    )
+
+
+def _program(
+    begin: Iterable[FineLaunch],
+    end: Iterable[FineLaunch],
+    detection: Iterable[FineLaunch] = (),
+    motion: Iterable[FineLaunch] = (),
+) -> Program:
+    """A program of launches on a device, which nothing but the stepper of a device can perform."""
+    parts: list[Any] = [list(begin), list(detection), list(motion), list(end)]
+    return Program(*parts, abandon=[])
+
+
+class _Launches:
+    """The launches that steps are made of."""
+
+    def __init__(self, structs: Any) -> None:
+        self._structs: DeviceStructs = structs
+        extent = self._structs.extent
+        self._workers = (extent.workers,)
+        self._worlds = (extent.worlds,)
+        self._trees = (extent.trees, extent.worlds)
+        self._shapes = (extent.shapes, extent.worlds)
+
+    def _launch(self, module: str, kernel: str, dim: tuple[int, ...], **scalars: int) -> Any:
+        return self._structs.launch_over(module, kernel, dim, **scalars)
+
+    def begin(self, moves: int) -> FineLaunch:
+        return self._launch("parallel.trees", "begin_kernel", self._trees, moves=moves)
+
+    def end(self, moves: int) -> Iterator[FineLaunch]:
+        yield self._launch("parallel.trees", "end_kernel", self._trees, moves=moves)
+        yield self._launch("parallel.runs", "finish_kernel", self._worlds)
+
+    def uncoupled(self) -> Program:
+        """A step of worlds whose bodies have nothing to do with each other, all substeps at once."""
+        batches = self._launch("parallel.batches", "batch_step_kernel", self._trees, substeps=1)
+        faults = self._launch("parallel.trees", "faults_kernel", self._worlds)
+        return _program(begin=[batches, faults], end=self.end(moves=1))
+
+    def detection(self) -> Iterator[FineLaunch]:
+        yield self._launch("parallel.trees", "tree_poses_kernel", self._trees)
+        yield self._launch("parallel.detection", "shape_bounds_kernel", self._shapes)
+        yield self._launch("parallel.detection", "world_pairs_kernel", self._worlds)
+        yield self._launch("parallel.detection", "pair_candidates_kernel", self._workers)
+        yield self._launch("parallel.detection", "world_contacts_kernel", self._worlds)
+
+    def motion(self, plan: Plan) -> Iterator[FineLaunch]:
+        if plan.sleeping:
+            yield self._launch("solver.sleeping", "settle_kernel", self._worlds, touching=int(plan.touching))
+        yield self._launch("parallel.trees", "world_islands_kernel", self._worlds)
+        yield self._launch("parallel.trees", "tree_free_motion_kernel", self._trees)
+        yield from self._solver()
+        yield self._launch("parallel.trees", "tree_motion_kernel", self._trees)
+        yield self._launch("parallel.trees", "faults_kernel", self._worlds)
+        if plan.sleeping:
+            yield self._launch("solver.sleeping", "watch_kernel", self._worlds)
+
+    def _solver(self) -> Iterator[FineLaunch]:
+        yield self._launch("parallel.joint_rows", "island_rows_kernel", self._trees)
+        yield self._launch("parallel.contact_rows", "island_contacts_kernel", self._trees)
+        yield self._launch("parallel.sweeps", "resting_sweeps_kernel", self._trees)
+        # Those of islands at rest that could not be solved so are written once more.
+        yield self._launch("parallel.contact_rows", "island_contacts_kernel", self._trees)
+        yield self._launch("parallel.restless_sweeps", "restless_sweeps_kernel", self._trees)
+        yield self._launch("parallel.joint_rows", "island_impulses_kernel", self._trees)

@@ -1,0 +1,117 @@
+"""Tables whose arrays are on a device."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from carom.gpu.device import Device
+from carom.native.tables import ArrayTable, fields_of
+
+
+class DeviceTable(ArrayTable):
+    """A table whose arrays are on a device and nowhere else.
+
+    `numpy` has the arrays by name as any table has; what is written there is written on the device.
+    Arrays are as long as they are asked to be, for each row is there in every world.
+
+    Args:
+        device: Where.
+        struct: Struct whose fields are all arrays.
+        world_count: Length of the world axis.
+        entry_views: Fields that show the vectors of another field scalar by scalar.
+        lasts: Whether longer arrays begin with what there was.
+    """
+
+    def __init__(
+        self,
+        device: Device,
+        struct: Any,
+        world_count: int = 1,
+        entry_views: Mapping[str, str] | None = None,
+        *,
+        lasts: bool = True,
+    ) -> None:
+        self._device = device
+        self._lasts = lasts
+        super().__init__(struct, world_count, entry_views, first_capacity=1)
+
+    @classmethod
+    def repeated(
+        cls, device: Device, table: ArrayTable, struct: Any, world_count: int, rows: Mapping[str, int]
+    ) -> DeviceTable:
+        """The first world of a table so many times.
+
+        Args:
+            device: Where.
+            table: A table on the host.
+            struct: Its struct.
+            world_count: How many worlds there are to be.
+            rows: Of these axes, keep so many rows.
+        """
+        other = cls(device, struct, world_count)
+        other.reserve({axis: max(1, count) for axis, count in rows.items()}, growth=1.0)
+        for name, array in other.numpy.items():
+            # Each world has the rows of the first one.
+            array[...] = np.asarray(table.numpy[name])[:1, : array.shape[1]]
+        return other
+
+    def reserve(self, needed: Mapping[str, int], growth: float = 1.0) -> bool:  # noqa: D102
+        return super().reserve(needed, growth)
+
+    def _new_array(self, shape: tuple[int, ...], dtype: np.dtype[Any]) -> Any:
+        return self._device.zeros(shape, dtype)
+
+    def _lengthened(self, name: str, capacity: int) -> Any:
+        return super()._lengthened(name, capacity) if self._lasts else self._allocate(name, capacity)
+
+    def _make_struct(self) -> Any:
+        return self._device.struct(self._struct, self._shown())
+
+
+class MirroredTable(ArrayTable):
+    """A table on the host, with a copy of its arrays on a device, which kernels see.
+
+    After a change of an array there `written` has to be called.
+
+    Args:
+        device: Where the copy is.
+        table: The table, which becomes this one.
+    """
+
+    def __init__(self, device: Device, table: ArrayTable) -> None:
+        self.__dict__.update(table.__dict__)
+        self._made = None
+        self._device = device
+        self._mirrors: dict[str, Any] = {}
+
+    def written(self, name: str) -> None:  # noqa: D102
+        field = name if name in self._fields else name.partition("_")[0]
+        mirror, array = self._mirrors.get(field), self._memory[field]
+        if mirror is not None and mirror.shape == array.shape:
+            mirror[...] = array
+
+    def _make_struct(self) -> Any:
+        for name, array in self._memory.items():
+            mirror = self._mirrors.get(name)
+            if mirror is None or mirror.shape != array.shape:
+                self._mirrors[name] = mirror = self._device.zeros(array.shape, array.dtype)
+            mirror[...] = array
+        return self._device.struct(self._struct, self._mirrors)
+
+
+def struct_of_zeros(device: Device, declared: Any, shapes: Mapping[str, tuple[int, ...]]) -> dict[str, Any]:
+    """Arrays of zeros for the fields of a struct.
+
+    Args:
+        device: Where.
+        declared: The struct, as declared in `carom.layouts`.
+        shapes: Shape of the array of each field, without that of its entries.
+    """
+    fields = fields_of(declared)
+    return {
+        name: device.zeros((*shape, *fields[name].shape), fields[name].scalar)
+        for name, shape in shapes.items()
+    }

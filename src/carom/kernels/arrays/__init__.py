@@ -1,0 +1,1 @@
+"""Elementwise arithmetic on arrays that stay on a device."""

@@ -1,0 +1,71 @@
+"""How some links touch some others, in each of many worlds."""
+
+import warp as wp
+
+from carom.kernels.structs import Contacts, Touching
+from carom.kernels.types import Int32, Vector3, func, kernel, real
+from carom.layouts.contacts import THERE
+
+
+@func
+def is_between(touching: Touching, link: Int32, other: Int32, anything: Int32) -> bool:
+    """Whether a link is asked for, and what it touches is one of the others, or `anything` will do."""
+    return touching.link_place[link] >= 0 and (anything != 0 or touching.link_other[other] != 0)
+
+
+@kernel
+def touching_kernel(
+    contacts: Contacts, touching: Touching, links: Int32, anything: Int32, first_world: Int32
+):
+    """Sum up the contacts of each world.
+
+    Args:
+        contacts: All contacts.
+        touching: Which links are asked for, and room for what is found.
+        links: How many are asked for.
+        anything: 1: what they touch does not matter.
+        first_world: The first of the worlds.
+    """
+    world = first_world + wp.tid()
+    touching.world_number[world] = 0
+    touching.world_touching[world] = wp.uint8(0)
+    touching.world_distance[world] = real(wp.inf)
+    nowhere = real(wp.nan)
+    deepest = Vector3(nowhere, nowhere, nowhere)
+    impulse = Vector3(0.0, 0.0, 0.0)
+    for place in range(links * world, links * (world + 1)):
+        touching.place_touching[place] = wp.uint8(0)
+    for contact in range(contacts.count_contacts[world, THERE]):
+        a = contacts.contact_shapes[world, contact][2]
+        b = contacts.contact_shapes[world, contact][3]
+        is_a = is_between(touching, a, b, anything)
+        is_b = is_between(touching, b, a, anything)
+        if is_a:
+            touching.place_touching[links * world + touching.link_place[a]] = wp.uint8(1)
+        if is_b:
+            touching.place_touching[links * world + touching.link_place[b]] = wp.uint8(1)
+        if is_a or is_b:
+            touching.world_number[world] += 1
+            along = contacts.contact_impulse[world, contact]
+            if along[0] > 0.0:
+                touching.world_touching[world] = wp.uint8(1)
+            # Normals point from b to a and the impulses along them push a away. Within a body a contact has
+            # its first link on side a.
+            push = (
+                along[0] * contacts.contact_normal[world, contact]
+                + along[1] * contacts.contact_direction1[world, contact]
+                + along[2] * contacts.contact_direction2[world, contact]
+            )
+            nearer = contacts.contact_distance[world, contact] < touching.world_distance[world]
+            if nearer:
+                touching.world_distance[world] = contacts.contact_distance[world, contact]
+            if is_a:
+                impulse += push
+                if nearer:
+                    deepest = contacts.contact_point_a[world, contact]
+            else:
+                impulse -= push
+                if nearer:
+                    deepest = contacts.contact_point_b[world, contact]
+    touching.world_impulse[world] = impulse
+    touching.world_deepest[world] = deepest

@@ -1,0 +1,71 @@
+"""Where many worlds are kept and stepped."""
+
+from __future__ import annotations
+
+from importlib import util
+from typing import TYPE_CHECKING
+
+from carom.engine.engine import Engine
+from carom.native.cpu import core_count
+from carom.world.world import World
+from carom.worlds.memory import check_memory
+
+if TYPE_CHECKING:
+    from carom.gpu.device import Device
+
+CPU = "cpu"
+_CUDA = "cuda"
+# For tests: what a GPU would be given, on the processor.
+_WARP_CPU = "warp-cpu"
+
+
+def make_engine(scene: World, count: int, device: str | Device, threads: int | None) -> Engine:
+    """An engine for so many worlds like one there is.
+
+    Args:
+        scene: What each of them is like.
+        count: How many there are to be.
+        device: See `Worlds`; or a device of `carom.gpu`.
+        threads: How many threads share them on the processor; None for as many as there are cores for.
+
+    Raises:
+        ValueError: There is no such device.
+        ImportError: A GPU is asked for, and Warp is not installed.
+        MemoryError: There is no room for so many.
+    """
+    if device == CPU:
+        state, contacts = scene.arrays.state, scene.contact_arrays.contacts
+        check_memory(count, state.bytes_per_world(scene.arrays.used) + contacts.bytes_per_world())
+        arrays = scene.arrays.repeated(count)
+        return Engine(arrays, scene.contact_arrays.repeated(arrays), min(count, threads or core_count()))
+    if threads is not None:
+        raise ValueError("threads share worlds on the device 'cpu' only")
+    found = open_device(device) if isinstance(device, str) else device
+    from carom.gpu.engine import DeviceEngine
+
+    return DeviceEngine.like(found, scene.arrays, scene.contact_arrays, count)
+
+
+def open_device(name: str) -> Device:
+    """A device by name: "cuda", "cuda:1".
+
+    Raises:
+        ValueError: It is unknown, or not in this machine.
+        ImportError: Warp is not installed.
+    """
+    kind, _, number = name.partition(":")
+    if name != _WARP_CPU and (kind != _CUDA or (":" in name and not number.isdigit())):
+        raise ValueError(f"device must be 'cpu', 'cuda' or a GPU by number such as 'cuda:1', not {name!r}")
+    if util.find_spec("warp") is None:
+        raise ImportError(f"device {name!r} needs NVIDIA Warp: pip install 'carom[gpu]'")
+    from carom.gpu.warp_device import WarpDevice, cuda_devices
+
+    if name == _WARP_CPU:
+        return WarpDevice("cpu")
+    there = cuda_devices()
+    if not there:
+        raise ValueError(f"there is no device {name!r}: no NVIDIA GPU or no driver for it has been found")
+    wanted = there[0] if name == _CUDA else name
+    if wanted not in there:
+        raise ValueError(f"there is no device {name!r}; there are {', '.join(there)}")
+    return WarpDevice(wanted)
