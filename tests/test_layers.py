@@ -28,7 +28,7 @@ FLOORS = (
     {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.layouts", "carom.remote"},
     {"carom.kernels", "carom.native"},
     {"carom.model"},
-    {"carom.algorithms", "carom.engine"},
+    {"carom.algorithms", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries", "carom.scene"},
     {"carom.world_files"},
     {"carom.render"},

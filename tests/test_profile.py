@@ -5,7 +5,7 @@ import pytest
 from tests.physics.contact_scenes import add_box, add_floor, earth
 
 from carom import World
-from carom.world.profile import STAGES
+from carom.world.profile import SOFT_STAGE, STAGES
 
 
 def scene(substeps: int, *, touching: bool) -> World:
@@ -33,6 +33,14 @@ def test_every_stage_is_named_and_takes_its_time() -> None:
     seconds = scene(0, touching=True).profile(5)
     assert tuple(seconds) == STAGES
     assert all(value > 0.0 for value in seconds.values())
+
+
+def test_soft_bodies_are_a_stage_of_their_own() -> None:
+    world = scene(0, touching=True)
+    world.load_cloth(cells=(3, 3))
+    seconds = world.profile(5)
+    assert tuple(seconds) == (*STAGES, SOFT_STAGE)
+    assert seconds[SOFT_STAGE] > 0.0
 
 
 def test_a_world_of_one_body_detects_no_collisions() -> None:

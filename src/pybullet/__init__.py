@@ -20,7 +20,6 @@ from pybullet._bodies.soft_bodies import *
 from pybullet._bodies.user_data import *
 from pybullet._calls.constants import *
 from pybullet._calls.errors import error as error
-from pybullet._calls.unavailable import *
 from pybullet._cameras.camera import *
 from pybullet._cameras.camera_legacy import *
 from pybullet._connections.connection import *
@@ -38,6 +37,7 @@ from pybullet._loading.loading import *
 from pybullet._loading.loading_scenes import *
 from pybullet._loading.multi_body import *
 from pybullet._loading.scene_script import *
+from pybullet._loading.soft import *
 from pybullet._logs.logging import *
 from pybullet._maths.camera_maths import *
 from pybullet._maths.maths import *

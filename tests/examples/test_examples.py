@@ -233,3 +233,15 @@ def test_an_environment_of_ones_own_can_be_solved(example):
     record = example("own_vector_env").main(count=5)
     assert record["return"].min() > 120.0
     assert record["off"].max() < 0.01
+
+
+def test_soft_bodies_lie_give_way_and_hang(example):
+    record = example("soft_bodies").main(duration=2.0)
+    nodes = np.array(record["cloth"])
+    # The ball keeps the middle of the cloth up, and the rest hangs down.
+    assert nodes[:, 2].max() == pytest.approx(0.62, abs=0.02)
+    assert nodes[:, 2].min() < 0.5
+    # 20 N on 0.04 m² of 10 kPa, and half of its own 10 N.
+    assert record["height"] == pytest.approx(0.2 * (20 + 5) / 0.04 / 1e4, rel=0.4)
+    # A catenary of 1 m between hooks 80 cm apart, but for what is left of a swing.
+    assert record["rope"][:, 2].min() == pytest.approx(-0.265, abs=0.03)

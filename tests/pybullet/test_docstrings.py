@@ -9,15 +9,11 @@ from typing import Any
 
 import pytest
 
-from pybullet._calls import unavailable
-
 GENERATOR = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "docs" / "drop_in.py"))
-FUNCTIONS: dict[str, Any] = {
-    name: function for name, function in GENERATOR["functions"]().items() if name not in unavailable.__all__
-}
+FUNCTIONS: dict[str, Any] = GENERATOR["functions"]()
 # They answer whatever happens.
 NEVER_RAISE = {"getAPIVersion", "getConnectionInfo", "isConnected", "isNumpyEnabled"}
-ALWAYS_RAISE = {"createSoftBodyAnchor", "getTetraMeshData"}
+ALWAYS_RAISE: set[str] = set()
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 import pybullet as p
-from pybullet._calls import unavailable
 
 HERE = Path(__file__).parent
 SURFACE = json.loads((HERE / "surface.json").read_text())
@@ -82,22 +81,6 @@ def test_builtins_work_with_partial_and_by_keyword(client: int) -> None:
     partial(p.setGravity, physicsClientId=other)(gravX=1, gravY=2, gravZ=3)
     assert p.getPhysicsEngineParameters(other)["gravityAccelerationZ"] == 3.0
     assert p.getPhysicsEngineParameters(client)["gravityAccelerationZ"] == 0.0
-
-
-@pytest.mark.parametrize("name", unavailable.__all__)
-def test_unavailable_functions_check_their_arguments_and_say_so(name: str) -> None:
-    function = getattr(p, name)
-    needed = [
-        parameter.name
-        for parameter in inspect.signature(function).parameters.values()
-        if parameter.default is parameter.empty and parameter.kind is parameter.POSITIONAL_OR_KEYWORD
-    ]
-    missing = f"^{name} is not available in this version of Carom, which has no soft bodies"
-    with pytest.raises(p.error, match=missing):
-        function(*[0] * len(needed))
-    if needed:
-        with pytest.raises(TypeError, match=needed[-1]):
-            function(*[0] * (len(needed) - 1))
 
 
 def _described(parameter: inspect.Parameter) -> tuple[object, ...]:

@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 import pybullet as p
-from pybullet._calls import unavailable
 
 from .call import CLIENT, TABLE
 from .calls import CALLS
@@ -38,7 +37,7 @@ def test_every_listed_error_has_been_heard(function: str) -> None:
     assert [text for text in silent if not unheard(function, text)] == []
 
 
-@pytest.mark.parametrize("function", [name for name in CALLS if name not in unavailable.__all__])
+@pytest.mark.parametrize("function", CALLS)
 def test_what_comes_of_calls_is_what_comes_of_them_in_pybullet(function: str, tmp_path: Path) -> None:
     calls, places = CALLS[function], Places(str(tmp_path))
     before = untouched(p, calls, places)

@@ -15,6 +15,7 @@ TITLES = {
     "_connections.connection": "Connections",
     "_loading.loading": "Loading",
     "_loading.loading_scenes": "Loading scenes",
+    "_loading.soft": "Loading soft bodies",
     "_shapes.collision_shapes": "Collision shapes",
     "_shapes.visual_shapes": "Visual shapes",
     "_loading.multi_body": "Bodies made of shapes",
@@ -49,7 +50,6 @@ TITLES = {
     "_plugins.plugins": "Plugins",
     "_maths.maths": "Maths",
 }
-UNAVAILABLE = "_calls.unavailable"
 
 NOTES = {
     "_window.gui": "The window is [a page in the browser](viewer.md).",
@@ -69,6 +69,11 @@ cube = p.loadURDF("cube_small.urdf", [0.5, 0, 0.025])
 """
 
 LIMITED = {
+    "loadURDF": "the elements `<deformable>` and `<reduced_deformable>` are refused",
+    "getContactPoints": "touches of soft bodies are not among them",
+    "getClosestPoints": "soft bodies are not among them",
+    "rayTest": "soft bodies are passed through, as in PyBullet",
+    "rayTestBatch": "soft bodies are passed through, as in PyBullet",
     "configureDebugVisualizer": "the flags of virtual reality are recorded and have no effect",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1, and "
     "`allowedCcdPenetration` and `enableSAT` have no effect",
@@ -77,7 +82,6 @@ LIMITED = {
 
 # Constants that can be given and change nothing, or that no function takes or returns, and why.
 _NOBODY_TAKES_IT = "no function takes it, nor does one in PyBullet"
-_NO_SOFT_BODIES = "no effect yet: there are no soft bodies"
 _NO_DEVICES = "no effect: devices of virtual reality are never there"
 WITHOUT_EFFECT = {
     **dict.fromkeys(
@@ -85,10 +89,7 @@ WITHOUT_EFFECT = {
     ),
     **{name: _NOBODY_TAKES_IT for name in vars(codes) if name.startswith("IK_HAS_")},
     **{name: _NO_DEVICES for name in vars(codes) if name.startswith(("VR_", "COV_ENABLE_VR_"))},
-    **dict.fromkeys(
-        ["RESET_USE_DEFORMABLE_WORLD", "RESET_USE_REDUCED_DEFORMABLE_WORLD", "MESH_DATA_SIMULATION_MESH"],
-        _NO_SOFT_BODIES,
-    ),
+    "RESET_USE_REDUCED_DEFORMABLE_WORLD": "no effect yet: there are no reduced deformable bodies",
     "RESET_USE_DISCRETE_DYNAMICS_WORLD": "no effect: worlds of rigid bodies are all alike",
     "RESET_USE_SIMPLE_BROADPHASE": "no effect: pairs are found in one way",
     "URDF_GLOBAL_VELOCITIES_MB": "no effect: bodies move the same with it in PyBullet, but for rounding",
@@ -129,17 +130,15 @@ def first_line(function: Any) -> str:
 
 
 def sections() -> dict[str, tuple[str, list[str]]]:
-    """Title and functions of each file, in order; the functions that are not available come last."""
+    """Title and functions of each file, in order."""
     by_home: dict[str, list[str]] = defaultdict(list)
     for name, function in functions().items():
         by_home[home(function)].append(name)
-    missing = by_home.pop(UNAVAILABLE, [])
     others = {
         file: file.partition(".")[2].replace("_", " ").capitalize()
         for file in sorted(by_home.keys() - TITLES)
     }
-    ordered = {file: (title, by_home[file]) for file, title in (TITLES | others).items() if file in by_home}
-    return {**ordered, UNAVAILABLE: ("Not available yet", sorted(missing))}
+    return {file: (title, by_home[file]) for file, title in (TITLES | others).items() if file in by_home}
 
 
 def constants() -> dict[str, dict[str, int]]:
@@ -172,15 +171,14 @@ def status() -> str:
     """The page that lists all functions and how far they are."""
     available = functions()
     parts = sections()
-    _, missing = parts.pop(UNAVAILABLE)
     lines = [
         "# Status",
         "",
         "<!-- Written by tools/docs/drop_in.py. -->",
         "",
-        f"Of the {len(available)} functions of PyBullet 3.2.7, {len(available) - len(missing)} work in this "
-        "version of Carom, with",
-        "every keyword, default, return layout and error. The [constants](#constants) come last.",
+        f"All {len(available)} functions of PyBullet 3.2.7 work in this version of Carom, with every",
+        "keyword, default, return layout and error, but for what is marked as limited. The",
+        "[constants](#constants) come last.",
     ]
     for file, (title, names) in parts.items():
         lines += ["", f"## {title}", ""]
@@ -190,15 +188,6 @@ def status() -> str:
         for name in names:
             limit = f" *Limited: {LIMITED[name]}.*" if name in LIMITED else ""
             lines.append(f"| `{name}` | {first_line(available[name])}{limit} |")
-    if missing:
-        lines += [
-            "",
-            "## Not available yet",
-            "",
-            'These exist and raise `pybullet.error("... is not available in this version of Carom")`:',
-            "",
-            ", ".join(f"`{name}`" for name in missing) + ".",
-        ]
     lines += list_of_constants()
     return "\n".join(lines) + "\n"
 
@@ -211,8 +200,8 @@ def reference() -> str:
         "<!-- Written by tools/docs/drop_in.py. -->",
         "",
         "The drop-in, function by function. Keywords, defaults and return values are PyBullet's; the texts",
-        "are ours. Everything is a name of the module `pybullet`. Functions that are not built yet are",
-        "listed under [status](../status.md).",
+        "are ours. Everything is a name of the module `pybullet`. What is limited yet is said under",
+        "[status](../status.md).",
         "",
         "The examples start from this world; `folder` is an empty directory.",
         "",
@@ -221,8 +210,7 @@ def reference() -> str:
         "```",
     ]
     for file, (title, _) in sections().items():
-        if file != UNAVAILABLE:
-            lines += ["", f"## {title}", "", f"::: pybullet.{file}{MEMBERS}"]
+        lines += ["", f"## {title}", "", f"::: pybullet.{file}{MEMBERS}"]
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""Contact arrays: shapes, contacts, user constraints."""
+"""Contact arrays: shapes, contacts, user constraints, soft bodies."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from carom.layouts.contacts import THERE, Contacts, UserConstraints
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays
+from carom.model.soft_arrays import SoftArrays
 from carom.native.tables import ArrayTable
 
 # Room for contacts in each of many worlds, before any have been found.
@@ -17,7 +18,7 @@ _LEAST_CONTACTS = 4
 
 
 class ContactArrays:
-    """Shapes, contacts and user constraints."""
+    """Shapes, contacts, user constraints and soft bodies."""
 
     def __init__(self, arrays: WorldArrays) -> None:
         self._arrays = arrays
@@ -25,6 +26,7 @@ class ContactArrays:
         self.contacts: ArrayTable = ArrayTable(Contacts, arrays.world_count)
         self.users: ArrayTable = ArrayTable(UserConstraints)
         self.user_count = 0
+        self.soft: SoftArrays = SoftArrays()
 
     def repeated(self, arrays: WorldArrays) -> ContactArrays:
         """What bodies do to each other in the worlds of some arrays, in all of them as in the first."""
@@ -35,6 +37,7 @@ class ContactArrays:
         )
         other.users = self.users.copy()
         other.user_count = self.user_count
+        other.soft = deepcopy(self.soft)
         return other
 
     @property
@@ -73,4 +76,5 @@ class ContactArrays:
             "shapes": self.shapes.struct(),
             "contacts": self.contacts.struct(),
             "users": self.users.struct(),
+            "soft": self.soft.struct(),
         }

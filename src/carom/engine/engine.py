@@ -152,8 +152,9 @@ class Engine:
         touching, sleeping = can_collide(self.arrays, self.contact_arrays), can_sleep(self.arrays)
         if not touching:
             self.contact_arrays.forget_contacts()
-        coupled = touching or sleeping or self._watched or self.contact_arrays.user_count > 0
-        self._plan = Plan(touching, sleeping, coupled)
+        soft = bool(self.contact_arrays.soft.bodies)
+        coupled = touching or sleeping or self._watched or self.contact_arrays.user_count > 0 or soft
+        self._plan = Plan(touching, sleeping, coupled, soft)
         return self._plan
 
     def step(self, due: Sequence[int], worlds: np.ndarray | None = None) -> None:

@@ -6,17 +6,23 @@ from typing import NamedTuple
 
 from carom.native.kernels import (
     Kernel,
+    abandon_soft_kernel,
     abandon_step_kernel,
+    begin_soft_kernel,
     begin_step_kernel,
     broad_phase_kernel,
     constraints_kernel,
+    end_soft_kernel,
     end_step_kernel,
+    follow_nodes_kernel,
     free_motion_kernel,
     integration_kernel,
     islands_kernel,
+    keep_velocities_kernel,
     link_poses_kernel,
     narrow_phase_kernel,
     settle_kernel,
+    soft_motion_kernel,
     step_kernel,
     watch_kernel,
 )
@@ -25,6 +31,17 @@ from carom.native.launch import KernelStructs, Launch
 # Stages of a substep, in this order.
 DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
 MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
+# The same with soft bodies.
+SOFT_MOTION = (
+    keep_velocities_kernel,
+    islands_kernel,
+    free_motion_kernel,
+    soft_motion_kernel,
+    constraints_kernel,
+    integration_kernel,
+    # Afterwards, for fixed bases move on by their velocities as well.
+    follow_nodes_kernel,
+)
 
 
 class Plan(NamedTuple):
@@ -34,11 +51,13 @@ class Plan(NamedTuple):
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
         coupled: Something could tie bodies together: they touch, or users have tied them.
+        soft: There are soft bodies.
     """
 
     touching: bool
     sleeping: bool
     coupled: bool
+    soft: bool = False
 
 
 class Program(NamedTuple):
@@ -70,17 +89,17 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
     if not plan.coupled:
         whole = _launch(structs, step_kernel, substeps=1)
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
-    motion = [_launch(structs, kernel) for kernel in MOTION]
+    motion = [_launch(structs, kernel) for kernel in (SOFT_MOTION if plan.soft else MOTION)]
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, watch_kernel)]
-    return Program(
-        begin=[_launch(structs, begin_step_kernel, moves=1)],
-        detection=_detection(structs) if plan.touching else [],
-        motion=motion,
-        end=[_launch(structs, end_step_kernel)],
-        abandon=abandon,
-    )
+    begin, end = [_launch(structs, begin_step_kernel, moves=1)], [_launch(structs, end_step_kernel)]
+    if plan.soft:
+        begin.append(_launch(structs, begin_soft_kernel))
+        end.append(_launch(structs, end_soft_kernel))
+        abandon.append(_launch(structs, abandon_soft_kernel))
+    detection = _detection(structs) if plan.touching else []
+    return Program(begin=begin, detection=detection, motion=motion, end=end, abandon=abandon)
 
 
 def detection_program(structs: KernelStructs) -> Program:

@@ -9,6 +9,7 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
 from carom.layouts.contacts import ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
+from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
@@ -23,6 +24,7 @@ class Workspace:
         scratch: Of single trees.
         pairs: Of collision detection.
         pair_rows: Of the solver.
+        soft_work: Of soft bodies.
         structs: Structs over these and all other arrays, by the name kernels give them.
 
     Args:
@@ -33,6 +35,7 @@ class Workspace:
         self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.pairs: ArrayTable = ArrayTable(Pairs, world_count)
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
+        self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
         self.structs: KernelStructs = KernelStructs()
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
@@ -52,6 +55,19 @@ class Workspace:
                 "user": users,
             }
         )
+        if contact_arrays.soft.bodies:
+            nodes = arrays.state.capacity["node"]
+            self.soft_work.reserve(
+                {
+                    "node": nodes,
+                    "contact_arrays": TOUCHES_PER_NODE * nodes,
+                    "near": FACES_PER_NODE * nodes,
+                    "bucket": BUCKETS,
+                    "anchor": contact_arrays.soft.table.capacity["anchor"],
+                    "dof": arrays.state.capacity["dof"],
+                    "tree": arrays.model.capacity["tree"],
+                }
+            )
 
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:
         """Rows that collision detection needs, by axis of `Pairs`, but for its pairs."""
@@ -71,5 +87,6 @@ class Workspace:
             scratch=self.scratch.struct(),
             pairs=self.pairs.struct(),
             pair_rows=self.pair_rows.struct(),
+            soft_work=self.soft_work.struct(),
         )
         return self.structs

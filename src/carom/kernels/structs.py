@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from carom.kernels.warp_types import warp_type
-from carom.layouts import chain, contacts, images, model, motor_commands, moving_tree, parallel, queries
+from carom.layouts import chain, contacts, images, model, motor_commands, moving_tree, parallel, queries, soft
 
 if TYPE_CHECKING:
     from carom.layouts.chain import Chain, ChainSizes, Search
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from carom.layouts.moving_tree import Control, Ends, Tree, TreeSizes
     from carom.layouts.parallel import IslandProgress, IslandWork, PairWork, RunWork
     from carom.layouts.queries import ContactReport, Places, Rays, Searches, Touching
+    from carom.layouts.soft import SoftModel, SoftWork
 else:
     IslandProgress = warp_type(parallel.IslandProgress)
     IslandWork = warp_type(parallel.IslandWork)
@@ -61,3 +62,5 @@ else:
     Searches = warp_type(queries.Searches)
     Rays = warp_type(queries.Rays)
     Touching = warp_type(queries.Touching)
+    SoftModel = warp_type(soft.SoftModel)
+    SoftWork = warp_type(soft.SoftWork)

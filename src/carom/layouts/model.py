@@ -179,6 +179,9 @@ class State:
     tree_wants_sleep: IntRows  # 1: it sleeps as soon as all of its island are
     tree_idle_time: RealRows  # for how long it has hardly moved [s]
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
+    node_position: Vector3Rows  # of soft bodies, see `layouts.soft`
+    node_velocity: Vector3Rows
+    node_force: Vector3Rows
     status_entry: IntRows  # what became of the last step: see `layouts.status`
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.pose import IDENTITY, Vector3
 from carom.layouts.contacts import MARGIN
+from carom.model.soft_spec import SoftSpec
 
 BASE = -1
 DEFAULT_CONTACT = ContactParameters()
@@ -88,6 +89,7 @@ class BodySpec:
         flags: The loading flags it was made with.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
+        soft: What a soft body is made of; its base is fixed and has neither shapes nor links.
     """
 
     name: str
@@ -97,6 +99,7 @@ class BodySpec:
     flags: int = 0
     source: Path | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+    soft: SoftSpec | None = None
 
     def link(self, index: int) -> LinkSpec:
         """A link by its index; -1 is the base."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from carom.description.pose import Pose, Vector3
-from carom.description.transform import conjugate, multiplied, rotate
+from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix
 from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
@@ -72,7 +72,7 @@ class WorldArrays:
         self.model: ArrayTable = ArrayTable(Model)
         self.state: ArrayTable = ArrayTable(State, world_count)
         self.used: dict[str, int] = dict.fromkeys(
-            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row"), 0
+            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node"), 0
         )
 
     def repeated(self, world_count: int) -> WorldArrays:
@@ -117,6 +117,7 @@ class WorldArrays:
             "dof": dofs,
             "block": dofs * blocks,
             "delta": blocks,
+            "node": 0 if spec.soft is None else len(spec.soft.nodes),
         }
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
@@ -124,6 +125,10 @@ class WorldArrays:
         self._write_links(rows, spec, codes)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
+        if spec.soft is not None:
+            nodes = slice(rows.first["node"], rows.first["node"] + count["node"])
+            turn = np.array(rotation_matrix(base_pose.orientation))
+            self.state.numpy["node_position"][:, nodes] = spec.soft.nodes @ turn.T + base_pose.position
         for axis, number in count.items():
             self.used[axis] += number
         return rows

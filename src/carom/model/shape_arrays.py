@@ -178,7 +178,7 @@ class ShapeArrays:
         numpy = self.table.numpy
         first = body.rows.first["link"]
         for j, link in enumerate(links):
-            self.set_default_group(first + j, fixed=j == 0 and spec.fixed_base)
+            self.set_default_group(first + j, fixed=j == 0 and spec.fixed_base and spec.soft is None)
             for collision in link.collisions:
                 if collision.group is not None:
                     numpy["link_group"][first + j] = _as_int32(collision.group)

@@ -16,6 +16,7 @@ KERNEL_MODULES = (
     "carom.kernels.queries.contact_report",
     "carom.kernels.queries.rays",
     "carom.kernels.queries.touching",
+    "carom.kernels.soft.stages",
     "carom.kernels.solver.sleeping",
     "carom.kernels.solver.stages",
 )
@@ -37,6 +38,7 @@ _WHOLE_WORLDS = {
     "carom.kernels.contact.stages",
     "carom.kernels.dynamics.step",
     "carom.kernels.dynamics.step_ends",
+    "carom.kernels.soft.stages",
     "carom.kernels.solver.stages",
 }
 CUDA_MODULES = (

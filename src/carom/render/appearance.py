@@ -136,6 +136,9 @@ class Appearance:
             looks = [
                 self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
             ]
+            if body.spec.soft is not None:
+                # Cloth is seen from both sides.
+                looks[0] = [replace(look, two_sided=True) for look in looks[0]]
             self._looks[body] = looks
         return looks
 

@@ -71,6 +71,7 @@ class Renderer:
         scene = self._present_scene(world)
         target = self._target(scene, width, height)
         with world.present_poses():
+            scene.follow_nodes()
             link_to_world = poses_to_matrices(world.link_pose[scene.link_rows])
         return target.draw(link_to_world, view, projection, light, projector)
 

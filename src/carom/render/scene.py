@@ -18,7 +18,9 @@ from carom.native.tables import put_array
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
 from carom.render.render_mesh import RenderMesh
+from carom.render.soft_surfaces import SoftSurface
 from carom.render.textures import NO_TEXTURE, Textures
+from carom.scene.soft_body import SoftBody
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -105,12 +107,16 @@ class SceneArrays:
         self._texture_slots: dict[int, int] = {}
         columns = _Columns()
         rows: list[int] = []
+        self._surfaces: list[SoftSurface] = []
         for body in world.bodies.values():
             for link in range(BASE, body.joint_count):
                 shapes = appearance.shapes(body, link)
                 if shapes:
                     for shape in shapes:
+                        first = len(columns.vertex_counts)
                         self._add_shape(columns, body, link, shape, len(rows))
+                        if isinstance(body, SoftBody):
+                            self._surfaces.append(_soft_surface(columns, body, first))
                     rows.append(body.first_link + link - BASE)
         self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
         self.vertex_count: int = sum(columns.vertex_counts)
@@ -129,6 +135,11 @@ class SceneArrays:
         return self._changes == appearance.changes and [body() for body in self._bodies] == list(
             world.bodies.values()
         )
+
+    def follow_nodes(self) -> None:
+        """Brings the surfaces of soft bodies up to date with their nodes."""
+        for surface in self._surfaces:
+            surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
     def _add_shape(self, columns: _Columns, body: Body, link: int, shape: ShapeLook, slot: int) -> None:
         frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
@@ -172,6 +183,12 @@ class SceneArrays:
         sizes = np.array([image.shape[1::-1] for image in images], dtype=np.int32).reshape(-1, 2)
         put_array(self.struct, "texture_size", sizes)
         put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
+
+
+def _soft_surface(columns: _Columns, body: SoftBody, first_part: int) -> SoftSurface:
+    counts = columns.vertex_counts
+    starts = np.concatenate([[0], np.cumsum(counts[first_part:-1])]).astype(np.int64)
+    return SoftSurface(body, sum(counts[:first_part]), first_part, len(counts), starts)
 
 
 def _struct(columns: _Columns) -> tuple[Any, int]:

@@ -15,19 +15,12 @@ from carom.description.transform import compose
 from carom.model.body_spec import BodySpec
 from carom.native.undo import Undo
 from carom.scene.body import Body
+from carom.scene.soft_body import SoftBody
+from carom.scene.undoing import begin
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
     from carom.world.world import World
-
-
-def begin(world: World) -> Undo:
-    """Begin a change; what may be left of one that was broken off comes to its end before."""
-    world.undo.settle()
-    # Nothing that was made for the world as it was may be used before it is whole again.
-    world.undo.note(world.scene_changed)
-    world.scene_changed()
-    return world.undo
 
 
 def note_additions(world: World, undo: Undo) -> None:
@@ -35,6 +28,7 @@ def note_additions(world: World, undo: Undo) -> None:
     for part in (
         world.arrays,
         world.contact_arrays.shapes,
+        world.contact_arrays.soft,
         world.constraints,
         world.user_constraints,
         world.user_data,
@@ -62,6 +56,7 @@ def add_bodies(
         world.scene_changed()
         for body in added:
             body.update_link_poses()
+        world.update_soft_poses()
         if also is not None:
             also(added)
         undo.done()
@@ -72,9 +67,11 @@ def append(world: World, spec: BodySpec, pose: Pose) -> Body:
     """Add a body within a change; its link poses are not known yet."""
     rows = world.arrays.append(spec, compose(pose, spec.base.inertial_frame))
     *free_ids, body_id = world.free_ids or [world.next_id]
-    body = Body(world, body_id, spec, rows)
+    body = (Body if spec.soft is None else SoftBody)(world, body_id, spec, rows)
     surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
     world.contact_arrays.shapes.append(spec, rows, surfaces)
+    if spec.soft is not None:
+        world.contact_arrays.soft.append(spec.soft, rows)
     world.free_ids, world.next_id = free_ids, max(world.next_id, body_id + 1)
     world.bodies[body_id] = body
     world.constraints.add_body(body)
@@ -93,6 +90,7 @@ def remove_body(world: World, body: Body) -> None:
             world.user_data.removal(body.id),
             world.contact_arrays.forget_contacts,
             world.contact_arrays.shapes.removal(body.rows),
+            world.contact_arrays.soft.removal(body.rows),
             world.arrays.removal(body.rows, [other.rows for other in later]),
         )
 

@@ -39,6 +39,7 @@ class BodyLayout:
         positions: Number of position coordinates.
         dofs: Number of velocity coordinates.
         shapes: Number of shapes it collides with.
+        nodes: Number of nodes, of a soft body.
     """
 
     id: int
@@ -46,14 +47,18 @@ class BodyLayout:
     positions: int
     dofs: int
     shapes: int
+    nodes: int = 0
 
     def __str__(self) -> str:
+        if self.nodes:
+            return f"{self.nodes} nodes"
         joints, freedoms = self.links - 1, self.dofs - BASE_VELOCITIES
         return f"{joints} joints with {freedoms} freedoms"
 
     def moves_like(self, other: BodyLayout) -> bool:
-        """Both have equally many links and coordinates."""
-        return (self.links, self.positions, self.dofs) == (other.links, other.positions, other.dofs)
+        """Both have equally many links, coordinates and nodes."""
+        mine = (self.links, self.positions, self.dofs, self.nodes)
+        return mine == (other.links, other.positions, other.dofs, other.nodes)
 
 
 @dataclass(slots=True)
@@ -108,7 +113,8 @@ def layout(world: World) -> Layout:
         rows = body.rows
         first, links = rows.first["link"], rows.count["link"]
         shapes = int(shape_count[first : first + links].sum())
-        bodies.append(BodyLayout(body.id, links, rows.count["position"], rows.count["dof"], shapes))
+        positions, dofs, nodes = (rows.count[axis] for axis in ("position", "dof", "node"))
+        bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, nodes))
     return Layout.of(tuple(bodies))
 
 
@@ -205,6 +211,7 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
         "link": [body.links for body in was],
         "position": [body.positions for body in was],
         "dof": [body.dofs for body in was],
+        "node": [body.nodes for body in was],
         _DRIVES: [body.dofs - BASE_VELOCITIES for body in was],
     }
     order: dict[Any, np.ndarray] = {}

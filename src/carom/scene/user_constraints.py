@@ -120,6 +120,11 @@ class UserConstraints:
         self._by_id[number] = constraint
         return constraint
 
+    def take_id(self) -> int:
+        """The next number, for what is no constraint between links: the anchor of a soft body."""
+        self.next_id += 1
+        return self.next_id - 1
+
     def put(self, constraint: UserConstraint) -> None:
         """Take in a constraint under the number it has; later ones get higher numbers."""
         self._by_id[constraint.id] = constraint

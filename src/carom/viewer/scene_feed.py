@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
+from carom.render.soft_surfaces import surface_mesh
+from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
 from carom.viewer.messages import encoded
 from carom.viewer.shapes import Assets, described
@@ -25,6 +27,8 @@ Blocks = Sequence[tuple[str, NDArray[np.float32]]]
 _PATIENCE = 0.02
 # Over what time the real-time factor is an average [s].
 _RATE_WINDOW = 1.0
+# How often pages are sent a new shape of a soft body at most [s]: that is a mesh each time.
+_SHAPE_INTERVAL = 1 / 15
 
 
 class SceneFeed:
@@ -53,6 +57,8 @@ class SceneFeed:
         self._layout = 0
         self._last = b""
         self._clock: list[tuple[float, float]] = []
+        self._shapes_sent = 0.0
+        self._shapes: dict[int, bytes] = {}
 
     def frame(self, extras: dict[str, Any], blocks: Blocks = ()) -> bytes | None:
         """Where everything is now, as a message; None if nothing has changed.
@@ -62,6 +68,7 @@ class SceneFeed:
             blocks: Numbers that follow the poses, by name.
         """
         self._follow_bodies()
+        self._follow_nodes()
         poses = self._world.link_pose
         if self._rows.size and self._rows[-1] >= len(poses):
             return None
@@ -112,10 +119,37 @@ class SceneFeed:
         finally:
             self._lock.release()
 
+    def _follow_nodes(self) -> None:
+        """Show soft bodies in the shapes that they have now."""
+        now = monotonic()
+        if not self._world.contact_arrays.soft.bodies or now - self._shapes_sent < _SHAPE_INTERVAL:
+            return
+        self._shapes_sent = now
+        appearance = self._appearance
+        for body in self._bodies:
+            if not isinstance(body, SoftBody) or body.world.bodies.get(body.id) is not body:
+                continue
+            shape = body.nodes.tobytes()
+            if appearance is None or self._shapes.get(body.id) == shape:
+                continue
+            self._shapes[body.id] = shape
+            for look in appearance.shapes(body, BASE):
+                look.mesh = surface_mesh(body)
+            facts = described(body, appearance, self._assets, collisions=self.collisions)
+            self._described[body.id] = facts
+            self._board.put(("body", body.id), facts)
+        self._keep_used_assets()
+
     def _present_looks(self) -> tuple[object, ...]:
         appearance = self._appearance
         assert appearance is not None
         return (appearance, appearance.changes, appearance.textures.changes, self.collisions)
+
+    def _keep_used_assets(self) -> None:
+        shapes = [shape for facts in self._described.values() for shape in facts["shapes"]]
+        self._assets.keep_only(
+            {mesh for shape in shapes for mesh, _ in shape["meshes"]}, {shape["texture"] for shape in shapes}
+        )
 
     def _describe(self, bodies: list[Body]) -> None:
         self._appearance = appearance = appearance_of(self._world)
@@ -133,10 +167,7 @@ class SceneFeed:
         for number in self._described.keys() - new.keys():
             self._board.take_down(("body", number), {"type": "no body", "body": number})
         self._described = new
-        shapes = [shape for facts in new.values() for shape in facts["shapes"]]
-        self._assets.keep_only(
-            {mesh for shape in shapes for mesh, _ in shape["meshes"]}, {shape["texture"] for shape in shapes}
-        )
+        self._keep_used_assets()
         rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
         self._rows = np.concatenate([np.zeros(0, dtype=np.int64), *rows])
         self._layout += 1

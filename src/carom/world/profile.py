@@ -7,7 +7,7 @@ from types import TracebackType
 
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
-from carom.engine.program import DETECTION, MOTION, Plan, Program, step_program
+from carom.engine.program import DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
 from carom.layouts.status import STATUS, WELL
 from carom.native.launch import KernelStructs, Launch
 
@@ -20,7 +20,12 @@ STAGES = (
     "constraints",
     "integration",
 )
-_STAGE_OF = dict(zip((*DETECTION, *MOTION), STAGES, strict=True))
+SOFT_STAGE = "soft bodies"
+"""What worlds with soft bodies have besides."""
+_STAGE_OF = {
+    **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
+    **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
+}
 
 
 class StagedStepper(Stepper):
@@ -64,7 +69,8 @@ class StagedStepper(Stepper):
             launch()
             stage = _STAGE_OF.get(launch.kernel)
             if stage is not None:
-                self.seconds[stage] += time.perf_counter() - start
+                taken = time.perf_counter() - start
+                self.seconds[stage] = self.seconds.get(stage, 0.0) + taken
             if self._engine.status[0, STATUS] != WELL:
                 return False
         return True

@@ -20,7 +20,7 @@ from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
-from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
+from carom.native.kernels import follow_nodes_kernel, forward_kinematics_kernel, link_twist_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
@@ -35,6 +35,7 @@ from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
 from carom.world.loading import DescriptionLoading
 from carom.world.recordable import Recordable
+from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
     from carom.queries.present_poses import PresentPoses
@@ -56,7 +57,7 @@ class Derived:
     link_columns: tuple[list[int], list[int]] | None = None
 
 
-class World(DescriptionLoading, Recordable, StateViews):
+class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
@@ -398,7 +399,7 @@ class World(DescriptionLoading, Recordable, StateViews):
             "narrow phase" (their contacts), "islands" (groups of bodies that touch or are tied
             together), "free motion" (kinematics, mass matrices, velocities without constraints),
             "constraints" (rows of motors, limits, constraints and contacts, and their solution) and
-            "integration".
+            "integration"; where there are any, "soft bodies" as well.
 
         Raises:
             carom.errors.SimulationError: As from `step`.
@@ -457,6 +458,7 @@ class World(DescriptionLoading, Recordable, StateViews):
         self.undo.settle()
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.contact_arrays)
+        self.contact_arrays.soft.write_anchors()
         self._derived.queries = None
         self._made_for = self._structure()
         self.engine.update_settings(self.parameters)
@@ -556,6 +558,12 @@ class World(DescriptionLoading, Recordable, StateViews):
         if self._derived.pose_launch is None:
             self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
         self._derived.pose_launch(body.rows.tree)
+
+    def update_soft_poses(self) -> None:
+        """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
+        if self.contact_arrays.soft.bodies:
+            self.contact_arrays.soft.write_anchors()
+            self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 
     def update_link_velocities(self, body: Body) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""

@@ -11,6 +11,7 @@ import numpy as np
 from carom.description import ConvexHull, Geometry, Heightfield, Pose, TriangleMesh
 from carom.formats.robot.context import MAX_MAGNITUDE
 from carom.model.body_spec import BodySpec
+from carom.model.soft_spec import SoftSpec
 
 # What may be infinite: bounds, which then do not bound.
 _BOUNDS = frozenset(
@@ -29,9 +30,36 @@ def check_body(spec: BodySpec) -> None:
         if not -1 <= link.parent < index:
             raise ValueError(f"link {index} hangs on link {link.parent}")
     check_finite(spec)
+    if spec.soft is not None:
+        _check_soft(spec, spec.soft)
     for link in (spec.base, *spec.links):
         for shape in (*link.collisions, *link.visuals):
             _check_geometry(shape.geometry)
+
+
+def _check_soft(spec: BodySpec, soft: SoftSpec) -> None:
+    count = len(soft.nodes)
+    _check_rows(soft.nodes, 3, 1)
+    if spec.links or not spec.fixed_base or soft.masses.shape != (count,) or not (soft.masses > 0.0).all():
+        raise ValueError("a soft body has nodes of some mass, a fixed base and no links")
+    for rows, width in ((soft.faces, 3), (soft.springs, 2), (soft.tetras, 4)):
+        _check_rows(rows, width, 0)
+        if rows.size and not 0 <= rows.min() <= rows.max() < count:
+            raise ValueError("a soft body names a node that does not exist")
+    if soft.spring_terms.shape != (len(soft.springs), 3) or (soft.spring_terms < 0.0).any():
+        raise ValueError("a spring has another number of terms, or a negative one")
+    if not (np.linalg.det(soft.edge_matrices()) > 0.0).all():
+        raise ValueError("a tetrahedron has no volume")
+    if soft.skin is not None:
+        skin = soft.skin
+        vertices = len(skin.nodes)
+        for rows, most in ((skin.nodes, count), (skin.triangles, vertices)):
+            if rows.ndim != 2 or (rows.size and not 0 <= rows.min() <= rows.max() < most):
+                raise ValueError("the skin of a soft body names what does not exist")
+        if skin.weights.shape != skin.nodes.shape or skin.triangles.shape[1] != 3:
+            raise ValueError("the skin of a soft body has another number of weights or corners")
+    if min(soft.mu, soft.lam, soft.damping) < 0.0 or soft.margin <= 0.0:
+        raise ValueError("a soft body has a negative parameter")
 
 
 def check_finite(value: Any) -> None:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _ARRAYS = ("state", "contacts")
 _USER_IMPULSES = 6
+_OF_NODES = ("node_position", "node_velocity", "node_force")
 
 
 @dataclass(slots=True)
@@ -65,6 +66,9 @@ def read_state(reader: Reader, data: Any) -> SavedState:
         raise reader.fail("state", "is no state")
     bodies = reader.read(list[BodyLayout], data["bodies"], "state.bodies")
     arrays = {part: _arrays(reader, part, data[part]) for part in _ARRAYS}
+    for name in _OF_NODES:
+        # Files of versions without soft bodies do not have them.
+        arrays["state"].setdefault(name, np.zeros((0, 3)))
     _check_counts(reader, bodies, arrays["state"])
     impulses = reader.array(
         data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
@@ -85,6 +89,7 @@ def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.
         ("link_pose", [body.links for body in bodies]),
         ("position", [body.positions for body in bodies]),
         ("dof_velocity", [body.dofs for body in bodies]),
+        ("node_position", [body.nodes for body in bodies]),
     ):
         if axis not in state or min(counts, default=0) < 0 or sum(counts) != len(state[axis]):
             raise reader.fail("state.bodies", f"does not have the rows of {axis}")
@@ -144,6 +149,7 @@ def check_arrays(world: World, snapshot: Snapshot) -> None:
         "link": sum(body.links for body in bodies),
         "position": sum(body.positions for body in bodies),
         "dof": sum(body.dofs for body in bodies),
+        "node": sum(body.nodes for body in bodies),
         "drive": len(snapshot.layout.joint_dofs),
         "contact": int(snapshot.contacts["count_contacts"][THERE]),
     }

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -17,10 +17,13 @@ from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
-from carom.scene.changes import append, begin, change_base_freedom, note_additions
+from carom.model.soft_arrays import Anchor
+from carom.scene.changes import append, change_base_freedom, note_additions
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.link_dynamics import LinkDynamics
 from carom.scene.snapshot import check_same, layout, return_to
+from carom.scene.soft_body import SoftBody
+from carom.scene.undoing import begin
 from carom.scene.user_constraints import UserConstraint
 from carom.scene.user_data import UserDatum
 from carom.version import __version__
@@ -112,6 +115,18 @@ class SavedTie:
 
 
 @dataclass(slots=True)
+class SavedAnchor:
+    """One node of a soft body that is held; `body` is -1 for the world. See `soft_arrays.Anchor`."""
+
+    id: int
+    soft: int
+    node: int
+    body: int
+    link: int
+    pivot: Vector3
+
+
+@dataclass(slots=True)
 class SavedFilter:
     """Two links that a user lets collide or not."""
 
@@ -139,6 +154,7 @@ class SavedWorld:
         next_tie: The next number of those.
         filters: Pairs of links with a rule.
         user_data: Texts attached to bodies.
+        anchors: What holds nodes of soft bodies.
     """
 
     carom: str
@@ -153,6 +169,7 @@ class SavedWorld:
     next_tie: int
     filters: list[SavedFilter]
     user_data: list[UserDatum]
+    anchors: list[SavedAnchor] = field(default_factory=list)
 
 
 def save_world(world: World, path: Path, parts: Parts) -> None:
@@ -232,7 +249,18 @@ def _saved(world: World) -> SavedWorld:
             for a, b, enabled in world.contact_arrays.shapes.filters.all
         ],
         user_data=[datum for body in bodies for datum in world.user_data.of_body(body.id)],
+        anchors=[
+            SavedAnchor(anchor.id, body.id, anchor.node, _holder(world, anchor), anchor.link, anchor.pivot)
+            for body in bodies
+            if isinstance(body, SoftBody)
+            for anchor in body.anchors
+        ],
     )
+
+
+def _holder(world: World, anchor: Anchor) -> int:
+    """The number of the body that holds a node; -1 for the world."""
+    return next((body.id for body in world.bodies.values() if body.rows is anchor.body), _NONE)
 
 
 def _saved_body(body: Body, spec: int) -> SavedBody:
@@ -305,6 +333,7 @@ def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
         bodies[record.id] = append(world, saved.specs[_index(record.spec, saved.specs)], IDENTITY)
         _give_dynamics(bodies[record.id], record)
     ties = _make_ties(world, saved, bodies, alone)
+    _make_anchors(world, saved, bodies, alone)
     _order_constraints(world, saved, bodies, ties)
     _set_filters(world, saved, bodies)
     for body in bodies.values():
@@ -371,6 +400,22 @@ def _make_ties(
         ties[record.id] = UserConstraint(**values)
         world.user_constraints.put(ties[record.id])
     return ties
+
+
+def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alone: bool) -> None:
+    for record in saved.anchors:
+        soft, body = bodies[record.soft], None if record.body == _NONE else bodies[record.body]
+        if not isinstance(soft, SoftBody) or not 0 <= record.node < soft.rows.count["node"]:
+            raise ValueError(f"body {record.soft} has no node {record.node}")
+        if body is not None and (body.spec.soft is not None or not BASE <= record.link < body.joint_count):
+            raise ValueError(f"body {body.id} has no link {record.link} that could hold a node")
+        number = record.id if alone else world.user_constraints.take_id()
+        if number in world.contact_arrays.soft.anchors or number < 1:
+            raise ValueError(f"there cannot be an anchor {number}")
+        rows = None if body is None else body.rows
+        world.contact_arrays.soft.anchors[number] = Anchor(
+            number, soft.soft_rows, record.node, rows, record.link, record.pivot
+        )
 
 
 def _order_constraints(

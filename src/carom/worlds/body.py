@@ -48,9 +48,27 @@ class BodyBatch:
         self._dofs = _following(body.first_velocity + BASE_VELOCITIES, sum(body.velocity_count))
         self._coordinates = _following(body.first_position + BASE_POSITIONS, sum(body.position_count))
         self._links = _following(body.first_link + 1, body.joint_count)
+        self._nodes = _following(body.rows.first["node"], body.rows.count["node"])
 
     def __repr__(self) -> str:
         return f"<BodyBatch {self.name!r} in {self._count} worlds>"
+
+    # Nodes of soft bodies
+
+    @property
+    def nodes(self) -> Array:
+        """Positions of the nodes of a soft body in world axes [m], a view (count, nodes, 3)."""
+        return self._state["node_position"][:, self._nodes]
+
+    @property
+    def node_velocities(self) -> Array:
+        """Velocities of these nodes [m/s], a view (count, nodes, 3)."""
+        return self._state["node_velocity"][:, self._nodes]
+
+    @property
+    def node_forces(self) -> Array:
+        """Forces that act on these nodes in the next step and are cleared by it [N], a view."""
+        return self._state["node_force"][:, self._nodes]
 
     # Joints
 

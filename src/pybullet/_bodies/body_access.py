@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 from struct import Struct
 from typing import TYPE_CHECKING
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
     from carom.algorithms.moving_tree import MovingTree
     from carom.scene.body import Body
-    from pybullet._bodies.link_box import LinkBox
+    from pybullet._bodies.link_box import LinkBox, SoftBox
     from pybullet._clients.clients import Client
 
 _POSE, _SPATIAL = Struct("7d"), Struct("6d")
@@ -53,11 +54,13 @@ class BodyAccess:
         return {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
 
     @cached_property
-    def boxes(self) -> dict[int, LinkBox]:
+    def boxes(self) -> Mapping[int, LinkBox | SoftBox]:
         """The boxes around the links, by index, -1 for the base."""
         # Made late: most scripts never ask, and what it is made with takes long to import.
-        from pybullet._bodies.link_box import LinkBox
+        from pybullet._bodies.link_box import LinkBox, SoftBox
 
+        if self.body.spec.soft is not None:
+            return {-1: SoftBox(self.body)}
         return {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
 
     @cached_property
@@ -95,6 +98,8 @@ class BodyAccess:
     def place_base(self, position: Vector3, orientation: Quaternion) -> None:
         """Puts the base at rest somewhere, as `resetBasePositionAndOrientation` does."""
         with self._client.lock:
+            if self.body.spec.soft is not None:
+                self.body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             _write_spatial(self._velocities, self._velocity_at, *_AT_REST)
             self.body.set_base_pose(position, orientation)
 

@@ -21,7 +21,7 @@ DynamicsInfo = tuple[
     float, float, Vector3, Vector3, Quaternion, float, float, float, float, float, int, float
 ]
 
-_MULTI_BODY = 2
+_MULTI_BODY, _SOFT_BODY = 2, 3
 
 # Defaults. They are told by identity, as an array, which is no number either, cannot be compared.
 _UNCHANGED, _NO_LIMIT = -1, 1
@@ -47,7 +47,8 @@ def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0)
         12 fields: 0 mass [kg], 0 for a fixed base; 1 lateral friction; 2 principal moments of inertia
         [kg m²]; 3 position [m] and 4 quaternion (x, y, z, w) of the inertial frame in the link frame;
         5 restitution; 6 rolling and 7 spinning friction; 8 contact damping and 9 contact stiffness,
-        -1 when not set; 10 type of the body, 2 for articulated ones; 11 collision margin [m].
+        -1 when not set; 10 type of the body, 2 for articulated ones,
+        3 for soft ones; 11 collision margin [m].
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
@@ -68,8 +69,9 @@ def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0)
         fail(problem, no_joint(body, link))
     dynamics = body.dynamics(link)
     frame = body.link_inertial_frame(link)
+    soft = body.spec.soft
     return (
-        dynamics.mass,
+        dynamics.mass if soft is None else float(soft.masses.sum()),
         dynamics.lateral_friction,
         dynamics.inertia,
         frame.position,
@@ -79,8 +81,8 @@ def getDynamicsInfo(bodyUniqueId: int, linkIndex: int, physicsClientId: int = 0)
         dynamics.spinning_friction,
         dynamics.contact_damping,
         dynamics.contact_stiffness,
-        _MULTI_BODY,
-        dynamics.collision_margin,
+        _MULTI_BODY if soft is None else _SOFT_BODY,
+        dynamics.collision_margin if soft is None else soft.margin,
     )
 
 

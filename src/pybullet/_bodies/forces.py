@@ -14,6 +14,8 @@ from pybullet._maths.camera_maths import cross, subtracted
 from pybullet._maths.rotations import turned
 
 if TYPE_CHECKING:
+    from carom.description.pose import Vector3
+    from carom.scene.body import Body
     from pybullet._bodies.body_access import BodyAccess
     from pybullet._clients.clients import Client
 
@@ -41,7 +43,7 @@ def applyExternalForce(
 
     Args:
         objectUniqueId: The body.
-        linkIndex: The link, from 0; -1 for the base.
+        linkIndex: The link, from 0; -1 for the base. Of a soft body the node; -1 for all of it.
         forceObj: Force [N].
         posObj: Where it acts [m].
         flags: `WORLD_FRAME`: both are in the world frame. `LINK_FRAME`: both are in the inertial frame of
@@ -62,6 +64,10 @@ def applyExternalForce(
     force = vector3(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
     point = vector3(posObj, "position needs a 3 coordinates [x,y,z].", "posObj")
     frame = _frame(flags)
+    soft = client.body(objectUniqueId)
+    if soft is not None and soft.spec.soft is not None:
+        _push_node(soft, linkIndex, force, frame)
+        return
     access = _body(client, objectUniqueId, linkIndex, "applyExternalForce")
     if access is None:
         return
@@ -107,6 +113,23 @@ def applyExternalTorque(
     if frame == LINK_FRAME:
         torque = turned(access.inertial_frame(linkIndex)[1], torque)
     access.push(linkIndex, (0.0, 0.0, 0.0), torque)
+
+
+def _push_node(body: Body, node_index: int, force: Vector3, frame: int) -> None:
+    """Adds to the force on a node of a soft body, or shares a force out to all of them, for -1."""
+    from carom.scene.soft_body import SoftBody
+
+    assert isinstance(body, SoftBody)
+    node, forces = integer(node_index, "linkIndex"), body.node_forces
+    if not _BASE <= node < len(forces):
+        fail(_WRONG_LINK, f"It is {node}, and body {body.id} ({body.name}) has {len(forces)} nodes.")
+    if frame == LINK_FRAME:
+        x, y, z, w = body.world.position[body.first_position + 3 : body.first_position + 7].tolist()
+        force = turned((x, y, z, w), force)
+    if node == _BASE:
+        forces += [component / len(forces) for component in force]
+    else:
+        forces[node] += force
 
 
 def _frame(flags: int) -> int:

@@ -11,6 +11,7 @@ from carom.description.transform import NO_ROTATION, rotation_matrix
 from carom.model.body_spec import BASE
 from carom.model.bounds import turned_box
 from carom.model.inertia import is_in_place
+from carom.scene.soft_body import SoftBody
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -44,3 +45,18 @@ class LinkBox:
             center, half = turned_box(center, half, rotation, (x, y, z))
         (cx, cy, cz), (hx, hy, hz) = center, half
         return (cx - hx, cy - hy, cz - hz), (cx + hx, cy + hy, cz + hz)
+
+
+class SoftBox:
+    """The box around a soft body, wherever its nodes are when it is asked for."""
+
+    __slots__ = ("_body",)
+
+    def __init__(self, body: Body) -> None:
+        assert isinstance(body, SoftBody)
+        self._body = body
+
+    def corners(self) -> tuple[Vector3, Vector3]:
+        """The lowest and the highest corner, in the world frame [m]."""
+        (ax, ay, az), (bx, by, bz) = (corner.tolist() for corner in self._body.bounds())
+        return (ax, ay, az), (bx, by, bz)

@@ -1,16 +1,22 @@
-"""Functions that only concern soft bodies. There are none in Carom yet, so each refuses what it is given."""
+"""What only soft bodies have: anchors, tetrahedra, nodes that are put elsewhere."""
 
 from __future__ import annotations
 
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
-from pybullet._calls.arguments import Vector, Vectors, integer
+from pybullet._calls.arguments import Vector, Vectors, integer, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
-from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import body_of
+from pybullet._clients.clients import Client, client_of
+from pybullet._clients.lookup import BASE, body_of, no_body
+
+if TYPE_CHECKING:
+    from carom.description.pose import Vector3
+    from carom.scene.soft_body import SoftBody
 
 __all__ = ["createSoftBodyAnchor", "getTetraMeshData", "resetMeshData"]
+
+_WORLD = -1
 
 
 @exported
@@ -22,76 +28,113 @@ def createSoftBodyAnchor(
     bodyFramePosition: Vector | None = None,
     physicsClientId: int = 0,
 ) -> int:
-    """Ties a point of a soft body to a body. As for any rigid body in PyBullet, it fails.
+    """Holds a node of a soft body where it is, in the world or at a link, which feels its pull.
 
     Args:
         softBodyBodyUniqueId: The soft body.
-        nodeIndex: Its point.
-        bodyUniqueId: The body; -1 for the world.
-        linkIndex: Its link.
-        bodyFramePosition: Where on it [m].
+        nodeIndex: Its node, from 0; see `getMeshData` with `MESH_DATA_SIMULATION_MESH`.
+        bodyUniqueId: The body that holds it; -1 for the world.
+        linkIndex: Its link; -1 for the base.
+        bodyFramePosition: Without effect, as in PyBullet: the node stays where it is.
         physicsClientId: The connection.
 
+    Returns:
+        The number of the anchor, for `removeConstraint`.
+
     Raises:
-        pybullet.error: Always: not connected, or the body is not soft.
+        pybullet.error: Not connected, the body is not soft, or there is no such node, body or link.
 
     Examples:
-        >>> try:
-        ...     p.createSoftBodyAnchor(cube, 0)
-        ... except p.error as problem:
-        ...     print(problem)
-        createSoftBodyAnchor failed. Body 2 is rigid; Carom has no soft bodies in this version.
+        >>> p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+        >>> cloth = p.loadSoftBody("cloth_z_up.obj", useMassSpring=1, springElasticStiffness=40)
+        >>> anchor = p.createSoftBodyAnchor(cloth, 0)
+        >>> p.getNumConstraints()
+        1
     """
-    for value, name in ((nodeIndex, "nodeIndex"), (bodyUniqueId, "bodyUniqueId"), (linkIndex, "linkIndex")):
-        integer(value, name)
-    _refuse(softBodyBodyUniqueId, "createSoftBodyAnchor failed.", physicsClientId)
+    problem = "createSoftBodyAnchor failed."
+    node, number = integer(nodeIndex, "nodeIndex"), integer(bodyUniqueId, "bodyUniqueId")
+    link = integer(linkIndex, "linkIndex")
+    if bodyFramePosition is not None:
+        vector3(bodyFramePosition, problem, "bodyFramePosition")
+    client = client_of(physicsClientId)
+    soft, holder = _soft_body(client, softBodyBodyUniqueId, problem), None
+    if number != _WORLD:
+        holder = client.world.bodies.get(number)
+        if holder is None:
+            fail(problem, no_body(number))
+    try:
+        with client.lock:
+            return soft.anchor(node, holder, BASE if holder is None else link).id
+    except (IndexError, ValueError) as reason:
+        fail(problem, f"{reason}.")
 
 
 @exported
-def getTetraMeshData(bodyUniqueId: int, flags: int = -1, physicsClientId: int = 0) -> tuple[int, Any]:
-    """The tetrahedra of a soft body. As for any rigid body in PyBullet, it fails; see `getMeshData`.
+def getTetraMeshData(
+    bodyUniqueId: int, flags: int = -1, physicsClientId: int = 0
+) -> tuple[int, tuple[Vector3, ...]]:
+    """The corners of the tetrahedra of a soft body, four for each.
 
     Args:
         bodyUniqueId: The body.
-        flags: `MESH_DATA_SIMULATION_MESH`.
+        flags: Without effect.
         physicsClientId: The connection.
 
+    Returns:
+        (how many, (x, y, z) of each in the world frame [m]).
+
     Raises:
-        pybullet.error: Always: not connected, or the body is not soft.
+        pybullet.error: Not connected, or the body is not soft.
 
     Examples:
         >>> try:
         ...     p.getTetraMeshData(cube)
         ... except p.error as problem:
         ...     print(problem)
-        getTetraMeshData failed Body 2 is rigid; Carom has no soft bodies in this version.
+        getTetraMeshData failed Body 2 is rigid.
     """
     integer(flags, "flags")
-    _refuse(bodyUniqueId, "getTetraMeshData failed", physicsClientId)
+    soft = _soft_body(client_of(physicsClientId), bodyUniqueId, "getTetraMeshData failed")
+    corners = soft.nodes[soft.tetrahedra.reshape(-1)]
+    return len(corners), tuple(map(tuple, corners.tolist()))
 
 
 @exported
 def resetMeshData(bodyUniqueId: int, vertices: Vectors, physicsClientId: int = 0) -> None:
-    """Moves the points of a soft body. As for any rigid body in PyBullet, it fails.
+    """Puts the nodes of a soft body elsewhere; they keep their velocities.
 
     Args:
         bodyUniqueId: The body.
-        vertices: Their positions [m].
+        vertices: (x, y, z) of each node in the world frame [m]; see `getMeshData` with
+            `MESH_DATA_SIMULATION_MESH`.
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Always: not connected, or the body is not soft.
+        pybullet.error: Not connected, the body is not soft, or there are not as many as it has nodes, each of
+            three finite numbers.
 
     Examples:
-        >>> try:
-        ...     p.resetMeshData(cube, [[0, 0, 0]])
-        ... except p.error as problem:
-        ...     print(problem)
-        resetMeshData failed Body 2 is rigid; Carom has no soft bodies in this version.
+        >>> p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+        >>> cloth = p.loadSoftBody("cloth_z_up.obj", useMassSpring=1, springElasticStiffness=40)
+        >>> count, nodes = p.getMeshData(cloth, flags=p.MESH_DATA_SIMULATION_MESH)
+        >>> p.resetMeshData(cloth, [(x, y, z + 1) for x, y, z in nodes])
+        >>> round(p.getBasePositionAndOrientation(cloth)[0][2], 9)
+        1.0
     """
-    _refuse(bodyUniqueId, "resetMeshData failed", physicsClientId)
+    problem = "resetMeshData failed"
+    client = client_of(physicsClientId)
+    soft = _soft_body(client, bodyUniqueId, problem)
+    try:
+        with client.lock:
+            soft.set_nodes(vertices)  # type: ignore[arg-type]
+    except ValueError as reason:
+        fail(problem, f"{reason}.")
 
 
-def _refuse(body_id: Any, problem: str, physics_client_id: Any) -> NoReturn:
-    body = body_of(client_of(physics_client_id), body_id, problem)
-    fail(problem, f"Body {body.id} is rigid; Carom has no soft bodies in this version.")
+def _soft_body(client: Client, body_id: Any, problem: str) -> SoftBody:
+    from carom.scene.soft_body import SoftBody
+
+    body = body_of(client, body_id, problem)
+    if not isinstance(body, SoftBody):
+        fail(problem, f"Body {body.id} is rigid.")
+    return body

@@ -52,6 +52,7 @@ class Client:
         states: States the script has saved, by id.
         window: What the script sees of a graphical interface.
         clock: Steps the world by the wall clock while that is asked for.
+        deformable: The world is one of `resetSimulation(RESET_USE_DEFORMABLE_WORLD)`.
         lock: Held during a step and while bodies come, go or change shape. Getters and setters of the
             state do without: they read and write single numbers.
     """
@@ -59,6 +60,7 @@ class Client:
     __slots__ = (
         "bodies",
         "clock",
+        "deformable",
         "lock",
         "logs",
         "method",
@@ -85,6 +87,7 @@ class Client:
         self.time_step = world.parameters.time_step
         self.real_time = 0
         self.report_analytics = False
+        self.deformable = False
         self.search_path: Path | None = None
         self.shapes = ShapeRegistry()
         self.logs = Logs()

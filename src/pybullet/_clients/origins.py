@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 
@@ -17,7 +18,7 @@ class FileLoad:
     """
 
     function: str
-    arguments: dict[str, float]
+    arguments: Mapping[str, float | str]
     takes_pose: bool = False
     count: int = 1
 

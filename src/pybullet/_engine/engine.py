@@ -8,7 +8,7 @@ from typing import Any
 from carom.errors import SimulationError
 from pybullet._calls.arguments import integer, quantity, real
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import DIRECT
+from pybullet._calls.constants import DIRECT, RESET_USE_DEFORMABLE_WORLD
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.shape_registry import ShapeRegistry
@@ -83,7 +83,8 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
     `fixedTimeStep` and `numSubSteps` stay as they are. Body ids start at 0 again.
 
     Args:
-        flags: `RESET_USE_*` for another kind of world; worlds of rigid bodies are the same with each.
+        flags: `RESET_USE_*` for another kind of world. Rigid bodies are the same in each; what
+            `loadSoftBody` makes is said by its parameters with `RESET_USE_DEFORMABLE_WORLD` only.
         physicsClientId: The connection.
 
     Raises:
@@ -95,7 +96,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
         0
     """
     client = client_of(physicsClientId)
-    integer(flags, "flags")
+    deformable = bool(integer(flags, "flags") & RESET_USE_DEFORMABLE_WORLD)
     with client.lock:
         client.bodies.forget_all()
 
@@ -104,6 +105,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
             client.states.clear()
             client.origins.clear()
             client.report_analytics = False
+            client.deformable = deformable
             client.window.remove_drawings()
 
         client.world.reset(also)

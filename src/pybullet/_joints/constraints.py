@@ -15,6 +15,7 @@ from pybullet._clients.lookup import no_body
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
+    from carom.model.soft_arrays import Anchor
     from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
 
@@ -200,6 +201,12 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
     client = client_of(physicsClientId)
     number = integer(userConstraintUniqueId, "userConstraintUniqueId")
     constraint = client.world.user_constraints.get(number)
+    if number in client.world.contact_arrays.soft.anchors:
+        from carom.scene.soft_anchors import remove_anchor
+
+        with client.lock:
+            remove_anchor(client.world, number)
+        return
     if constraint is None:
         logger.warning("removeConstraint: there is no constraint %s.", number)
         return
@@ -209,7 +216,7 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
 
 @exported
 def getNumConstraints(physicsClientId: int = 0) -> int:
-    """The number of constraints.
+    """The number of constraints, anchors of soft bodies included.
 
     Args:
         physicsClientId: The connection.
@@ -224,7 +231,7 @@ def getNumConstraints(physicsClientId: int = 0) -> int:
         >>> p.getNumConstraints()
         0
     """
-    return len(client_of(physicsClientId).world.user_constraints)
+    return len(_numbers(client_of(physicsClientId)))
 
 
 @exported
@@ -246,9 +253,9 @@ def getConstraintUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
         >>> p.getConstraintUniqueId(0) == tie
         True
     """
-    constraints = client_of(physicsClientId).world.user_constraints.all
+    numbers = _numbers(client_of(physicsClientId))
     index = integer(serialIndex, "serialIndex")
-    return constraints[index].id if 0 <= index < len(constraints) else -1
+    return numbers[index] if 0 <= index < len(numbers) else -1
 
 
 @exported
@@ -263,7 +270,8 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
         (parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis,
         parentFramePosition, childFramePosition, parentFrameOrientation, childFrameOrientation, maxForce,
         gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world, and gearAuxLink
-        is 0 also where there is none.
+        is 0 also where there is none. Of the anchor of a soft body, a point-to-point constraint, the parent
+        is the soft body and its link the node.
 
     Raises:
         pybullet.error: Not connected, or there is no such constraint.
@@ -274,6 +282,11 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
         >>> info[0] == cube, info[4] == p.JOINT_FIXED, info[7]
         (True, True, (0.5, 0.0, 1.0))
     """
+    anchor = client_of(physicsClientId).world.contact_arrays.soft.anchors.get(
+        integer(constraintUniqueId, "constraintUniqueId")
+    )
+    if anchor is not None:
+        return _anchor_info(client_of(physicsClientId), anchor)
     constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't get user constraint info")
     return (
         constraint.parent.id,
@@ -320,6 +333,23 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
     # PyBullet's point-to-point rows count the other way round.
     sign = -1.0 if constraint.kind == JOINT_POINT2POINT else 1.0
     return tuple((sign * impulses / world.parameters.substep_time).tolist())
+
+
+def _numbers(client: Client) -> list[int]:
+    """The numbers of all constraints, in the order they were made."""
+    world = client.world
+    return sorted(
+        [constraint.id for constraint in world.user_constraints.all] + [*world.contact_arrays.soft.anchors]
+    )
+
+
+def _anchor_info(client: Client, anchor: Anchor) -> ConstraintInfo:
+    numbers = {id(body.rows): body.id for body in client.world.bodies.values()}
+    child = _WORLD if anchor.body is None else numbers[id(anchor.body)]
+    none, no_turn = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+    parent = numbers[id(anchor.soft.rows)]
+    ends = (parent, anchor.node, child, anchor.link, JOINT_POINT2POINT)
+    return (*ends, none, none, anchor.pivot, no_turn, no_turn, 0.0, 0.0, 0, 0.0, 0.0)
 
 
 def _constraint(number: int, physics_client_id: int, problem: str) -> UserConstraint:

@@ -14,6 +14,7 @@ from pybullet._clients.clients import Client, client_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.soft_body import SoftBody
     from carom.scene.user_constraints import UserConstraint
     from pybullet._clients.origins import FileLoad
 
@@ -54,7 +55,8 @@ def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     name = text(worldFileName, "worldFileName")
     with client.lock:
-        lines = [*_START, *_bodies(client), *_constraints(client), *_parameters(client)]
+        kind = ["p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)"] if client.deformable else []
+        lines = [*_START, *kind, *_bodies(client), *_constraints(client), *_parameters(client)]
     try:
         with open(name, "w", encoding="utf-8") as file:
             file.write("\n".join(lines) + "\n")
@@ -118,6 +120,9 @@ def _state(body: Body) -> Iterator[str]:
     velocity = world.velocity[body.first_velocity :][:6].tolist()
     if any(velocity):
         yield call("resetBaseVelocity", handle, velocity[3:], velocity[:3])
+    soft = _soft(body)
+    if soft is not None:
+        yield call("resetMeshData", handle, soft.nodes.tolist())
     for joint in range(body.joint_count):
         q, u = body.position_index[joint], body.velocity_index[joint]
         positions = world.position[q:][: body.position_count[joint]].tolist()
@@ -129,6 +134,28 @@ def _state(body: Body) -> Iterator[str]:
 def _constraints(client: Client) -> Iterator[str]:
     for constraint in client.world.user_constraints.all:
         yield from _constraint(constraint)
+    for body in client.world.bodies.values():
+        soft = _soft(body)
+        if soft is not None:
+            yield from _anchors(soft)
+
+
+def _soft(body: Body) -> SoftBody | None:
+    if body.spec.soft is None:
+        return None
+    from carom.scene.soft_body import SoftBody
+
+    assert isinstance(body, SoftBody)
+    return body
+
+
+def _anchors(soft: SoftBody) -> Iterator[str]:
+    from pybullet._loading.shape_script import Raw, call
+
+    handles = {id(body.rows): Raw(f"bodies[{body.id}]") for body in soft.world.bodies.values()}
+    for anchor in soft.anchors:
+        holder = -1 if anchor.body is None else handles[id(anchor.body)]
+        yield call("createSoftBodyAnchor", handles[id(soft.rows)], anchor.node, holder, anchor.link)
 
 
 def _constraint(it: UserConstraint) -> Iterator[str]:

@@ -14,8 +14,25 @@ from carom.layouts.flags import LoadFlags
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import mesh_geometries, shape_pieces
 from carom.scene.body import Body
+from carom.scene.soft_body import SoftBody
+from pybullet._calls.constants import MESH_DATA_SIMULATION_MESH
 
 Corners = NDArray[np.float64]
+
+
+# Flags of `getMeshData` for soft bodies; the second has no name in PyBullet.
+_VELOCITIES = 8
+
+
+def soft_corners(body: Body, flags: int) -> tuple[int, tuple[Vector3, ...]]:
+    """What `getMeshData` returns of a soft body; negative flags are none."""
+    assert isinstance(body, SoftBody)
+    bits = max(flags, 0)
+    values = body.node_velocities if bits & _VELOCITIES else body.nodes
+    if not bits & (MESH_DATA_SIMULATION_MESH | _VELOCITIES):
+        vertices, triangles = body.surface
+        values = vertices[triangles.reshape(-1)]
+    return len(values), tuple(map(tuple, values.tolist()))
 
 
 def hull_corners(body: Body, link: int, index: int) -> tuple[Vector3, ...]:

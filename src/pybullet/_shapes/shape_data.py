@@ -134,6 +134,8 @@ def getVisualShapeData(
         for link in range(BASE, body.joint_count):
             for look in appearance.shapes(body, link):
                 described = _visual_geometry(look.geometry)
+                if body.spec.soft is not None:
+                    described = (*described[:2], str(body.spec.source or "").encode())
                 frame = look.frame
                 data = (body.id, link, *described, frame.position, frame.orientation, look.rgba)
                 result.append((*data, look.texture) if bits & VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS else data)
@@ -148,17 +150,19 @@ def getMeshData(
     flags: int = -1,
     physicsClientId: int = 0,
 ) -> tuple[int, tuple[Vector3, ...]]:
-    """The corners of the convex hulls a link collides with. Other shapes have none.
+    """The corners of the convex hulls a link collides with, or those of a soft body. Other shapes have none.
 
     Args:
         bodyUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
         collisionShapeIndex: Which of several shapes; -1 for all.
-        flags: For deformable bodies.
+        flags: Of a soft body: `MESH_DATA_SIMULATION_MESH` for its nodes; else the corners of all triangles
+            of its surface, three for each. 8 besides: the velocities of the nodes [m/s].
         physicsClientId: The connection.
 
     Returns:
-        (how many, (x, y, z) of each [m] in the inertial frame of the link).
+        (how many, (x, y, z) of each [m] in the inertial frame of the link; of a soft body in the world
+        frame).
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
@@ -169,9 +173,13 @@ def getMeshData(
         True
     """
     client = client_of(physicsClientId)
+    index, bits = integer(collisionShapeIndex, "collisionShapeIndex"), integer(flags, "flags")
+    soft = client.body(bodyUniqueId)
+    if soft is not None and soft.spec.soft is not None:
+        from pybullet._shapes.mesh_data import soft_corners
+
+        return soft_corners(soft, bits)
     body, link = _body_and_link(client, bodyUniqueId, linkIndex, _NO_MESH)
-    index = integer(collisionShapeIndex, "collisionShapeIndex")
-    integer(flags, "flags")
 
     from pybullet._shapes.mesh_data import hull_corners
 

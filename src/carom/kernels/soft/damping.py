@@ -1,0 +1,70 @@
+"""Internal friction of soft bodies: what springs and tetrahedra do to the velocities of nodes.
+
+A force -D v acts for a small step of length h. Scaled by a / (a + h b), where a is the power v D v it takes
+and b the sum of the squared forces by the masses, it never turns motion round, however large D is.
+"""
+
+import warp as wp
+
+from carom.kernels.soft.elasticity import column, edges
+from carom.kernels.structs import SoftModel, State
+from carom.kernels.types import Int32, func, real
+
+_SHORTEST = real(1.0e-12)
+
+
+@func
+def damp_springs(soft: SoftModel, state: State, world: Int32, body: Int32, h: real):
+    """Slow the ends of each spring of a body against each other."""
+    first = soft.soft[body].first_spring
+    for spring in range(first, first + soft.soft[body].spring_count):
+        damping = soft.spring[spring].damping
+        if damping > 0.0:
+            a = soft.spring[spring].a
+            b = soft.spring[spring].b
+            inverse_a = soft.node_inverse_mass[a]
+            inverse_b = soft.node_inverse_mass[b]
+            closing = state.node_velocity[world, b] - state.node_velocity[world, a]
+            push = closing * (damping * h / (1.0 + damping * h * (inverse_a + inverse_b)))
+            if soft.spring[spring].all_directions == 0:
+                apart = state.node_position[world, b] - state.node_position[world, a]
+                push = apart * (wp.dot(push, apart) / (wp.dot(apart, apart) + _SHORTEST * _SHORTEST))
+            state.node_velocity[world, a] += push * inverse_a
+            state.node_velocity[world, b] -= push * inverse_b
+
+
+@func
+def damp_tetras(soft: SoftModel, state: State, world: Int32, body: Int32, h: real):
+    """Slow the change of shape of each tetrahedron of a body.
+
+    The stress is that of a viscous solid: `damping` times what mu and lam make of the rate of the strain
+    (FᵀF - 1) / 2, twice that for shear. Turning as a whole is no strain and is not slowed.
+    """
+    share = soft.soft[body].damping
+    mu = soft.soft[body].mu * share
+    lam = soft.soft[body].lam * share
+    first = soft.soft[body].first_tetra
+    if share > 0.0:
+        for tetra in range(first, first + soft.soft[body].tetra_count):
+            four = soft.tetra[tetra].nodes
+            inverse = soft.tetra[tetra].inverse
+            f = edges(state.node_position, world, four) * inverse
+            rate = wp.transpose(f) * (edges(state.node_velocity, world, four) * inverse)
+            strain = (rate + wp.transpose(rate)) * 0.5
+            trace = strain[0, 0] + strain[1, 1] + strain[2, 2]
+            stress = strain * (2.0 * mu) + wp.identity(3, real) * (lam * trace)
+            volume = soft.tetra[tetra].volume
+            force = (f * stress * wp.transpose(inverse)) * (-volume)
+            force_first = -(column(force, 0) + column(force, 1) + column(force, 2))
+            power = volume * wp.ddot(strain, stress)
+            response = soft.node_inverse_mass[four[0]] * wp.dot(force_first, force_first)
+            for i in range(3):
+                along = column(force, i)
+                response += soft.node_inverse_mass[four[i + 1]] * wp.dot(along, along)
+            if power > 0.0:
+                scale = h * power / (power + h * response)
+                state.node_velocity[world, four[0]] += force_first * (scale * soft.node_inverse_mass[four[0]])
+                for i in range(3):
+                    state.node_velocity[world, four[i + 1]] += column(force, i) * (
+                        scale * soft.node_inverse_mass[four[i + 1]]
+                    )

@@ -1,0 +1,176 @@
+"""Elastic forces as displacements, one spring or tetrahedron after the other.
+
+A substep consists of *small steps*. In each, nodes move on freely, and every spring and tetrahedron moves
+its corners by what its force does. As long as a small step is short for it, that is the force where the nodes
+were at its start: symplectic Euler, which keeps energy and is at rest exactly where forces balance. Otherwise
+it is implicit in time: extended position-based dynamics (XPBD; Macklin, Müller, Chentanez, 2016) with one
+sweep for each of many small steps (Macklin et al., "Small Steps in Physics Simulation", 2019). For an energy
+k C² / 2 that is the impulse along grad C of -k C h / (1 + k h² w), w being the inverse mass that C sees. It
+gives way where it cannot follow, and never overshoots.
+"""
+
+import warp as wp
+
+from carom.kernels.structs import SoftModel, SoftWork, State
+from carom.kernels.types import Index4, Int32, Matrix3, Vector3, Vector3Rows, func, real
+
+# Shorter springs have no direction [m].
+_SHORTEST = real(1.0e-12)
+# Stiffness by inertia of a spring or tetrahedron, k h² w, from which on its force is implicit.
+_EXPLICIT = real(0.6)
+# Phase of the fastest vibration in shear that a small step can follow [rad].
+_LONGEST_PHASE = real(2.0)
+
+
+@func
+def relax_springs(soft: SoftModel, state: State, work: SoftWork, world: Int32, body: Int32, h: real):
+    """Move the ends of each spring of a body by what its force does in a small step of `h` [s]."""
+    first = soft.soft[body].first_spring
+    for spring in range(first, first + soft.soft[body].spring_count):
+        a = soft.spring[spring].a
+        b = soft.spring[spring].b
+        inverse_a = soft.node_inverse_mass[a]
+        inverse_b = soft.node_inverse_mass[b]
+        gain = soft.spring[spring].stiffness * h * h
+        stiffness = gain * (inverse_a + inverse_b)
+        apart = work.node_before[world, b] - work.node_before[world, a]
+        if stiffness > _EXPLICIT:
+            apart = state.node_position[world, b] - state.node_position[world, a]
+            gain = gain / (1.0 + stiffness)
+        length = wp.length(apart)
+        if length > _SHORTEST:
+            push = apart * (gain * (length - soft.spring[spring].length) / length)
+            state.node_position[world, a] += push * inverse_a
+            state.node_position[world, b] -= push * inverse_b
+
+
+@func
+def edges(places: Vector3Rows, world: Int32, four: Index4) -> Matrix3:
+    """The edges of a tetrahedron from its first node, as columns, by where nodes are."""
+    origin = places[world, four[0]]
+    p = places[world, four[1]] - origin
+    q = places[world, four[2]] - origin
+    r = places[world, four[3]] - origin
+    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+
+
+@func
+def column(matrix: Matrix3, i: Int32) -> Vector3:
+    """Column `i` of a matrix."""
+    return Vector3(matrix[0, i], matrix[1, i], matrix[2, i])
+
+
+@func
+def cofactors(f: Matrix3) -> Matrix3:
+    """Derivative of the determinant of a matrix by its entries."""
+    first = column(f, 0)
+    second = column(f, 1)
+    third = column(f, 2)
+    a = wp.cross(second, third)
+    b = wp.cross(third, first)
+    c = wp.cross(first, second)
+    return Matrix3(a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2])
+
+
+@func
+def relax_tetra(
+    soft: SoftModel,
+    state: State,
+    places: Vector3Rows,
+    world: Int32,
+    tetra: Int32,
+    shear_gain: real,
+    bulk_gain: real,
+    implicit: bool,
+) -> bool:
+    """Move the corners of a tetrahedron by what its stress does in a small step.
+
+    Args:
+        soft: The soft bodies.
+        state: Where their nodes are.
+        places: Where they are taken to be for the stress.
+        world: The world.
+        tetra: The tetrahedron.
+        shear_gain: mu, times its volume and the square of the small step.
+        bulk_gain: lam, likewise.
+        implicit: Whether the stress is that at the end of the small step.
+
+    Returns:
+        False if it is too stiff for what is not implicit; nothing has moved then.
+    """
+    four = soft.tetra[tetra].nodes
+    inverse = soft.tetra[tetra].inverse
+    f = edges(places, world, four) * inverse
+    cofactor = cofactors(f)
+    determinant = wp.dot(column(f, 0), column(cofactor, 0))
+    squares = wp.ddot(f, f)
+    shear = wp.sqrt(squares - wp.log(squares + 1.0))
+    shear_scale = (1.0 - 1.0 / (squares + 1.0)) / shear
+    # Gradients by the corners are columns of these; that by the first is what is missing to zero.
+    to_edges = wp.transpose(inverse)
+    shear_gradient = (f * to_edges) * shear_scale
+    bulk_gradient = cofactor * to_edges
+    shear_first = -(column(shear_gradient, 0) + column(shear_gradient, 1) + column(shear_gradient, 2))
+    bulk_first = -(column(bulk_gradient, 0) + column(bulk_gradient, 1) + column(bulk_gradient, 2))
+    inverse_mass = soft.node_inverse_mass[four[0]]
+    shear_mass = inverse_mass * wp.dot(shear_first, shear_first)
+    bulk_mass = inverse_mass * wp.dot(bulk_first, bulk_first)
+    both_mass = inverse_mass * wp.dot(shear_first, bulk_first)
+    for i in range(3):
+        inverse_mass = soft.node_inverse_mass[four[i + 1]]
+        shear_column = column(shear_gradient, i)
+        bulk_column = column(bulk_gradient, i)
+        shear_mass += inverse_mass * wp.dot(shear_column, shear_column)
+        bulk_mass += inverse_mass * wp.dot(bulk_column, bulk_column)
+        both_mass += inverse_mass * wp.dot(shear_column, bulk_column)
+    along_shear = -shear_gain * shear
+    along_bulk = -(bulk_gain * (determinant - 1.0) - 0.75 * shear_gain)
+    if implicit:
+        # (1 + K h² W) displacement = -K h² C, with K = volume (mu, lam).
+        a = 1.0 + shear_gain * shear_mass
+        b = shear_gain * both_mass
+        c = bulk_gain * both_mass
+        d = 1.0 + bulk_gain * bulk_mass
+        scale = 1.0 / (a * d - b * c)
+        wanted = along_shear
+        along_shear = (d * wanted - b * along_bulk) * scale
+        along_bulk = (a * along_bulk - c * wanted) * scale
+    elif shear_gain * shear_mass + bulk_gain * bulk_mass > _EXPLICIT:
+        return False
+    state.node_position[world, four[0]] += (
+        shear_first * along_shear + bulk_first * along_bulk
+    ) * soft.node_inverse_mass[four[0]]
+    for i in range(3):
+        state.node_position[world, four[i + 1]] += (
+            column(shear_gradient, i) * along_shear + column(bulk_gradient, i) * along_bulk
+        ) * soft.node_inverse_mass[four[i + 1]]
+    return True
+
+
+@func
+def relax_tetras(soft: SoftModel, state: State, work: SoftWork, world: Int32, body: Int32, h: real):
+    """Move the corners of each tetrahedron of a body by what its stress does in a small step of `h` [s].
+
+    The energy is the stable Neo-Hookean one of Smith, de Goes and Kim (2018), which Bullet has: with the
+    gradient F of the deformation, J = det F and I = tr FᵀF,
+
+        mu/2 (I - 3) - mu/2 log(I + 1) + lam/2 (J - 1 - 3/4 mu/lam)².
+
+    Its two parts are the squares of sqrt(I - log(I + 1)) and of the rest. At rest they are in balance, so
+    they have to be relaxed together, as in Macklin and Müller (2021): two equations for each tetrahedron.
+
+    What resists to shear are the stresses of that balance, which these equations do not see change. So both
+    parameters give way together where a small step is too long for them.
+    """
+    phase = soft.soft[body].shear_frequency * h
+    share = h * h
+    if phase > _LONGEST_PHASE:
+        share = share * (_LONGEST_PHASE * _LONGEST_PHASE / (phase * phase))
+    first = soft.soft[body].first_tetra
+    for tetra in range(first, first + soft.soft[body].tetra_count):
+        volume = soft.tetra[tetra].volume * share
+        shear_gain = soft.soft[body].mu * volume
+        bulk_gain = soft.soft[body].lam * volume
+        done = relax_tetra(soft, state, work.node_before, world, tetra, shear_gain, bulk_gain, False)
+        if not done:
+            done = relax_tetra(soft, state, state.node_position, world, tetra, shear_gain, bulk_gain, True)

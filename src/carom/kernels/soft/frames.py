@@ -1,0 +1,112 @@
+"""The pose and the velocity of a soft body as a whole, which the tree that stands for it has."""
+
+import warp as wp
+
+from carom.kernels.dynamics.quarantine import report_fault
+from carom.kernels.soft.elasticity import column
+from carom.kernels.structs import Model, SoftModel, State
+from carom.kernels.types import Int32, Matrix3, Quaternion, Transform, Vector3, func, real
+
+# Turns are found by iteration, which starts from the last one: at most so often, until it turns by less.
+_MOST_TURNS = 20
+_LEAST_TURN = real(1.0e-10)
+# Keeps what has no extent from being turned, or divided by.
+_TINY = real(1.0e-12)
+
+
+@func
+def counts(soft: SoftModel, node: Int32) -> real:
+    """1 for a node that moves, 0 for one that is held in the world: that has no mass."""
+    return wp.where(soft.node_inverse_mass[node] > 0.0, real(1.0), real(0.0))
+
+
+@func
+def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
+    """The rotation nearest to a matrix of moments (Müller, Bender, Chentanez, Macklin, 2016).
+
+    Args:
+        start: A rotation near it.
+        matrix: Sum of the products of positions and of the positions at rest.
+    """
+    q = wp.normalize(start)
+    turning = Int32(0)
+    while turning < _MOST_TURNS:
+        frame = wp.quat_to_matrix(q)
+        torque = Vector3(0.0, 0.0, 0.0)
+        weight = real(0.0)
+        for axis in range(3):
+            torque += wp.cross(column(frame, axis), column(matrix, axis))
+            weight += wp.dot(column(frame, axis), column(matrix, axis))
+        rate = torque / (wp.abs(weight) + _TINY)
+        angle = wp.length(rate)
+        turning += 1
+        if angle > _LEAST_TURN:
+            q = wp.normalize(wp.quat_from_axis_angle(rate / angle, angle) * q)
+        else:
+            turning = Int32(_MOST_TURNS)
+    return q
+
+
+@func
+def report_nodes(state: State, soft: SoftModel, world: Int32, body: Int32):
+    """Report a node whose place or velocity is not finite as the fault of its body."""
+    first = soft.soft[body].first_node
+    total = Vector3(0.0, 0.0, 0.0)
+    for node in range(first, first + soft.soft[body].node_count):
+        total += state.node_position[world, node] + state.node_velocity[world, node]
+    report_fault(state, world, soft.soft[body].tree, total[0] + total[1] + total[2])
+
+
+@func
+def follow_nodes(model: Model, state: State, soft: SoftModel, world: Int32, body: Int32):
+    """Put the tree that stands for a body where its nodes are, and let it move as they do.
+
+    Its position is their centre of mass, its orientation the rotation that takes the shape at rest nearest
+    to theirs.
+    """
+    first = soft.soft[body].first_node
+    last = first + soft.soft[body].node_count
+    mass = real(0.0)
+    center = Vector3(0.0, 0.0, 0.0)
+    velocity = Vector3(0.0, 0.0, 0.0)
+    everywhere = Vector3(0.0, 0.0, 0.0)
+    for node in range(first, last):
+        share = counts(soft, node)
+        mass += share
+        center += state.node_position[world, node] * share
+        velocity += state.node_velocity[world, node] * share
+        everywhere += state.node_position[world, node]
+    if mass > 0.0:
+        center = center / mass
+        velocity = velocity / mass
+    else:
+        center = everywhere / real(last - first)
+    moments = Matrix3(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    inertia = wp.identity(3, real) * _TINY
+    spin = Vector3(0.0, 0.0, 0.0)
+    for node in range(first, last):
+        arm = state.node_position[world, node] - center
+        moments += wp.outer(arm, soft.node_rest[node])
+        share = counts(soft, node)
+        inertia += (wp.identity(3, real) * wp.dot(arm, arm) - wp.outer(arm, arm)) * share
+        spin += wp.cross(arm, state.node_velocity[world, node] - velocity) * share
+    tree = soft.soft[body].tree
+    place = model.tree[tree].first_position
+    turn = turned(
+        Quaternion(
+            state.position[world, place + 3],
+            state.position[world, place + 4],
+            state.position[world, place + 5],
+            state.position[world, place + 6],
+        ),
+        moments,
+    )
+    rate = wp.inverse(inertia) * spin
+    rates = model.tree[tree].first_velocity
+    for axis in range(3):
+        state.position[world, place + axis] = center[axis]
+        state.dof_velocity[world, rates + axis] = rate[axis]
+        state.dof_velocity[world, rates + 3 + axis] = velocity[axis]
+    for i in range(4):
+        state.position[world, place + 3 + i] = turn[i]
+    state.link_pose[world, model.tree[tree].first_link] = Transform(center, turn)

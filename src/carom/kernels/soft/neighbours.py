@@ -1,0 +1,289 @@
+"""Nodes of soft bodies near their faces: of other bodies, and of their own.
+
+Once for each substep nodes are put into the cells of a grid, and each face finds those near it. A node
+remembers the nearest faces and on which side of them it is; within the small steps it stays there, at a
+distance.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.filters import masks_match, pair_filter
+from carom.kernels.maths.min_max import greatest_entry, lower_corner, maximum, minimum, upper_corner
+from carom.kernels.soft.nearest import away_from, on_triangle, sign_of
+from carom.kernels.structs import Model, Settings, Shapes, SoftModel, SoftWork, State
+from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
+from carom.layouts.soft import BODIES, BUCKETS, FACES_PER_NODE
+
+_TINY = real(1.0e-12)
+# Faces that go across more cells have been torn apart; looking through all of these would take forever.
+_WIDEST = real(32.0)
+# Faces go on a little beyond their edges, so that a node right above a node is above some face.
+_BESIDE = real(-0.05)
+# Factors of the coordinates of a cell in its hash: large primes, as in Teschner et al. (2003).
+_HASH_X, _HASH_Y, _HASH_Z = wp.constant(73856093), wp.constant(19349663), wp.constant(83492791)
+
+
+@func
+def cell_of(place: real, size: real) -> Int32:
+    """The cell along one axis that holds a place."""
+    return Int32(wp.clamp(wp.floor(place / size), -1.0e6, 1.0e6))
+
+
+@func
+def bucket_of(x: Int32, y: Int32, z: Int32) -> Int32:
+    """Where the nodes of a cell are listed."""
+    mixed = (x * _HASH_X) ^ (y * _HASH_Y) ^ (z * _HASH_Z)
+    return mixed & (BUCKETS - 1)
+
+
+@func
+def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size: real):
+    """Put the nodes of all bodies that have faces into the cells of a grid."""
+    for bucket in range(BUCKETS):
+        work.bucket_first[world, bucket] = -1
+    for body in range(soft.count_soft[BODIES]):
+        first = soft.soft[body].first_node
+        for node in range(first, first + soft.soft[body].node_count):
+            work.node_faces[world, node] = 0
+            place = state.node_position[world, node]
+            bucket = bucket_of(cell_of(place[0], size), cell_of(place[1], size), cell_of(place[2], size))
+            work.node_body[world, node] = body
+            work.node_next[world, node] = work.bucket_first[world, bucket]
+            work.bucket_first[world, bucket] = node
+
+
+@func
+def grid_size(soft: SoftModel, state: State, world: Int32) -> real:
+    """Size of the cells: the mean extent of the faces, and their reach on both sides [m]."""
+    total = real(0.0)
+    count = real(0.0)
+    thickness = real(0.0)
+    for body in range(soft.count_soft[BODIES]):
+        first = soft.soft[body].first_face
+        thickness = maximum(thickness, soft.soft[body].thickness)
+        for face in range(first, first + soft.soft[body].face_count):
+            corners = soft.face_nodes[face]
+            a = state.node_position[world, corners[0]]
+            total += wp.length(state.node_position[world, corners[1]] - a)
+            count += 1.0
+    return total / maximum(count, 1.0) + 4.0 * thickness + _TINY
+
+
+@func
+def may_near(
+    shapes: Shapes, model: Model, settings: Settings, soft: SoftModel, body: Int32, other: Int32
+) -> bool:
+    """Whether the nodes of one body are kept off the faces of another, or of itself."""
+    if body == other:
+        return soft.soft[body].self_collision != 0
+    a = model.tree[soft.soft[body].tree].first_link
+    b = model.tree[soft.soft[other].tree].first_link
+    wanted = pair_filter(shapes, settings, a, b)
+    if wanted >= 0:
+        return wanted == 1
+    return masks_match(shapes, settings, a, b)
+
+
+@func
+def face_frame(state: State, world: Int32, corners: Index4) -> Matrix3:
+    """The corners of a face, as columns."""
+    p = state.node_position[world, corners[0]]
+    q = state.node_position[world, corners[1]]
+    r = state.node_position[world, corners[2]]
+    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+
+
+@func
+def face_normal(corners: Matrix3) -> Vector3:
+    """The unit normal of a triangle, its corners as columns."""
+    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
+    b = Vector3(corners[0, 1], corners[1, 1], corners[2, 1])
+    c = Vector3(corners[0, 2], corners[1, 2], corners[2, 2])
+    return away_from(wp.cross(b - a, c - a), Vector3(0.0, 0.0, 1.0))
+
+
+@func
+def note_face(
+    soft: SoftModel, work: SoftWork, world: Int32, node: Int32, face: Int32, side: real, distance: real
+):
+    """Let a node remember a face, unless it knows enough that are nearer."""
+    first = FACES_PER_NODE * node
+    count = work.node_faces[world, node]
+    place = first + count
+    if count >= FACES_PER_NODE:
+        place = Int32(-1)
+        most = distance + 0.0
+        for near in range(first, first + FACES_PER_NODE):
+            if work.near_distance[world, near] > most:
+                most = work.near_distance[world, near]
+                place = near
+    else:
+        work.node_faces[world, node] = count + 1
+    if place >= 0:
+        work.near_face[world, place] = face
+        work.near_side[world, place] = side
+        work.near_distance[world, place] = distance
+
+
+@func
+def look_at_node(
+    soft: SoftModel,
+    state: State,
+    work: SoftWork,
+    world: Int32,
+    node: Int32,
+    face: Int32,
+    corners: Matrix3,
+    normal: Vector3,
+    max_distance: real,
+    closed: bool,
+):
+    """Let a node remember a face that it is near.
+
+    Of a closed surface the inside is known, so that a node that got there is put out again.
+    """
+    point = state.node_position[world, node]
+    offset = point - on_triangle(corners, point, normal)
+    distance = wp.length(offset)
+    if distance <= max_distance:
+        side = sign_of(wp.dot(offset, normal))
+        if closed:
+            side = real(1.0)
+        note_face(soft, work, world, node, face, side, distance)
+
+
+@func
+def find_neighbours(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+):
+    """Note which faces nodes are near: of other soft bodies, and of their own where that is asked for."""
+    size = grid_size(soft, state, world)
+    list_nodes(soft, state, work, world, size)
+    for body in range(soft.count_soft[BODIES]):
+        closed = soft.soft[body].tetra_count > 0
+        first = soft.soft[body].first_face
+        for face in range(first, first + soft.soft[body].face_count):
+            nodes = soft.face_nodes[face]
+            corners = face_frame(state, world, nodes)
+            normal = face_normal(corners)
+            a = state.node_position[world, nodes[0]]
+            b = state.node_position[world, nodes[1]]
+            c = state.node_position[world, nodes[2]]
+            fastest = maximum(
+                wp.length(state.node_velocity[world, nodes[0]]),
+                maximum(
+                    wp.length(state.node_velocity[world, nodes[1]]),
+                    wp.length(state.node_velocity[world, nodes[2]]),
+                ),
+            )
+            # Others may come as fast; what comes faster is seen in the next substep.
+            max_distance = 2.0 * soft.soft[body].thickness + minimum(2.0 * fastest * settings.time_step, size)
+            lower = lower_corner(lower_corner(a, b), c) - Vector3(max_distance, max_distance, max_distance)
+            upper = upper_corner(upper_corner(a, b), c) + Vector3(max_distance, max_distance, max_distance)
+            if greatest_entry(upper - lower) > _WIDEST * size:
+                continue
+            for x in range(cell_of(lower[0], size), cell_of(upper[0], size) + 1):
+                for y in range(cell_of(lower[1], size), cell_of(upper[1], size) + 1):
+                    for z in range(cell_of(lower[2], size), cell_of(upper[2], size) + 1):
+                        node = work.bucket_first[world, bucket_of(x, y, z)]
+                        while node >= 0:
+                            place = state.node_position[world, node]
+                            if (
+                                cell_of(place[0], size) == x
+                                and cell_of(place[1], size) == y
+                                and cell_of(place[2], size) == z
+                                and node != nodes[0]
+                                and node != nodes[1]
+                                and node != nodes[2]
+                            ):
+                                if may_near(shapes, model, settings, soft, work.node_body[world, node], body):
+                                    look_at_node(
+                                        soft, state, work, world, node, face, corners, normal, max_distance,
+                                        closed and work.node_body[world, node] != body,
+                                    )  # fmt: skip
+                            node = work.node_next[world, node]
+
+
+@func
+def weights_at(corners: Matrix3, point: Vector3) -> Vector3:
+    """Barycentric coordinates of the foot of a point on the plane of a triangle; negative ones outside."""
+    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
+    ab = Vector3(corners[0, 1], corners[1, 1], corners[2, 1]) - a
+    ac = Vector3(corners[0, 2], corners[1, 2], corners[2, 2]) - a
+    ap = point - a
+    normal = wp.cross(ab, ac)
+    square = wp.dot(normal, normal) + _TINY * _TINY
+    second = wp.dot(wp.cross(ap, ac), normal) / square
+    third = wp.dot(wp.cross(ab, ap), normal) / square
+    return Vector3(1.0 - second - third, second, third)
+
+
+@func
+def relax_neighbour(
+    shapes: Shapes,
+    model: Model,
+    soft: SoftModel,
+    state: State,
+    work: SoftWork,
+    world: Int32,
+    node: Int32,
+    near: Int32,
+):
+    """Keep a node on its side of a face, at a distance, with friction between them."""
+    nodes = soft.face_nodes[work.near_face[world, near]]
+    body = soft.soft[work.node_body[world, node]]
+    other = soft.soft[work.node_body[world, nodes[0]]]
+    corners = face_frame(state, world, nodes)
+    point = state.node_position[world, node]
+    weights = weights_at(corners, point)
+    if weights[0] >= _BESIDE and weights[1] >= _BESIDE and weights[2] >= _BESIDE:
+        normal = face_normal(corners) * work.near_side[world, near]
+        foot = corners * weights
+        thickness = maximum(body.thickness, other.thickness)
+        gap = wp.dot(normal, point - foot) - thickness
+        if gap < 0.0:
+            mass = soft.node_inverse_mass[node]
+            total = mass + 0.0
+            before = work.node_before[world, node]
+            for i in range(3):
+                total += weights[i] * weights[i] * soft.node_inverse_mass[nodes[i]]
+                before -= work.node_before[world, nodes[i]] * weights[i]
+            if total > 0.0:
+                # What was too near at the start of the small step parts slowly.
+                start = minimum(wp.dot(normal, before) - thickness, 0.0)
+                push = normal * (minimum(start * 0.99 - gap, thickness) / total)
+                if start * 0.99 < gap:
+                    push = Vector3(0.0, 0.0, 0.0)
+                own = model.tree[body.tree].first_link
+                others = model.tree[other.tree].first_link
+                friction = (
+                    shapes.link_lateral_friction[world, own] * shapes.link_lateral_friction[world, others]
+                )
+                slip = point - foot - before
+                slip -= normal * wp.dot(normal, slip)
+                length = wp.length(slip)
+                if length > _TINY:
+                    bound = friction * wp.length(push)
+                    push -= slip * (minimum(bound, length / total) / length)
+                state.node_position[world, node] += push * mass
+                for i in range(3):
+                    state.node_position[world, nodes[i]] -= push * (
+                        weights[i] * soft.node_inverse_mass[nodes[i]]
+                    )
+
+
+@func
+def relax_neighbours(
+    shapes: Shapes, model: Model, soft: SoftModel, state: State, work: SoftWork, world: Int32, body: Int32
+):
+    """Keep the nodes of a body off the faces they are near, one after the other."""
+    first = soft.soft[body].first_node
+    for node in range(first, first + soft.soft[body].node_count):
+        for near in range(FACES_PER_NODE * node, FACES_PER_NODE * node + work.node_faces[world, node]):
+            relax_neighbour(shapes, model, soft, state, work, world, node, near)

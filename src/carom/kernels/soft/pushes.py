@@ -1,0 +1,170 @@
+"""What soft bodies do to trees: their pushes as rows of the solver's kind, applied as soon as they are found.
+
+Soft bodies move after free motion and before the constraints of trees. They see links move on as they did at
+the start of the substep, because what holds a link (motors, contacts, limits) most likely will go on to;
+what they push is in `delta_velocity` meanwhile, and is added to the velocities in the end. So the solver
+answers the pushes of a substep in that substep.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.dynamics import turned_inertia
+from carom.kernels.dynamics.kinematics import base_subspace
+from carom.kernels.dynamics.mass_matrix import invert
+from carom.kernels.dynamics.rows import inverse_or_off
+from carom.kernels.dynamics.single_body import is_single_body, write_inverse_mass
+from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.solver.activity import is_asleep
+from carom.kernels.solver.islands import may_be_pushed
+from carom.kernels.solver.joint_solver import apply_delta_velocities, clear_delta_velocities
+from carom.kernels.solver.pair_rows import push_row, row_velocity_change, tree_blocks, write_pair_jacobian
+from carom.kernels.structs import Model, PairRows, Scratch, Settings, SoftWork, State
+from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
+from carom.layouts.codes import ROW_INVERSE_MASS
+from carom.layouts.soft import PUSH_ROWS
+from carom.layouts.status import STATUS, WELL
+
+
+@func
+def keep_velocities(settings: Settings, model: Model, state: State, work: SoftWork, world: Int32):
+    """Remember the velocities of all trees at the start of a substep."""
+    for tree in range(settings.tree_count):
+        first = model.tree[tree].first_dof
+        for dof in range(first, first + model.tree[tree].dof_count):
+            work.dof_start[world, dof] = state.dof_velocity[world, dof]
+
+
+@func
+def exchange_velocities(settings: Settings, model: Model, state: State, work: SoftWork, world: Int32):
+    """Exchange the velocities of all trees for those at the start of the substep, or back."""
+    for tree in range(settings.tree_count):
+        first = model.tree[tree].first_dof
+        for dof in range(first, first + model.tree[tree].dof_count):
+            velocity = state.dof_velocity[world, dof]
+            state.dof_velocity[world, dof] = work.dof_start[world, dof]
+            work.dof_start[world, dof] = velocity
+
+
+@func
+def can_be_pushed(model: Model, state: State, world: Int32, tree: Int32, link: Int32) -> bool:
+    """Whether pushes at a link of a tree change anything now; nothing moves the world, tree -1."""
+    if tree < 0:
+        return False
+    return model.link[link].nearest_dof >= 0 and not is_asleep(state, world, tree)
+
+
+@func
+def make_ready(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    work: SoftWork,
+    world: Int32,
+    tree: Int32,
+):
+    """Have the inverse mass matrix of a tree that nothing else pushes."""
+    if work.tree_ready[world, tree] == 0:
+        work.tree_ready[world, tree] = 1
+        if not may_be_pushed(model, pair_rows, world, tree):
+            if is_single_body(model, tree):
+                link = model.tree[tree].first_link
+                moments = model.link_inertia[world, link]
+                inverse = Vector3(
+                    inverse_or_off(moments[0]), inverse_or_off(moments[1]), inverse_or_off(moments[2])
+                )
+                rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
+                base_subspace(model, scratch, world, tree)
+                write_inverse_mass(
+                    model, scratch, world, tree, turned_inertia(rotation, inverse),
+                    inverse_or_off(model.link_mass[world, link]),
+                )  # fmt: skip
+            else:
+                invert(model, scratch, world, tree)
+
+
+@func
+def add_push_rows(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    axes: Matrix3,
+    place: Index4,
+) -> Index4:
+    """Add three rows that push a link at a point along the columns of `axes`.
+
+    Args:
+        model: The trees.
+        state: Where they are.
+        scratch: Their inverse mass matrices.
+        pair_rows: Room for rows.
+        world: The world.
+        tree: The tree.
+        link: Its link.
+        point: The point in world axes [m].
+        axes: Directions, as columns.
+        place: Next free row, next free block, 0, 0.
+
+    Returns:
+        The same after them; its third number is 1 if there was no room.
+    """
+    row = place[0]
+    block = place[1]
+    if (
+        row + PUSH_ROWS > pair_rows.row_start.shape[1]
+        or block + PUSH_ROWS * tree_blocks(model, tree) > pair_rows.jacobian_row.shape[1]
+    ):
+        return Index4(row, block, 1, 0)
+    for i in range(PUSH_ROWS):
+        direction = Vector3(axes[0, i], axes[1, i], axes[2, i])
+        found = write_pair_jacobian(
+            model, state, scratch, pair_rows, world, row, block, Index4(tree, link, -1, -1), point, point,
+            direction, Vector3(0.0, 0.0, 0.0),
+        )  # fmt: skip
+        pair_rows.row_terms[world, row][ROW_INVERSE_MASS] = found[0]
+        block = Int32(found[2])
+        row += 1
+    return Index4(row, block, place[2], 0)
+
+
+@func
+def row_mass(pair_rows: PairRows, world: Int32, row: Int32) -> real:
+    """Inverse mass that a push along a row meets [1/kg]; none for row -1, of what does not move."""
+    if row < 0:
+        return 0.0
+    return pair_rows.row_terms[world, row][ROW_INVERSE_MASS]
+
+
+@func
+def row_velocity(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32) -> real:
+    """Velocity along a row that pushes have given it so far [m/s]."""
+    if row < 0:
+        return 0.0
+    return row_velocity_change(
+        scratch, pair_rows, world, pair_rows.row_place[world, row], pair_rows.row_start[world, row]
+    )
+
+
+@func
+def push_along(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, impulse: real):
+    """Push along a row [N s]."""
+    if row >= 0:
+        push_row(
+            scratch, pair_rows, world, pair_rows.row_place[world, row],
+            pair_rows.row_start[world, row], impulse,
+        )  # fmt: skip
+
+
+@func
+def take_over_pushes(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
+    """Add what trees have been pushed to their velocities."""
+    for tree in range(settings.tree_count):
+        if model.tree[tree].dof_count > 0 and not is_asleep(state, world, tree):
+            if state.status_entry[world, STATUS] == WELL:
+                apply_delta_velocities(model, state, scratch, world, tree)
+            clear_delta_velocities(model, scratch, world, tree)

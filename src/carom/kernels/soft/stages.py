@@ -1,0 +1,208 @@
+"""The stages of a step of soft bodies, a kernel for each."""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import place_shapes
+from carom.kernels.maths.min_max import maximum
+from carom.kernels.soft.contact import move_anchors, move_touches, relax_anchors, relax_touches
+from carom.kernels.soft.damping import damp_springs, damp_tetras
+from carom.kernels.soft.elasticity import relax_springs, relax_tetras
+from carom.kernels.soft.frames import follow_nodes, report_nodes
+from carom.kernels.soft.neighbours import find_neighbours, relax_neighbours
+from carom.kernels.soft.pushes import exchange_velocities, keep_velocities, take_over_pushes
+from carom.kernels.soft.touches import find_touches, write_anchors, write_touches
+from carom.kernels.structs import (
+    Model,
+    PairRows,
+    Pairs,
+    Scratch,
+    Settings,
+    Shapes,
+    SoftModel,
+    SoftWork,
+    State,
+)
+from carom.kernels.types import Index4, Int32, Vector3, func, kernel, real
+from carom.layouts.soft import BODIES
+from carom.layouts.status import OVERFLOW, STATUS
+
+# The fastest vibration goes through at most so much of its phase in a small step [rad], as long as there
+# are not too many.
+_PHASE = real(1.0)
+_LEAST_STEPS = 4
+_MOST_STEPS = 40
+
+
+@func
+def node_end(soft: SoftModel, body: Int32) -> Int32:
+    """The row behind the nodes of a body."""
+    return soft.soft[body].first_node + soft.soft[body].node_count
+
+
+@func
+def small_steps(soft: SoftModel, dt: real) -> Int32:
+    """How many small steps a substep of `dt` [s] consists of."""
+    frequency = real(0.0)
+    for body in range(soft.count_soft[BODIES]):
+        frequency = maximum(frequency, soft.soft[body].frequency)
+    wanted = wp.min(wp.ceil(frequency * dt / _PHASE), real(_MOST_STEPS))
+    return wp.max(Int32(wanted), Int32(_LEAST_STEPS))
+
+
+@func
+def move_freely(
+    model: Model, soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32, h: real
+):
+    """Let nodes move on under gravity and what users push them with."""
+    for node in range(soft.soft[body].first_node, node_end(soft, body)):
+        position = state.node_position[world, node]
+        soft_work.node_before[world, node] = position
+        if soft.node_inverse_mass[node] > 0.0:
+            gain = (
+                model.gravity_vector[world, 0] + state.node_force[world, node] * soft.node_inverse_mass[node]
+            )
+            velocity = state.node_velocity[world, node] + gain * h
+            state.node_position[world, node] = position + velocity * h
+
+
+@func
+def take_velocities(soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32, h: real):
+    """The velocities of nodes are what they have moved in a small step."""
+    for node in range(soft.soft[body].first_node, node_end(soft, body)):
+        moved = state.node_position[world, node] - soft_work.node_before[world, node]
+        state.node_velocity[world, node] = moved / h
+
+
+@func
+def have_neighbours(soft: SoftModel) -> bool:
+    """Whether nodes could be near faces of soft bodies that they do not belong to."""
+    count = soft.count_soft[BODIES]
+    found = count > 1
+    for body in range(count):
+        if soft.soft[body].self_collision != 0:
+            found = True
+    return found
+
+
+@func
+def take_small_steps(
+    settings: Settings,
+    model: Model,
+    shapes: Shapes,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    soft: SoftModel,
+    state: State,
+    soft_work: SoftWork,
+    world: Int32,
+    neighbours: bool,
+):
+    """Move all soft bodies through a substep, as trees move on and are pushed."""
+    count = small_steps(soft, settings.time_step)
+    h = settings.time_step / real(count)
+    for _step in range(count):
+        for body in range(soft.count_soft[BODIES]):
+            move_freely(model, soft, state, soft_work, world, body, h)
+            relax_springs(soft, state, soft_work, world, body, h)
+            relax_tetras(soft, state, soft_work, world, body, h)
+        relax_anchors(scratch, pair_rows, soft, state, soft_work, world, h)
+        for body in range(soft.count_soft[BODIES]):
+            if neighbours:
+                relax_neighbours(shapes, model, soft, state, soft_work, world, body)
+            relax_touches(scratch, pair_rows, soft, state, soft_work, world, body, h)
+        move_anchors(scratch, pair_rows, soft, soft_work, world, h)
+        for body in range(soft.count_soft[BODIES]):
+            move_touches(scratch, pair_rows, soft, soft_work, world, body, h)
+            take_velocities(soft, state, soft_work, world, body, h)
+            damp_springs(soft, state, world, body, h)
+            damp_tetras(soft, state, world, body, h)
+
+
+@kernel
+def begin_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_world: Int32):
+    """Keep where nodes are at the start of a step."""
+    world = first_world + wp.tid()
+    for body in range(soft.count_soft[BODIES]):
+        for node in range(soft.soft[body].first_node, node_end(soft, body)):
+            soft_work.node_start_position[world, node] = state.node_position[world, node]
+            soft_work.node_start_velocity[world, node] = state.node_velocity[world, node]
+
+
+@kernel
+def keep_velocities_kernel(
+    settings: Settings, model: Model, state: State, soft_work: SoftWork, first_world: Int32
+):
+    """Keep the velocities of trees at the start of a substep."""
+    keep_velocities(settings, model, state, soft_work, first_world + wp.tid())
+
+
+@kernel
+def soft_motion_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pairs: Pairs,
+    pair_rows: PairRows,
+    soft: SoftModel,
+    soft_work: SoftWork,
+    first_world: Int32,
+):
+    """Move all soft bodies through a substep, after the free motion of trees."""
+    world = first_world + wp.tid()
+    place_shapes(shapes, state, settings, pairs, world)
+    for tree in range(settings.tree_count):
+        soft_work.tree_ready[world, tree] = 0
+    exchange_velocities(settings, model, state, soft_work, world)
+    for body in range(soft.count_soft[BODIES]):
+        find_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
+    place = Index4(0, 0, 0, 0)
+    for body in range(soft.count_soft[BODIES]):
+        place = write_touches(
+            settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, place
+        )
+    place = write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, place)
+    if place[2] != 0:
+        state.status_entry[world, STATUS] = OVERFLOW
+    else:
+        neighbours = have_neighbours(soft)
+        if neighbours:
+            find_neighbours(settings, shapes, model, state, soft, soft_work, world)
+        take_small_steps(
+            settings, model, shapes, scratch, pair_rows, soft, state, soft_work, world, neighbours
+        )
+    # Before what they have pushed is found not to be finite either.
+    for body in range(soft.count_soft[BODIES]):
+        report_nodes(state, soft, world, body)
+    exchange_velocities(settings, model, state, soft_work, world)
+    take_over_pushes(settings, model, state, scratch, world)
+
+
+@kernel
+def end_soft_kernel(soft: SoftModel, state: State, first_world: Int32):
+    """Forces on nodes last until a step is complete."""
+    world = first_world + wp.tid()
+    for body in range(soft.count_soft[BODIES]):
+        for node in range(soft.soft[body].first_node, node_end(soft, body)):
+            state.node_force[world, node] = Vector3(0.0, 0.0, 0.0)
+
+
+@kernel
+def abandon_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_world: Int32):
+    """Put nodes back to where the step started; the forces are gone with a step that went wrong."""
+    world = first_world + wp.tid()
+    for body in range(soft.count_soft[BODIES]):
+        for node in range(soft.soft[body].first_node, node_end(soft, body)):
+            state.node_position[world, node] = soft_work.node_start_position[world, node]
+            state.node_velocity[world, node] = soft_work.node_start_velocity[world, node]
+            if state.status_entry[world, STATUS] > 0:
+                state.node_force[world, node] = Vector3(0.0, 0.0, 0.0)
+
+
+@kernel
+def follow_nodes_kernel(model: Model, state: State, soft: SoftModel, first_world: Int32):
+    """Bring the pose and the velocity of all soft bodies as a whole up to date with their nodes."""
+    world = first_world + wp.tid()
+    for body in range(soft.count_soft[BODIES]):
+        follow_nodes(model, state, soft, world, body)

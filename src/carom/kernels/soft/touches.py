@@ -1,0 +1,288 @@
+"""Which nodes are near which shapes, and which are anchored: found once for each substep."""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import local_extents
+from carom.kernels.contact.filters import masks_match, pair_filter
+from carom.kernels.dynamics.kinematics import base_omega, base_velocity
+from carom.kernels.dynamics.single_body import is_single_body
+from carom.kernels.maths.min_max import lower_corner, upper_corner
+from carom.kernels.soft.nearest import nearest_on_shape
+from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
+from carom.kernels.structs import (
+    Model,
+    PairRows,
+    Pairs,
+    Scratch,
+    Settings,
+    Shapes,
+    SoftModel,
+    SoftWork,
+    State,
+)
+from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
+from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
+
+# Nodes this far from resting are looked at whatever their speed, as a share of the margin.
+_AHEAD = real(1.0)
+
+
+@func
+def tangents(normal: Vector3) -> Matrix3:
+    """A unit vector and two across it, as columns."""
+    aside = Vector3(1.0, 0.0, 0.0)
+    if wp.abs(normal[0]) > 0.7:
+        aside = Vector3(0.0, 1.0, 0.0)
+    first = wp.normalize(wp.cross(aside, normal))
+    second = wp.cross(normal, first)
+    return Matrix3(
+        normal[0], first[0], second[0],
+        normal[1], first[1], second[1],
+        normal[2], first[2], second[2],
+    )  # fmt: skip
+
+
+@func
+def point_velocity(
+    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, link: Int32, point: Vector3
+) -> Vector3:
+    """Velocity of a point of a link that can be pushed [m/s]."""
+    reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+    arm = point - reference
+    if is_single_body(model, tree):
+        return base_velocity(model, state, world, tree) + wp.cross(base_omega(model, state, world, tree), arm)
+    velocity = Vector3(0.0, 0.0, 0.0)
+    dof = model.link[link].nearest_dof
+    while dof >= 0:
+        turn = wp.cross(scratch.dof[world, dof].angular, arm)
+        velocity += (scratch.dof[world, dof].linear + turn) * state.dof_velocity[world, dof]
+        dof = model.dof[dof].parent
+    return velocity
+
+
+@func
+def may_meet(
+    shapes: Shapes, model: Model, settings: Settings, soft: SoftModel, body: Int32, shape: Int32
+) -> bool:
+    """Whether the nodes of a soft body touch a shape at all."""
+    own = model.tree[soft.soft[body].tree].first_link
+    link = shapes.shape_link[shape]
+    wanted = pair_filter(shapes, settings, own, link)
+    if wanted >= 0:
+        return wanted == 1
+    return masks_match(shapes, settings, own, link)
+
+
+@func
+def body_bounds(soft: SoftModel, state: State, world: Int32, body: Int32, dt: real):
+    """Bounds of where the nodes of a body may be within a substep, its margin not counted."""
+    first = soft.soft[body].first_node
+    lower = state.node_position[world, first]
+    upper = lower + Vector3(0.0, 0.0, 0.0)
+    for node in range(first, first + soft.soft[body].node_count):
+        now = state.node_position[world, node]
+        then = now + state.node_velocity[world, node] * dt
+        lower = lower_corner(lower_corner(lower, now), then)
+        upper = upper_corner(upper_corner(upper, now), then)
+    return lower, upper
+
+
+@func
+def keep_nearest(work: SoftWork, world: Int32, first: Int32, count: Int32, distance: real) -> Int32:
+    """The place for one more touch of a node: the next free, or that of one farther away; -1 for none."""
+    if count < TOUCHES_PER_NODE:
+        return first + count
+    place = Int32(-1)
+    most = distance + 0.0
+    for collide_shapes in range(first, first + count):
+        if work.touch_offset[world, collide_shapes] > most:
+            most = work.touch_offset[world, collide_shapes]
+            place = collide_shapes
+    return place
+
+
+@func
+def find_node_touches(
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+    body: Int32,
+    shape: Int32,
+    dt: real,
+    closing: real,
+):
+    """Note the nodes of a body that a shape may touch within a substep.
+
+    Of a touch, `touch_row` is the shape and `touch_offset` the distance until all have been found.
+    """
+    margin = soft.soft[body].margin
+    first = soft.soft[body].first_node
+    for node in range(first, first + soft.soft[body].node_count):
+        if soft.node_inverse_mass[node] > 0.0 and soft.node_anchored[node] == 0:
+            point = state.node_position[world, node]
+            max_distance = (
+                margin * (1.0 + _AHEAD) + closing + wp.length(state.node_velocity[world, node]) * dt
+            )
+            lower = pairs.shape_lower[world, shape]
+            upper = pairs.shape_upper[world, shape]
+            near = Int32(1)
+            for axis in range(3):
+                if point[axis] < lower[axis] - max_distance or point[axis] > upper[axis] + max_distance:
+                    near = Int32(0)
+            if near == 1:
+                distance, normal = nearest_on_shape(shapes, pairs, world, shape, point, max_distance)
+                if distance <= max_distance:
+                    place = keep_nearest(
+                        work, world, TOUCHES_PER_NODE * node, work.node_touches[world, node], distance
+                    )
+                    if place >= 0:
+                        work.node_touches[world, node] = wp.max(
+                            work.node_touches[world, node], place - TOUCHES_PER_NODE * node + 1
+                        )
+                        work.touch_row[world, place] = shape
+                        work.touch_offset[world, place] = distance
+                        work.touch_normal[world, place] = normal
+
+
+@func
+def shape_speed(
+    shapes: Shapes, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, shape: Int32
+) -> real:
+    """Bound of the speed of the points of a shape [m/s]."""
+    link = shapes.shape_link[shape]
+    if not can_be_pushed(model, state, world, tree, link):
+        return 0.0
+    pose = state.link_pose[world, link] * shapes.shape_pose[shape]
+    center = wp.transform_get_translation(pose)
+    velocity = point_velocity(model, state, scratch, world, tree, link, center)
+    spin = real(0.0)
+    if is_single_body(model, tree):
+        spin = wp.length(base_omega(model, state, world, tree))
+    else:
+        dof = model.link[link].nearest_dof
+        while dof >= 0:
+            spin += wp.abs(state.dof_velocity[world, dof]) * wp.length(scratch.dof[world, dof].angular)
+            dof = model.dof[dof].parent
+    return wp.length(velocity) + spin * wp.length(local_extents(shapes, shape))
+
+
+@func
+def find_touches(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+    body: Int32,
+):
+    """Note which shapes the nodes of a body may touch within a substep."""
+    dt = settings.time_step
+    margin = soft.soft[body].margin
+    first = soft.soft[body].first_node
+    for node in range(first, first + soft.soft[body].node_count):
+        work.node_touches[world, node] = 0
+    lower, upper = body_bounds(soft, state, world, body, dt)
+    for shape in range(settings.shape_count):
+        tree = shapes.shape_tree[shape]
+        closing = shape_speed(shapes, model, state, scratch, world, tree, shape) * dt
+        max_distance = margin * (1.0 + _AHEAD) + closing
+        near = Int32(1)
+        for axis in range(3):
+            if (
+                lower[axis] - max_distance > pairs.shape_upper[world, shape][axis]
+                or upper[axis] + max_distance < pairs.shape_lower[world, shape][axis]
+            ):
+                near = Int32(0)
+        if near == 1 and may_meet(shapes, model, settings, soft, body, shape):
+            find_node_touches(
+                shapes, model, state, scratch, pairs, soft, work, world, body, shape, dt, closing
+            )
+
+
+@func
+def write_touches(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+    body: Int32,
+    place: Index4,
+) -> Index4:
+    """Write the touches that have been found for a body, with rows over the trees that they push.
+
+    Returns:
+        Next free row, next free block, 1 if there was no room, 0.
+    """
+    own = model.tree[soft.soft[body].tree].first_link
+    first = soft.soft[body].first_node
+    for node in range(first, first + soft.soft[body].node_count):
+        for collide_shapes in range(
+            TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]
+        ):
+            shape = work.touch_row[world, collide_shapes]
+            link = shapes.shape_link[shape]
+            tree = shapes.shape_tree[shape]
+            normal = work.touch_normal[world, collide_shapes]
+            point = state.node_position[world, node] - normal * work.touch_offset[world, collide_shapes]
+            work.touch_point[world, collide_shapes] = point
+            work.touch_offset[world, collide_shapes] = soft.soft[body].margin
+            work.touch_friction[world, collide_shapes] = (
+                shapes.link_lateral_friction[world, own] * shapes.link_lateral_friction[world, link]
+            )
+            work.touch_velocity[world, collide_shapes] = Vector3(0.0, 0.0, 0.0)
+            work.touch_row[world, collide_shapes] = Int32(-1)
+            if can_be_pushed(model, state, world, tree, link):
+                make_ready(model, state, scratch, pair_rows, work, world, tree)
+                work.touch_velocity[world, collide_shapes] = point_velocity(
+                    model, state, scratch, world, tree, link, point
+                )
+                work.touch_row[world, collide_shapes] = place[0]
+                place = add_push_rows(
+                    model, state, scratch, pair_rows, world, tree, link, point, tangents(normal), place
+                )
+    return place
+
+
+@func
+def write_anchors(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+    place: Index4,
+) -> Index4:
+    """Write what holds nodes at links; returns as `write_touches`."""
+    for anchor in range(soft.count_soft[ANCHORS]):
+        tree = soft.anchor[anchor].tree
+        link = soft.anchor[anchor].link
+        point = wp.transform_point(state.link_pose[world, link], soft.anchor[anchor].pivot)
+        work.anchor_point[world, anchor] = point
+        work.anchor_velocity[world, anchor] = Vector3(0.0, 0.0, 0.0)
+        work.anchor_row[world, anchor] = Int32(-1)
+        if can_be_pushed(model, state, world, tree, link):
+            make_ready(model, state, scratch, pair_rows, work, world, tree)
+            work.anchor_velocity[world, anchor] = point_velocity(
+                model, state, scratch, world, tree, link, point
+            )
+            work.anchor_row[world, anchor] = place[0]
+            place = add_push_rows(
+                model, state, scratch, pair_rows, world, tree, link, point, wp.identity(3, real), place
+            )
+    return place

@@ -1,0 +1,207 @@
+"""From what soft bodies are made of to the rows of `SoftModel`, and back out again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from carom.description.pose import Vector3
+from carom.layouts.soft import ANCHORS, BODIES, SoftModel
+from carom.model.builder import TreeRows
+from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
+from carom.native.tables import ArrayTable
+
+_AXES = ("soft", "node", "spring", "tetra", "face")
+# Which axis the values of a field count on; they move when rows of that axis are deleted.
+_INDEX_FIELDS = {
+    "soft_tree": "tree",
+    "soft_first_node": "node",
+    "soft_first_spring": "spring",
+    "soft_first_tetra": "tetra",
+    "soft_first_face": "face",
+    "spring_a": "node",
+    "spring_b": "node",
+    "tetra_nodes": "node",
+    "face_nodes": "node",
+}
+
+
+@dataclass(slots=True, eq=False)
+class SoftRows:
+    """Where a soft body is.
+
+    Attributes:
+        rows: Rows of the tree that stands for it; somebody else keeps them up to date.
+        spec: What it is made of.
+        first: First row on each axis.
+        count: Rows on each axis.
+    """
+
+    rows: TreeRows
+    spec: SoftSpec
+    first: dict[str, int] = field(default_factory=dict)
+    count: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(slots=True, eq=False)
+class Anchor:
+    """A node that is held.
+
+    Attributes:
+        id: Its number among the constraints of the world.
+        soft: The soft body.
+        node: Node of it, from 0.
+        body: Rows of the body that holds it; None for the world.
+        link: Link of that body; -1 is the base.
+        pivot: Where on it, in the inertial frame of the link [m].
+    """
+
+    id: int
+    soft: SoftRows
+    node: int
+    body: TreeRows | None
+    link: int
+    pivot: Vector3
+
+
+class SoftArrays:
+    """The soft bodies of a world, in step with the rows of the trees that stand for them.
+
+    Attributes:
+        table: The arrays.
+        used: Rows in use, by axis.
+        bodies: The soft bodies in the order of their rows.
+        anchors: What holds their nodes, by number.
+    """
+
+    def __init__(self) -> None:
+        self.table: ArrayTable = ArrayTable(SoftModel)
+        self.table.reserve({"count": 2})
+        self.used: dict[str, int] = dict.fromkeys(_AXES, 0)
+        self.bodies: list[SoftRows] = []
+        self.anchors: dict[int, Anchor] = {}
+
+    def append(self, spec: SoftSpec, rows: TreeRows) -> SoftRows:
+        """Add a soft body whose tree and nodes were appended to the arrays of the world just before."""
+        count = {
+            "soft": 1,
+            "node": len(spec.nodes),
+            "spring": len(spec.springs),
+            "tetra": len(spec.tetras),
+            "face": len(spec.faces),
+        }
+        self.table.reserve({axis: self.used[axis] + number for axis, number in count.items()})
+        soft = SoftRows(rows, spec, {axis: self.used[axis] for axis in _AXES}, count)
+        self._write(soft)
+        for axis, number in count.items():
+            self.used[axis] += number
+        self.bodies.append(soft)
+        self.table.numpy["count_soft"][BODIES] = len(self.bodies)
+        return soft
+
+    def _write(self, soft: SoftRows) -> None:
+        numpy, spec, first = self.table.numpy, soft.spec, soft.first
+        row = first["soft"]
+        numpy["soft_tree"][row] = soft.rows.tree
+        for axis in ("node", "spring", "tetra", "face"):
+            numpy[f"soft_first_{axis}"][row] = first[axis]
+            numpy[f"soft_{axis}_count"][row] = soft.count[axis]
+        numpy["soft_margin"][row] = spec.margin
+        numpy["soft_thickness"][row] = spec.thickness()
+        numpy["soft_self_collision"][row] = spec.self_collision
+        numpy["soft_mu"][row] = spec.mu
+        numpy["soft_lam"][row] = spec.lam
+        numpy["soft_damping"][row] = spec.damping
+        numpy["soft_frequency"][row] = spec.frequency()
+        numpy["soft_shear_frequency"][row] = spec.shear_frequency()
+        rows = {axis: slice(first[axis], first[axis] + soft.count[axis]) for axis in _AXES}
+        numpy["node_inverse_mass"][rows["node"]] = 1.0 / spec.masses
+        numpy["node_anchored"][rows["node"]] = 0
+        numpy["node_rest"][rows["node"]] = spec.nodes - np.average(spec.nodes, axis=0, weights=spec.masses)
+        ends = spec.springs + first["node"]
+        numpy["spring_a"][rows["spring"]], numpy["spring_b"][rows["spring"]] = ends[:, 0], ends[:, 1]
+        numpy["spring_all_directions"][rows["spring"]] = spec.damps_all_directions
+        for name, column in (("length", LENGTH), ("stiffness", STIFFNESS), ("damping", DAMPING)):
+            numpy[f"spring_{name}"][rows["spring"]] = spec.spring_terms[:, column]
+        if len(spec.tetras):
+            edges = spec.edge_matrices()
+            numpy["tetra_nodes"][rows["tetra"]] = spec.tetras + first["node"]
+            numpy["tetra_inverse"][rows["tetra"]] = np.linalg.inv(edges)
+            numpy["tetra_volume"][rows["tetra"]] = np.linalg.det(edges) / 6.0
+        numpy["face_nodes"][rows["face"], :3] = spec.faces + first["node"]
+
+    def write_anchors(self) -> None:
+        """Bring the arrays up to date with the anchors there are."""
+        numpy = self.table.numpy
+        for soft in self.bodies:
+            nodes = slice(soft.first["node"], soft.first["node"] + soft.count["node"])
+            numpy["node_inverse_mass"][nodes] = 1.0 / soft.spec.masses
+            numpy["node_anchored"][nodes] = 0
+        held = [anchor for anchor in self.anchors.values() if anchor.body is not None]
+        self.table.reserve({"anchor": len(held)})
+        numpy = self.table.numpy
+        numpy["count_soft"][ANCHORS] = len(held)
+        for row, anchor in enumerate(held):
+            node = anchor.soft.first["node"] + anchor.node
+            assert anchor.body is not None
+            numpy["node_anchored"][node] = 1
+            numpy["anchor_node"][row] = node
+            numpy["anchor_tree"][row] = anchor.body.tree
+            numpy["anchor_link"][row] = anchor.body.first["link"] + 1 + anchor.link
+            numpy["anchor_pivot"][row] = anchor.pivot
+        for anchor in self.anchors.values():
+            if anchor.body is None:
+                numpy["node_inverse_mass"][anchor.soft.first["node"] + anchor.node] = 0.0
+
+    def way_back(self) -> Callable[[], None]:
+        """What takes away all soft bodies and anchors that are added from now on."""
+        used, bodies, anchors = self.used.copy(), len(self.bodies), len(self.anchors)
+
+        def go_back() -> None:
+            self.table.clear_beyond(used)
+            self.used.update(used)
+            del self.bodies[bodies:]
+            while len(self.anchors) > anchors:
+                self.anchors.popitem()
+            self.table.numpy["count_soft"][BODIES] = bodies
+
+        return go_back
+
+    def removal(self, rows: TreeRows) -> Callable[[], None]:
+        """Make ready to take out what belongs to a body, soft or not, while its rows are still those it has.
+
+        Returns:
+            What does it. It can be called again, after it was broken off.
+        """
+        gone = next((soft for soft in self.bodies if soft.rows is rows), None)
+        count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count
+        cuts = {"tree": (rows.tree, 1)}
+        if gone is not None:
+            cuts |= {axis: (gone.first[axis], number) for axis, number in count.items() if number}
+        remove_rows = self.table.removal(cuts, self.used, _INDEX_FIELDS)
+        used = {axis: self.used[axis] - number for axis, number in count.items()}
+        bodies = [soft for soft in self.bodies if soft is not gone]
+        later = [] if gone is None else self.bodies[self.bodies.index(gone) + 1 :]
+        moved = [(soft, {axis: first - count[axis] for axis, first in soft.first.items()}) for soft in later]
+        anchors = {
+            number: anchor
+            for number, anchor in self.anchors.items()
+            if anchor.soft is not gone and anchor.body is not rows
+        }
+
+        def remove() -> None:
+            remove_rows()
+            self.used.update(used)
+            for soft, first in moved:
+                soft.first = first
+            self.bodies, self.anchors = bodies, anchors
+            self.table.numpy["count_soft"][BODIES] = len(bodies)
+
+        return remove
+
+    def struct(self) -> Any:
+        """A struct whose fields are views of the arrays."""
+        return self.table.struct()

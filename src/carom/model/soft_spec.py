@@ -1,0 +1,110 @@
+"""What a soft body is made of, ready for the engine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Rows of `SoftSpec.spring_terms`.
+LENGTH, STIFFNESS, DAMPING = 0, 1, 2
+# Thickness at most, relative to the shortest edge.
+_SHARE_OF_EDGE = 0.4
+
+
+@dataclass(slots=True, eq=False)
+class Skin:
+    """A mesh that follows the nodes of a soft body.
+
+    Attributes:
+        nodes: (v, k) nodes that each vertex follows.
+        weights: (v, k) by how much; they add up to 1.
+        triangles: (t, 3) its vertices.
+    """
+
+    nodes: NDArray[np.int32]
+    weights: NDArray[np.float64]
+    triangles: NDArray[np.int32]
+
+
+@dataclass(slots=True, eq=False)
+class SoftSpec:
+    """Nodes, and what is between them.
+
+    Attributes:
+        nodes: (n, 3) places at rest in the frame of the body [m].
+        masses: (n,) [kg].
+        faces: (f, 3) nodes of the triangles of the surface, counter-clockwise from outside.
+        springs: (s, 2) nodes of the springs.
+        spring_terms: (s, 3) length at rest [m], stiffness [N/m] and damping [N s/m] of each.
+        tetras: (t, 4) nodes of the tetrahedra; their volumes are positive.
+        mu: First Neo-Hookean parameter [Pa]; see `carom.kernels.soft.elasticity`.
+        lam: Second one [Pa].
+        damping: Viscosity of the tetrahedra as a share of these [s].
+        damps_all_directions: Springs damp every relative motion of their ends, not only that along them.
+        margin: Distance at which nodes rest on other surfaces [m].
+        self_collision: Its nodes do not go through its own faces.
+        skin: The mesh that is seen in place of the faces, if there is one.
+    """
+
+    nodes: NDArray[np.float64]
+    masses: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    springs: NDArray[np.int32]
+    spring_terms: NDArray[np.float64]
+    tetras: NDArray[np.int32]
+    mu: float = 0.0
+    lam: float = 0.0
+    damping: float = 0.0
+    damps_all_directions: bool = False
+    margin: float = 0.02
+    self_collision: bool = False
+    skin: Skin | None = None
+
+    def edge_matrices(self) -> NDArray[np.float64]:
+        """(t, 3, 3): the edges of each tetrahedron from its first node, as columns [m]."""
+        corners = self.nodes[self.tetras]
+        return np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
+
+    def thickness(self) -> float:
+        """Distance at which nodes of soft bodies are kept off its faces [m].
+
+        The margin; but less than what is between neighbouring nodes at rest.
+        """
+        corners = self.nodes[self.faces]
+        if not len(corners):
+            return self.margin
+        edges = corners - np.roll(corners, 1, axis=1)
+        return min(self.margin, _SHARE_OF_EDGE * float(np.linalg.norm(edges, axis=2).min()))
+
+    def frequency(self) -> float:
+        """A bound of the angular frequencies at which it can vibrate [rad/s].
+
+        For springs by Gershgorin's theorem: twice the stiffness at a node by its mass. For tetrahedra, which
+        resist most to being stretched along one axis, likewise by the stiffness at each corner.
+        """
+        stiffness = self._at_nodes(self.lam + 1.5 * self.mu)
+        for end in range(2):
+            np.add.at(stiffness, self.springs[:, end], self.spring_terms[:, STIFFNESS])
+        return self._fastest(stiffness)
+
+    def shear_frequency(self) -> float:
+        """The same if its tetrahedra resisted to shear only [rad/s]."""
+        return self._fastest(self._at_nodes(1.5 * self.mu))
+
+    def _at_nodes(self, modulus: float) -> NDArray[np.float64]:
+        """(n,) stiffness of the tetrahedra around each node [N/m], by their modulus [Pa]."""
+        stiffness = np.zeros(len(self.nodes))
+        if len(self.tetras):
+            edges = self.edge_matrices()
+            gradients = np.linalg.inv(edges)
+            gradients = np.concatenate([-gradients.sum(axis=1, keepdims=True), gradients], axis=1)
+            volume = np.linalg.det(edges) / 6.0
+            at_corner = modulus * volume[:, None] * (gradients**2).sum(axis=2)
+            for corner in range(4):
+                np.add.at(stiffness, self.tetras[:, corner], at_corner[:, corner])
+        return stiffness
+
+    def _fastest(self, stiffness: NDArray[np.float64]) -> float:
+        return float(np.sqrt(2.0 * (stiffness / self.masses).max(initial=0.0)))

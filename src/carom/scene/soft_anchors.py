@@ -1,0 +1,59 @@
+"""Nodes of soft bodies held by the world or by links: made and undone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Pose
+from carom.description.transform import compose, inverse
+from carom.model.soft_arrays import Anchor
+from carom.scene.undoing import begin
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.soft_body import SoftBody
+    from carom.world.world import World
+
+
+def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Anchor:
+    """Hold a node where it is; see `SoftBody.anchor`."""
+    world = soft.world
+    if not 0 <= node < len(soft.nodes):
+        raise IndexError(f"body {soft.id} has {len(soft.nodes)} nodes; there is no node {node}")
+    pivot = (0.0, 0.0, 0.0)
+    if body is not None:
+        if not -1 <= link < body.joint_count:
+            raise IndexError(f"body {body.id} has {body.joint_count} links; there is no link {link}")
+        if body.spec.soft is not None:
+            raise ValueError(f"body {body.id} is soft: only the world and rigid bodies hold nodes")
+        px, py, pz, *turn = world.link_pose[body.first_link + 1 + link].tolist()
+        x, y, z = soft.nodes[node].tolist()
+        qx, qy, qz, qw = turn
+        local = compose(inverse(Pose((px, py, pz), (qx, qy, qz, qw))), Pose((x, y, z)))
+        pivot = local.position
+    with begin(world) as undo:
+        undo.note(world.user_constraints.way_back())
+        undo.note(world.contact_arrays.soft.way_back())
+        number = world.user_constraints.take_id()
+        rows = None if body is None else body.rows
+        anchor = Anchor(number, soft.soft_rows, node, rows, link, pivot)
+        world.contact_arrays.soft.anchors[number] = anchor
+        if body is None:
+            soft.node_velocities[node] = 0.0
+        world.scene_changed()
+        undo.done()
+    world.update_soft_poses()
+    return anchor
+
+
+def remove_anchor(world: World, number: int) -> None:
+    """Let go of a node, if there is an anchor of that number."""
+    with begin(world) as undo:
+        anchors = {key: anchor for key, anchor in world.contact_arrays.soft.anchors.items() if key != number}
+
+        def remove() -> None:
+            world.contact_arrays.soft.anchors = anchors
+            world.scene_changed()
+
+        undo.at_once(remove)
+    world.update_soft_poses()

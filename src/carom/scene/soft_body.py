@@ -1,0 +1,183 @@
+"""A soft body in a world: nodes tied by springs and tetrahedra."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.checks import finite
+from carom.description.transform import rotation_matrix
+from carom.model.soft_arrays import Anchor, SoftRows
+from carom.model.soft_spec import SoftSpec
+from carom.scene.body import Body
+
+if TYPE_CHECKING:
+    from carom.checks import Array
+
+
+# What cannot be changed of a soft body.
+_FIXED = ("mass", "inertia", "collision_margin")
+
+
+class SoftBody(Body):
+    """Handle of a soft body; stays valid until the body is removed.
+
+    Its base stands for all of it: it is where the centre of mass of the nodes is, turned as they are on the
+    whole, and moves as they do.
+    """
+
+    @property
+    def rows_of_nodes(self) -> slice:
+        """Rows of its nodes in `World.arrays.state`."""
+        first = self.rows.first["node"]
+        return slice(first, first + self.rows.count["node"])
+
+    @property
+    def soft_spec(self) -> SoftSpec:
+        """What it is made of."""
+        assert self.spec.soft is not None
+        return self.spec.soft
+
+    @property
+    def soft_rows(self) -> SoftRows:
+        """Where it is among the soft bodies."""
+        return next(soft for soft in self.world.contact_arrays.soft.bodies if soft.rows is self.rows)
+
+    @property
+    def mass(self) -> float:
+        """Mass of all nodes [kg]."""
+        return float(self.soft_spec.masses.sum())
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Positions of the nodes in world axes [m], shape (n, 3): a view, until bodies come or go.
+
+        After a change by hand call `update`.
+        """
+        return self.world.arrays.state.numpy["node_position"][0, self.rows_of_nodes]
+
+    @property
+    def node_velocities(self) -> np.ndarray:
+        """Velocities of the nodes [m/s], shape (n, 3); as `nodes`."""
+        return self.world.arrays.state.numpy["node_velocity"][0, self.rows_of_nodes]
+
+    @property
+    def node_forces(self) -> np.ndarray:
+        """Forces that act on the nodes in the next step and are cleared by it [N], shape (n, 3); a view."""
+        return self.world.arrays.state.numpy["node_force"][0, self.rows_of_nodes]
+
+    @property
+    def faces(self) -> np.ndarray:
+        """Nodes of the triangles of the surface, shape (f, 3)."""
+        return self.soft_spec.faces
+
+    @property
+    def surface(self) -> tuple[np.ndarray, np.ndarray]:
+        """What is seen of it: (v, 3) vertices in world axes [m], a copy, and (t, 3) triangles."""
+        skin = self.soft_spec.skin
+        if skin is None:
+            return self.nodes.copy(), self.soft_spec.faces
+        return np.einsum("vk,vkx->vx", skin.weights, self.nodes[skin.nodes]), skin.triangles
+
+    @property
+    def tetrahedra(self) -> np.ndarray:
+        """Nodes of the tetrahedra, shape (t, 4)."""
+        return self.soft_spec.tetras
+
+    @property
+    def anchors(self) -> list[Anchor]:
+        """What holds its nodes."""
+        return [it for it in self.world.contact_arrays.soft.anchors.values() if it.soft.rows is self.rows]
+
+    def update(self) -> None:
+        """Bring the pose and the velocity as a whole up to date after nodes have been changed by hand."""
+        self.world.update_soft_poses()
+
+    def set_nodes(self, positions: Array | Sequence[Sequence[float]]) -> None:
+        """Put the nodes elsewhere; their velocities stay.
+
+        Args:
+            positions: In world axes [m], shape (n, 3).
+
+        Raises:
+            ValueError: They are not as many, or not all finite.
+        """
+        self.nodes[:] = _as_many(positions, self.nodes.shape, "positions")
+        self.update()
+
+    def set_node_velocities(self, velocities: Array | Sequence[Sequence[float]]) -> None:
+        """Set the velocities of the nodes [m/s], shape (n, 3).
+
+        Raises:
+            ValueError: They are not as many, or not all finite.
+        """
+        self.node_velocities[:] = _as_many(velocities, self.node_velocities.shape, "velocities")
+        self.update()
+
+    def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
+        """Move and turn all of it so that its centre of mass is at `position`; see `Body.set_base_pose`."""
+        state = self.world.arrays.state.numpy
+        first = self.first_position
+        center = state["position"][0, first : first + 3].copy()
+        before = np.array(rotation_matrix(_unit(state["position"][0, first + 3 : first + 7])))
+        turn = np.array(rotation_matrix(_unit(orientation))) @ before.T
+        self.nodes[:] = (self.nodes - center) @ turn.T + np.asarray(position)
+        self.node_velocities[:] = self.node_velocities @ turn.T
+        self.update()
+
+    def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
+        """Let it move as a rigid body would: velocity of its centre of mass [m/s], angular one [rad/s]."""
+        first = self.first_position
+        center = self.world.arrays.state.numpy["position"][0, first : first + 3]
+        self.node_velocities[:] = np.asarray(linear) + np.cross(np.asarray(angular), self.nodes - center)
+        self.update()
+
+    def change_dynamics(self, link: int, **changes: Any) -> None:
+        """Change how it touches, as `Body.change_dynamics`; as in PyBullet its mass stays what it is."""
+        super().change_dynamics(
+            link, **{name: value for name, value in changes.items() if name not in _FIXED}
+        )
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corner of a box along the world's axes around it, its margin included [m]."""
+        margin = self.soft_spec.margin
+        return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
+
+    def anchor(self, node: int, body: Body | None = None, link: int = -1) -> Anchor:
+        """Hold a node where it is: in the world, or at a link, which feels its pull.
+
+        Args:
+            node: The node, from 0.
+            body: The body that holds it; None for the world.
+            link: Its link; -1 is the base.
+
+        Returns:
+            The anchor, for `release`.
+
+        Raises:
+            IndexError: There is no such node or link.
+            ValueError: A soft body is to hold it.
+        """
+        from carom.scene.soft_anchors import add_anchor
+
+        return add_anchor(self, node, body, link)
+
+    def release(self, anchor: Anchor) -> None:
+        """Let go of a node."""
+        from carom.scene.soft_anchors import remove_anchor
+
+        remove_anchor(self.world, anchor.id)
+
+
+def _unit(quaternion: Sequence[float] | np.ndarray) -> tuple[float, float, float, float]:
+    x, y, z, w = (np.asarray(quaternion) / np.linalg.norm(quaternion)).tolist()
+    return x, y, z, w
+
+
+def _as_many(values: Array | Sequence[Sequence[float]], shape: tuple[int, ...], name: str) -> Array:
+    array = finite(values, name)
+    if array.shape != shape:
+        raise ValueError(f"{name} must have shape {shape}, not {array.shape}")
+    return array

@@ -1,0 +1,171 @@
+"""Soft bodies from meshes: checked, and ready for the engine."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description import ContactParameters, TriangleMesh, Visual
+from carom.description.pose import Pose
+from carom.errors import DescriptionError
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.soft_spec import Skin, SoftSpec
+from carom.soft.materials import NeoHookean, Springs
+from carom.soft.shapes import oriented
+from carom.soft.skin import bind
+from carom.soft.topology import bending_pairs, edges_of, surface_of
+
+MOST_NODES = 1_000_000
+"""Most nodes of a soft body."""
+FARTHEST = 1.0e6
+"""Greatest coordinate of a node [m]."""
+# Tetrahedra of less than this share of the cube of their longest edge are flat.
+_FLAT = 1.0e-9
+# Springs shorter than this share of the size of the body have no length.
+_SHORT = 1.0e-12
+
+
+def soft_body(
+    name: str,
+    nodes: NDArray[np.float64],
+    cells: NDArray[np.int32],
+    *,
+    mass: float,
+    springs: Springs | None = None,
+    solid: NeoHookean | None = None,
+    margin: float = 0.02,
+    friction: float = 0.0,
+    self_collision: bool = False,
+    seen: tuple[NDArray[np.float64], NDArray[np.int32]] | None = None,
+    source: Path | None = None,
+) -> BodySpec:
+    """A soft body of nodes of equal mass.
+
+    Args:
+        name: Its name.
+        nodes: (n, 3) places at rest [m].
+        cells: Its (m, 2) links, (m, 3) triangles or (m, 4) tetrahedra.
+        mass: Of all nodes together [kg].
+        springs: Springs along the edges of the cells, if there are any.
+        solid: What tetrahedra are like, if they resist to a change of shape.
+        margin: Distance at which nodes rest on other surfaces [m].
+        friction: Coulomb coefficient, multiplied by that of what it touches.
+        self_collision: Its nodes do not go through its own faces.
+        seen: (v, 3) vertices and (t, 3) triangles that are seen in place of its surface.
+        source: The file it comes from, for errors.
+
+    Raises:
+        DescriptionError: A node is not finite or far away, a cell names a node that does not exist, has no
+            volume, or has two corners in one place; or a parameter makes no sense.
+    """
+    _check_parameters(mass, springs, solid, margin, friction, source)
+    nodes = np.array(nodes, dtype=np.float64).reshape(-1, 3)
+    cells = np.asarray(cells, dtype=np.int32)
+    _check_nodes(nodes, cells, source)
+    center = nodes.mean(axis=0)
+    places = nodes - center
+    tetras = np.empty((0, 4), dtype=np.int32)
+    faces = cells if cells.shape[1] == 3 else np.empty((0, 3), dtype=np.int32)
+    if cells.shape[1] == 4:
+        tetras = cells = oriented(places, cells)
+        _check_volumes(places, tetras, source)
+        faces = surface_of(tetras)
+    pairs, terms = _springs(places, cells, springs, source)
+    elastic = solid or NeoHookean(0.0, 0.0)
+    soft = SoftSpec(
+        nodes=places,
+        masses=np.full(len(nodes), mass / len(nodes)),
+        faces=np.ascontiguousarray(faces, dtype=np.int32),
+        springs=pairs,
+        spring_terms=terms,
+        tetras=tetras if solid is not None else np.empty((0, 4), dtype=np.int32),
+        mu=elastic.mu,
+        lam=elastic.lam,
+        damping=elastic.damping,
+        damps_all_directions=springs is not None and springs.damps_all_directions,
+        margin=margin,
+        self_collision=self_collision,
+    )
+    vertices, triangles = (nodes, soft.faces) if seen is None else seen
+    if seen is not None:
+        soft.skin = Skin(*bind(vertices, nodes, cells), triangles)
+    x, y, z = center.tolist()
+    base = LinkSpec(
+        name,
+        inertial_frame=Pose((x, y, z)),
+        contact=ContactParameters(lateral_friction=friction),
+        visuals=(Visual(TriangleMesh(vertices, triangles)),) if len(triangles) else (),
+    )
+    return BodySpec(name, base, fixed_base=True, source=source, soft=soft)
+
+
+def _check_parameters(
+    mass: float,
+    springs: Springs | None,
+    solid: NeoHookean | None,
+    margin: float,
+    friction: float,
+    source: Path | None,
+) -> None:
+    positive = {"mass": mass, "the collision margin": margin}
+    others = {"friction": friction}
+    if springs is not None:
+        others |= {
+            "the stiffness of springs": springs.stiffness,
+            "the damping of springs": springs.damping,
+            "the stiffness against bending": springs.bending,
+        }
+    if solid is not None:
+        others |= {"mu": solid.mu, "lambda": solid.lam, "the damping of the solid": solid.damping}
+    for name, value in {**positive, **others}.items():
+        if not np.isfinite(value) or value < 0.0 or (value == 0.0 and name in positive):
+            least = "greater than 0" if name in positive else "0 or more"
+            raise DescriptionError(f"{name} is {value}; it has to be finite and {least}", file=source)
+
+
+def _check_nodes(nodes: NDArray[np.float64], cells: NDArray[np.int32], source: Path | None) -> None:
+    if not len(nodes) or not len(cells):
+        raise DescriptionError("there is no cell, and so nothing to simulate", file=source)
+    if len(nodes) > MOST_NODES:
+        raise DescriptionError(f"{len(nodes)} nodes are more than the {MOST_NODES} accepted", file=source)
+    if not (np.abs(nodes) <= FARTHEST).all():
+        node = int(np.argmin((np.abs(nodes) <= FARTHEST).all(axis=1)))
+        raise DescriptionError(f"node {node} is not finite, or farther than {FARTHEST:g} m away", file=source)
+    if cells.min() < 0 or cells.max() >= len(nodes):
+        raise DescriptionError(f"a cell names a node outside 0..{len(nodes) - 1}", file=source)
+
+
+def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source: Path | None) -> None:
+    corners = nodes[tetras]
+    edges = corners[:, 1:] - corners[:, :1]
+    size = np.abs(edges).max(axis=(1, 2))
+    flat = np.linalg.det(edges) <= _FLAT * size**3
+    if flat.any():
+        raise DescriptionError(
+            f"tetrahedron {int(flat.argmax())} has no volume; mend the mesh, or leave it out", file=source
+        )
+
+
+def _springs(
+    nodes: NDArray[np.float64], cells: NDArray[np.int32], springs: Springs | None, source: Path | None
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Pairs of nodes, and length, stiffness and damping of the springs between them."""
+    edges = edges_of(cells)
+    same = np.flatnonzero(edges[:, 0] == edges[:, 1])
+    length = np.linalg.norm(nodes[edges[:, 1]] - nodes[edges[:, 0]], axis=1)
+    short = np.flatnonzero(length <= _SHORT * np.ptp(nodes, axis=0).max())
+    if len(same) or len(short):
+        a, b = edges[(same if len(same) else short)[0]].tolist()
+        raise DescriptionError(f"a cell has two corners in one place, nodes {a} and {b}", file=source)
+    if springs is None:
+        return np.empty((0, 2), dtype=np.int32), np.empty((0, 3))
+    pairs, stiffness = [edges], [np.full(len(edges), springs.stiffness)]
+    if springs.bending > 0.0:
+        across = bending_pairs(edges, len(nodes))
+        pairs.append(across)
+        stiffness.append(np.full(len(across), springs.bending))
+    found = np.concatenate(pairs)
+    length = np.linalg.norm(nodes[found[:, 1]] - nodes[found[:, 0]], axis=1)
+    return found, np.stack([length, np.concatenate(stiffness), np.full(len(found), springs.damping)], axis=1)

@@ -1,0 +1,85 @@
+"""Soft bodies from mesh files: surfaces as cloth, tetrahedra as solids."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.errors import DescriptionError
+from carom.formats.mesh.reader import read_mesh
+from carom.formats.mesh.vtk import read_vtk
+from carom.model.body_spec import BodySpec
+from carom.soft.build import soft_body
+from carom.soft.materials import NeoHookean, Springs
+
+SOLIDS = (".vtk",)
+SURFACES = (".obj",)
+
+
+def is_solid(path: Path) -> bool:
+    """Whether a file of that name holds tetrahedra."""
+    return path.suffix.lower() in SOLIDS
+
+
+def soft_body_from_file(
+    path: Path,
+    *,
+    scale: float = 1.0,
+    mass: float = 1.0,
+    springs: Springs | None = None,
+    solid: NeoHookean | None = None,
+    margin: float = 0.02,
+    friction: float = 0.0,
+    self_collision: bool = False,
+    simulated: Path | None = None,
+) -> BodySpec:
+    """The soft body that a mesh file describes.
+
+    Of an OBJ file the first object is taken; its triangles are cloth, whatever `solid` says.
+
+    Args:
+        path: The file, `.obj` or `.vtk`.
+        scale: Factor on all lengths.
+        mass: Of all nodes together [kg].
+        springs: Springs along the edges of the cells.
+        solid: What tetrahedra are like.
+        margin: Distance at which nodes rest on other surfaces [m].
+        friction: Coulomb coefficient.
+        self_collision: Its nodes do not go through its own faces.
+        simulated: A file with the mesh that is simulated; that of `path`, an OBJ file, is only seen then.
+
+    Raises:
+        DescriptionError: The file is missing or broken, of another kind, or its mesh cannot be used.
+    """
+    nodes, cells = _mesh(path if simulated is None else simulated)
+    seen = None
+    if simulated is not None:
+        part = read_mesh(path)[0]
+        seen = part.vertices * scale, part.triangles
+    return soft_body(
+        path.stem,
+        nodes * scale,
+        cells,
+        mass=mass,
+        springs=springs,
+        solid=solid if cells.shape[1] == 4 else None,
+        margin=margin,
+        friction=friction,
+        self_collision=self_collision,
+        seen=seen,
+        source=path,
+    )
+
+
+def _mesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    suffix = path.suffix.lower()
+    if suffix in SOLIDS:
+        mesh = read_vtk(path)
+        return mesh.points, mesh.tetras
+    if suffix in SURFACES:
+        part = read_mesh(path)[0]
+        return part.vertices, part.triangles
+    known = ", ".join((*SURFACES, *SOLIDS))
+    raise DescriptionError(f"soft bodies are read from {known} files, not {suffix or 'this'}", file=path)

@@ -1,0 +1,44 @@
+"""What the cells of soft bodies are like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Springs:
+    """Springs along the edges of cells.
+
+    Attributes:
+        stiffness: [N/m].
+        damping: [N s/m], of springs that bend as well.
+        bending: Stiffness of springs between nodes that have a neighbour in common [N/m]; 0 for none.
+        damps_all_directions: They damp every relative motion of their ends, not only that along them.
+    """
+
+    stiffness: float
+    damping: float = 0.0
+    bending: float = 0.0
+    damps_all_directions: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class NeoHookean:
+    """A solid by the energy of Smith, de Goes and Kim (2018), as Bullet has it.
+
+    Attributes:
+        mu: [Pa]; for small strains the shear modulus is 3/4 of it.
+        lam: [Pa]; for small strains Lamé's first parameter is this less 5/8 `mu`.
+        damping: Viscosity as a share of these [s].
+    """
+
+    mu: float
+    lam: float
+    damping: float = 0.0
+
+    @classmethod
+    def of(cls, youngs_modulus: float, poissons_ratio: float, damping: float = 0.0) -> NeoHookean:
+        """What behaves for small strains as a solid of that Young's modulus [Pa] and Poisson's ratio."""
+        shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
+        first = 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio)
+        return cls(4.0 / 3.0 * shear, first + 5.0 / 6.0 * shear, damping)

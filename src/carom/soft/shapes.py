@@ -1,0 +1,74 @@
+"""Meshes of simple shapes, made from numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+# A cube's corners, numbered by bits x, y, z, as six tetrahedra around the diagonal from 0 to 7.
+_IN_CUBE = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
+
+
+def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """A rectangle in the plane z = 0, centred on the origin.
+
+    Args:
+        size: Along x and y [m].
+        cells: How many along each.
+
+    Returns:
+        ((n, 3) nodes, x fastest; (f, 3) triangles that look along z, two for each cell).
+    """
+    nx, ny = cells[0] + 1, cells[1] + 1
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, nx) * size[0], np.linspace(-0.5, 0.5, ny) * size[1])
+    nodes = np.stack([x.ravel(), y.ravel(), np.zeros(nx * ny)], axis=1)
+    corner = (np.arange(ny - 1)[:, None] * nx + np.arange(nx - 1)).ravel()
+    first = np.stack([corner, corner + 1, corner + nx + 1], axis=1)
+    second = np.stack([corner, corner + nx + 1, corner + nx], axis=1)
+    return nodes, np.stack([first, second], axis=1).reshape(-1, 3).astype(np.int32)
+
+
+def box(
+    size: tuple[float, float, float], cells: tuple[int, int, int]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """A cuboid of tetrahedra centred on the origin, six in each cell.
+
+    Args:
+        size: Along x, y and z [m].
+        cells: How many along each.
+
+    Returns:
+        ((n, 3) nodes, x fastest; (t, 4) tetrahedra of positive volume).
+    """
+    counts = [count + 1 for count in cells]
+    z, y, x = np.meshgrid(
+        *(np.linspace(-0.5, 0.5, counts[axis]) * size[axis] for axis in (2, 1, 0)), indexing="ij"
+    )
+    nodes = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    k, j, i = np.meshgrid(*(np.arange(cells[axis]) for axis in (2, 1, 0)), indexing="ij")
+    origin = ((k * counts[1] + j) * counts[0] + i).ravel()
+    step = np.array([1, counts[0], counts[0] * counts[1]])
+    corners = np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(8)]) @ step
+    return nodes, (origin[:, None, None] + corners[np.array(_IN_CUBE)]).reshape(-1, 4).astype(np.int32)
+
+
+def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """A ball of tetrahedra around the origin: a cube of so many cells along each edge, its shells made round.
+
+    Returns:
+        ((n, 3) nodes; (t, 4) tetrahedra of positive volume).
+    """
+    nodes, tetras = box((2.0, 2.0, 2.0), (cells, cells, cells))
+    most = np.abs(nodes).max(axis=1, keepdims=True)
+    length = np.linalg.norm(nodes, axis=1, keepdims=True)
+    round_nodes = nodes * radius * np.divide(most, length, out=np.zeros_like(most), where=length > 0.0)
+    return round_nodes, oriented(round_nodes, tetras)
+
+
+def oriented(nodes: NDArray[np.float64], tetras: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Tetrahedra with two corners exchanged where their volume is negative."""
+    corners = nodes[tetras]
+    volumes = np.linalg.det(corners[:, 1:] - corners[:, :1])
+    turned = tetras.copy()
+    turned[volumes < 0.0, 2], turned[volumes < 0.0, 3] = tetras[volumes < 0.0, 3], tetras[volumes < 0.0, 2]
+    return turned

@@ -1,0 +1,52 @@
+"""A mesh that is seen in place of the one that is simulated, and follows it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Cells whose middles are nearest to a vertex, among which the one that holds it is looked for.
+_CANDIDATES = 8
+# Vertices looked at at a time, for want of memory.
+_CHUNK = 256
+
+
+def bind(
+    vertices: NDArray[np.float64], nodes: NDArray[np.float64], cells: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Which nodes each vertex follows, and by how much.
+
+    A vertex is held at its place in the cell that it is in, or deepest in; outside of all cells its place
+    follows from how that cell changes, as in Bullet.
+
+    Args:
+        vertices: (v, 3) places at rest [m].
+        nodes: (n, 3) places at rest [m].
+        cells: (m, 3) triangles or (m, 4) tetrahedra.
+
+    Returns:
+        ((v, k) nodes; (v, k) weights that add up to 1).
+    """
+    corners = nodes[cells]
+    middles = corners.mean(axis=1)
+    count = min(_CANDIDATES, len(cells))
+    chosen = np.empty((len(vertices), cells.shape[1]), dtype=np.int32)
+    weights = np.empty(chosen.shape)
+    for start in range(0, len(vertices), _CHUNK):
+        points = vertices[start : start + _CHUNK]
+        squares = ((points[:, None] - middles) ** 2).sum(axis=2)
+        near = np.argpartition(squares, count - 1, axis=1)[:, :count]
+        found = _weights(points[:, None], corners[near])
+        best = found.min(axis=2).argmax(axis=1)
+        rows = np.arange(len(points))
+        chosen[start : start + _CHUNK] = cells[near[rows, best]]
+        weights[start : start + _CHUNK] = found[rows, best]
+    return chosen, weights
+
+
+def _weights(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Barycentric coordinates of points, or of their feet on triangles: (..., 3 or 4)."""
+    edges = np.swapaxes(corners[..., 1:, :] - corners[..., :1, :], -1, -2)
+    offset = points - corners[..., 0, :]
+    others = (np.linalg.pinv(edges) @ offset[..., None])[..., 0]
+    return np.concatenate([1.0 - others.sum(axis=-1, keepdims=True), others], axis=-1)

@@ -1,0 +1,220 @@
+"""Bringing soft bodies into a world."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from carom.description import Pose
+from pybullet._calls.arguments import Vector, integer, moderate, real, rotation, text, vector3
+from pybullet._calls.builtin import exported
+from pybullet._calls.errors import fail
+from pybullet._clients.clients import Client, client_of
+from pybullet._clients.origins import FileLoad
+from pybullet._loading.new_bodies import add_bodies
+
+if TYPE_CHECKING:
+    from carom.model.body_spec import BodySpec
+    from carom.soft.materials import NeoHookean, Springs
+
+__all__ = ["loadSoftBody"]
+
+_CANNOT_LOAD = "Cannot load soft body."
+_DEFAULT_MASS, _DEFAULT_MARGIN = 1.0, 0.02
+
+
+@exported
+def loadSoftBody(
+    fileName: str,
+    basePosition: Vector | None = None,
+    baseOrientation: Vector | None = None,
+    scale: float = -1,
+    mass: float = -1,
+    collisionMargin: float = -1,
+    useMassSpring: int = 0,
+    useBendingSprings: int = 0,
+    useNeoHookean: int = 0,
+    springElasticStiffness: float = 1,
+    springDampingStiffness: float = 0.1,
+    springDampingAllDirections: int = 0,
+    springBendingStiffness: float = 0.1,
+    NeoHookeanMu: float = 1,
+    NeoHookeanLambda: float = 1,
+    NeoHookeanDamping: float = 0.1,
+    frictionCoeff: float = 0,
+    useFaceContact: int = 0,
+    useSelfCollision: int = 0,
+    repulsionStiffness: float = 0.5,
+    simFileName: str = "",
+    physicsClientId: int = 0,
+) -> int:
+    """Loads a soft body: the surface of an OBJ file as cloth, the tetrahedra of a VTK file as a solid.
+
+    In a world of `resetSimulation(RESET_USE_DEFORMABLE_WORLD)` the parameters say what it is like. In any
+    other, surfaces become cloth that hardly stretches, and the parameters of springs mean nothing.
+
+    Args:
+        fileName: The file, `.obj` or `.vtk` (text, legacy format), found as that of `loadURDF` is.
+        basePosition: Where the origin of its mesh is [m].
+        baseOrientation: How the mesh is turned (x, y, z, w).
+        scale: Factor on all lengths; 1 when not greater than 0.
+        mass: Of all nodes together [kg], each of which has the same; 1 when not greater than 0.
+        collisionMargin: Distance at which nodes rest on other surfaces [m]; 0.02 when not greater than 0.
+        useMassSpring: 1 for springs along all edges.
+        useBendingSprings: 1 for springs between nodes that have a neighbour in common, too.
+        useNeoHookean: 1 for tetrahedra that resist to a change of shape.
+        springElasticStiffness: [N/m].
+        springDampingStiffness: [N s/m].
+        springDampingAllDirections: 1: springs damp every relative motion of their ends.
+        springBendingStiffness: Of bending springs [N/m].
+        NeoHookeanMu: [Pa]; for small strains the shear modulus is 3/4 of it.
+        NeoHookeanLambda: [Pa]; for small strains Lamé's first parameter is this less 5/8 of `NeoHookeanMu`.
+        NeoHookeanDamping: Viscosity as a share of these [s].
+        frictionCoeff: Coulomb coefficient, multiplied by that of what it touches.
+        useFaceContact: Without effect, as in PyBullet: nodes touch, not faces.
+        useSelfCollision: 1: its nodes do not go through its faces.
+        repulsionStiffness: Without effect: nodes are kept off faces whatever it takes.
+        simFileName: A mesh that is simulated instead of that of the file, which is only seen.
+        physicsClientId: The connection.
+
+    Returns:
+        The id of the body; -1 if the name is empty.
+
+    Raises:
+        pybullet.error: Not connected, the file is missing or cannot be used (what follows PyBullet's text
+            says why), a parameter is negative or not finite, or the pose is not three and four finite
+            numbers. The world is then as it was.
+
+    Examples:
+        >>> p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+        >>> cloth = p.loadSoftBody("cloth_z_up.obj", basePosition=[0, 0, 1], mass=1, useMassSpring=1,
+        ...     springElasticStiffness=40)
+        >>> p.getDynamicsInfo(cloth, -1)[10]
+        3
+    """
+    name, simulated = text(fileName, "fileName"), text(simFileName, "simFileName")
+    position, orientation = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+    if basePosition is not None:
+        position = vector3(basePosition, "Cannot convert basePosition.", "basePosition")
+    if baseOrientation is not None:
+        orientation = rotation(baseOrientation, "Cannot convert baseOrientation.", "baseOrientation")
+    factor, weight = real(scale, "scale"), real(mass, "mass")
+    margin, friction = real(collisionMargin, "collisionMargin"), real(frictionCoeff, "frictionCoeff")
+    stiffness, bending = (
+        real(springElasticStiffness, "springElasticStiffness"),
+        real(springBendingStiffness, "springBendingStiffness"),
+    )
+    damping = real(springDampingStiffness, "springDampingStiffness")
+    solid_numbers = (
+        real(NeoHookeanMu, "NeoHookeanMu"),
+        real(NeoHookeanLambda, "NeoHookeanLambda"),
+        real(NeoHookeanDamping, "NeoHookeanDamping"),
+    )
+    real(repulsionStiffness, "repulsionStiffness")
+    integer(useFaceContact, "useFaceContact")
+    all_directions = integer(springDampingAllDirections, "springDampingAllDirections") != 0
+    with_springs, bends = (
+        integer(useMassSpring, "useMassSpring"),
+        integer(useBendingSprings, "useBendingSprings"),
+    )
+    is_solid, collides = (
+        integer(useNeoHookean, "useNeoHookean"),
+        integer(useSelfCollision, "useSelfCollision"),
+    )
+    client = client_of(physicsClientId)
+    if not name:
+        return -1
+
+    from carom.soft.materials import NeoHookean, Springs
+
+    springs = solid = None
+    if with_springs:
+        springs = Springs(stiffness, damping, bending if bends else 0.0, all_directions)
+    if is_solid:
+        solid = NeoHookean(*solid_numbers)
+    spec = _spec(
+        client,
+        name,
+        simulated,
+        moderate(factor, _CANNOT_LOAD, "scale") if factor > 0.0 else 1.0,
+        weight if weight > 0.0 else _DEFAULT_MASS,
+        margin if margin > 0.0 else _DEFAULT_MARGIN,
+        friction,
+        springs,
+        solid,
+        self_collision=collides != 0,
+    )
+    arguments: dict[str, float | str] = {
+        "scale": factor,
+        "mass": weight,
+        "collisionMargin": margin,
+        "useMassSpring": with_springs,
+        "useBendingSprings": bends,
+        "useNeoHookean": is_solid,
+        "springElasticStiffness": stiffness,
+        "springDampingStiffness": damping,
+        "springDampingAllDirections": int(all_directions),
+        "springBendingStiffness": bending,
+        "NeoHookeanMu": solid_numbers[0],
+        "NeoHookeanLambda": solid_numbers[1],
+        "NeoHookeanDamping": solid_numbers[2],
+        "frictionCoeff": friction,
+        "useSelfCollision": collides,
+        "simFileName": simulated,
+    }
+    load = FileLoad("loadSoftBody", arguments, takes_pose=True)
+    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD, load)[0]
+
+
+def _spec(
+    client: Client,
+    name: str,
+    simulated: str,
+    scale: float,
+    mass: float,
+    margin: float,
+    friction: float,
+    springs: Springs | None,
+    solid: NeoHookean | None,
+    *,
+    self_collision: bool,
+) -> BodySpec:
+    from carom.errors import CaromError
+    from carom.soft.files import is_solid, soft_body_from_file
+    from carom.soft.older import older_cloth_from_file
+
+    path = _found(client, name)
+    # As in PyBullet, a mesh for simulation may lie beside the one that is seen.
+    inside = _found(client, simulated, path.parent) if simulated else None
+    try:
+        if client.deformable:
+            return soft_body_from_file(
+                path,
+                scale=scale,
+                mass=mass,
+                margin=margin,
+                friction=friction,
+                springs=springs,
+                solid=solid,
+                self_collision=self_collision,
+                simulated=inside,
+            )
+        if is_solid(inside or path):
+            fail(
+                _CANNOT_LOAD,
+                f"{inside or path} holds tetrahedra: "
+                "call resetSimulation(RESET_USE_DEFORMABLE_WORLD) before.",
+            )
+        return older_cloth_from_file(inside or path, scale=scale, mass=mass, margin=margin)
+    except CaromError as problem:
+        fail(_CANNOT_LOAD, str(problem))
+
+
+def _found(client: Client, name: str, beside: Path | None = None) -> Path:
+    """A file, looked for beside another one after everywhere else."""
+    path = client.search().find(name)
+    if path is None and beside is not None and (beside / name).is_file():
+        path = beside / name
+    if path is None:
+        fail(_CANNOT_LOAD, f"The file {name!r} was not found.")
+    return path

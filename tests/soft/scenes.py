@@ -1,0 +1,92 @@
+"""What tests of soft bodies put into worlds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from carom import World
+from carom.description import Collision, ContactParameters, Geometry
+from carom.description.pose import IDENTITY
+from carom.layouts.flags import LoadFlags
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.inertia import inertia_from_shapes
+from carom.scene.body import Body
+from carom.scene.soft_body import SoftBody
+
+GRAVITY = 10.0
+
+
+def world(gravity: float = GRAVITY) -> World:
+    """An empty world."""
+    result = World()
+    result.gravity = (0.0, 0.0, -gravity)
+    return result
+
+
+def rigid(
+    where: World,
+    shape: Geometry,
+    mass: float = 0.0,
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    friction: float = 0.5,
+) -> Body:
+    """A rigid body without damping; massless ones are fixed."""
+    shapes = (Collision(shape),)
+    inertia = (0.0, 0.0, 0.0)
+    if mass > 0.0:
+        inertia = inertia_from_shapes(mass, shapes, IDENTITY, implicit_cylinder=True, compound_margin=0.001)
+    base = LinkSpec(
+        "base",
+        mass=mass,
+        inertia=inertia,
+        collisions=shapes,
+        contact=ContactParameters(lateral_friction=friction),
+    )
+    flags = int(LoadFlags.USE_IMPLICIT_CYLINDER)
+    body = where.load(BodySpec("rigid", base, fixed_base=mass == 0.0, flags=flags), position)
+    body.change_dynamics(-1, linear_damping=0.0, angular_damping=0.0)
+    return body
+
+
+def momentum(soft: SoftBody) -> np.ndarray:
+    """Momentum of all nodes [N s]."""
+    return soft.soft_spec.masses @ soft.node_velocities
+
+
+def kinetic_energy(soft: SoftBody) -> float:
+    """Of all nodes [J]."""
+    return float(0.5 * soft.soft_spec.masses @ (soft.node_velocities**2).sum(axis=1))
+
+
+def spring_energy(soft: SoftBody) -> float:
+    """What is in all springs [J]."""
+    spec = soft.soft_spec
+    length = np.linalg.norm(soft.nodes[spec.springs[:, 1]] - soft.nodes[spec.springs[:, 0]], axis=1)
+    return float(0.5 * spec.spring_terms[:, 1] @ (length - spec.spring_terms[:, 0]) ** 2)
+
+
+def write_grid(path: Path, side: int, size: float = 1.0) -> Path:
+    """An OBJ file with a square of so many nodes along each side."""
+    from carom.soft.shapes import grid
+
+    nodes, triangles = grid((size, size), (side - 1, side - 1))
+    lines = [f"v {x} {y} {z}" for x, y, z in nodes.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles.tolist()]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def write_cube(path: Path, cells: int, size: float = 0.4) -> Path:
+    """A VTK file with a cube of so many cells along each edge."""
+    from carom.soft.shapes import box
+
+    nodes, tetras = box((size, size, size), (cells, cells, cells))
+    lines = ["# vtk DataFile Version 2.0", "a cube", "ASCII", "DATASET UNSTRUCTURED_GRID"]
+    lines += [f"POINTS {len(nodes)} double", *(f"{x} {y} {z}" for x, y, z in nodes.tolist())]
+    lines += [f"CELLS {len(tetras)} {5 * len(tetras)}"]
+    lines += [f"4 {a} {b} {c} {d}" for a, b, c, d in tetras.tolist()]
+    lines += [f"CELL_TYPES {len(tetras)}", *["10"] * len(tetras)]
+    path.write_text("\n".join(lines) + "\n")
+    return path

@@ -1,0 +1,121 @@
+"""Soft bodies from meshes: what follows from cells, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.soft.scenes import write_cube, write_grid
+
+from carom import World
+from carom.errors import DescriptionError
+from carom.soft.build import soft_body
+from carom.soft.files import soft_body_from_file
+from carom.soft.materials import NeoHookean, Springs
+from carom.soft.shapes import ball, box, grid, oriented
+from carom.soft.topology import bending_pairs, edges_of, surface_of
+
+TETRA = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+ONE = np.array([[0, 1, 2, 3]], dtype=np.int32)
+
+
+def volumes(nodes: np.ndarray, tetras: np.ndarray) -> np.ndarray:
+    corners = nodes[tetras]
+    return np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6
+
+
+def test_edges_are_found_once() -> None:
+    _, triangles = grid((1.0, 1.0), (1, 1))
+    assert edges_of(triangles).tolist() == [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]
+
+
+def test_bending_pairs_have_a_neighbour_in_common() -> None:
+    edges = np.array([[0, 1], [1, 2], [2, 3]], dtype=np.int32)
+    assert bending_pairs(edges, 4).tolist() == [[0, 2], [1, 3]]
+    _, triangles = grid((1.0, 1.0), (1, 1))
+    assert bending_pairs(edges_of(triangles), 4).tolist() == [[1, 2]]
+
+
+def test_the_surface_is_closed_and_looks_outward() -> None:
+    nodes, tetras = box((1.0, 2.0, 3.0), (2, 3, 4))
+    faces = surface_of(tetras)
+    corners = nodes[faces]
+    # Gauss: the surface has the volume of what is inside.
+    assert np.linalg.det(corners).sum() / 6 == pytest.approx(6.0)
+    assert len(faces) == 2 * 2 * (2 * 3 + 3 * 4 + 2 * 4)
+
+
+def test_shapes_fill_their_volume() -> None:
+    assert volumes(*box((1.0, 2.0, 3.0), (2, 3, 4))).sum() == pytest.approx(6.0)
+    nodes, tetras = ball(0.5, 8)
+    assert (volumes(nodes, tetras) > 0.0).all()
+    assert volumes(nodes, tetras).sum() == pytest.approx(4 / 3 * np.pi * 0.5**3, rel=0.05)
+    assert np.linalg.norm(nodes, axis=1).max() == pytest.approx(0.5)
+
+
+def test_inverted_tetrahedra_are_turned_round() -> None:
+    turned = oriented(TETRA, ONE[:, [1, 0, 2, 3]])
+    assert volumes(TETRA, turned)[0] == pytest.approx(1 / 6)
+
+
+def test_small_strains_are_those_of_a_linear_solid() -> None:
+    solid = NeoHookean.of(1e4, 0.3)
+    nodes, tetras = box((1.0, 1.0, 1.0), (1, 1, 1))
+    shear, first = 0.75 * solid.mu, solid.lam - 0.625 * solid.mu
+    assert shear == pytest.approx(1e4 / 2.6)
+    assert first == pytest.approx(1e4 * 0.3 / (1.3 * 0.4))
+    assert len(nodes) == 8 and len(tetras) == 6
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ({"mass": 0.0}, "mass is 0.0; it has to be finite and greater than 0"),
+        ({"mass": float("nan")}, "mass is nan"),
+        ({"margin": -1.0}, "the collision margin is -1.0"),
+        ({"friction": -0.5}, "friction is -0.5; it has to be finite and 0 or more"),
+        ({"springs": Springs(-1.0)}, "the stiffness of springs is -1.0"),
+        ({"springs": Springs(1.0, float("inf"))}, "the damping of springs is inf"),
+        ({"solid": NeoHookean(1.0, -1.0)}, "lambda is -1.0"),
+        ({"nodes": TETRA * np.nan}, "node 0 is not finite"),
+        ({"nodes": TETRA * 1e9}, "node 1 is not finite, or farther than 1e\\+06 m away"),
+        ({"nodes": TETRA * [1, 1, 0]}, "tetrahedron 0 has no volume"),
+        ({"cells": ONE + 1}, "a cell names a node outside 0..3"),
+        ({"cells": ONE[:, [0, 0, 2, 3]]}, "tetrahedron 0 has no volume"),
+        ({"cells": ONE[:0]}, "there is no cell"),
+        (
+            {"nodes": TETRA * [1, 0, 0], "cells": np.array([[0, 1, 2]]), "springs": Springs(1.0)},
+            "a cell has two corners in one place, nodes 0 and 2",
+        ),
+    ],
+)
+def test_what_makes_no_sense_is_refused(change: dict, problem: str) -> None:
+    arguments = {"nodes": TETRA, "cells": ONE, "mass": 1.0, **change}
+    with pytest.raises(DescriptionError, match=problem):
+        soft_body("bad", arguments.pop("nodes"), arguments.pop("cells"), **arguments)
+
+
+def test_files_give_the_meshes_they_hold(tmp_path: Path) -> None:
+    cloth = soft_body_from_file(write_grid(tmp_path / "cloth.obj", 5), springs=Springs(10.0, 0.1, 1.0))
+    assert cloth.soft is not None and cloth.name == "cloth"
+    assert (len(cloth.soft.nodes), len(cloth.soft.faces), len(cloth.soft.tetras)) == (25, 32, 0)
+    cube = soft_body_from_file(write_cube(tmp_path / "cube.vtk", 3), solid=NeoHookean(1.0, 1.0), scale=2.0)
+    assert cube.soft is not None
+    assert (len(cube.soft.nodes), len(cube.soft.faces), len(cube.soft.tetras)) == (64, 108, 162)
+    assert np.ptp(cube.soft.nodes, axis=0) == pytest.approx([0.8] * 3)
+
+
+def test_a_load_that_fails_leaves_the_world_as_it_was(tmp_path: Path) -> None:
+    world = World()
+    world.load_cloth()
+    world.step(3)
+    before = world.arrays.state.numpy["node_position"].copy()
+    with pytest.raises(DescriptionError):
+        world.load_cloth(mesh=tmp_path / "missing.obj")
+    with pytest.raises(DescriptionError, match="Poisson"):
+        world.load_soft_solid(poissons_ratio=0.5)
+    with pytest.raises(ValueError, match="cells must be whole numbers"):
+        world.load_rope(cells=0)
+    assert len(world.bodies) == 1
+    assert np.array_equal(world.arrays.state.numpy["node_position"], before)

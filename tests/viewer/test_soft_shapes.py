@@ -1,0 +1,43 @@
+"""Pages see soft bodies in the shapes that they have."""
+
+from __future__ import annotations
+
+from threading import RLock
+
+import numpy as np
+
+from carom import World
+from carom.viewer import scene_feed
+from carom.viewer.board import Board
+from carom.viewer.messages import decoded
+
+
+def meshes(board: Board) -> list[np.ndarray]:
+    """The vertices of all meshes on a board, in the order they were put there."""
+    found = []
+    for key, entry in board._entries.items():
+        if isinstance(key, tuple) and key[0] == "mesh" and not entry.gone:
+            header, payload = decoded(entry.message)
+            count = 3 * header["vertices"]
+            found.append(np.frombuffer(payload[: 4 * count], dtype="<f4").reshape(-1, 3))
+    return found
+
+
+def test_a_cloth_that_falls_together_is_shown_so(monkeypatch) -> None:
+    monkeypatch.setattr(scene_feed, "_SHAPE_INTERVAL", 0.0)
+    world = World()
+    world.gravity = (0, 0, -10)
+    cloth = world.load_cloth((1.0, 1.0), (4, 4))
+    cloth.anchor(12)
+    board = Board()
+    feed = scene_feed.SceneFeed(world, RLock(), board)
+    feed.frame({})
+    (flat,) = meshes(board)
+    assert np.ptp(flat[:, 2]) < 1e-6
+    world.step(60)
+    feed.frame({})
+    (fallen,) = meshes(board)
+    assert np.ptp(fallen[:, 2]) > 0.2
+    revision = board.revision
+    feed.frame({})
+    assert board.revision == revision, "nothing has moved"
