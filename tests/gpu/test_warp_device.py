@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+pytest.importorskip("warp", reason="launches the kernels")
+
 import torch
 import warp as wp
 from tests.physics.contact_scenes import add_ball, add_floor, earth

@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
+pytest.importorskip("warp", reason="launches the kernels")
+
 from tests.gpu.native_device import NativeDevice
 from tests.physics.contact_scenes import add_ball, add_floor, earth
 from tests.physics.test_contact_worlds import heap

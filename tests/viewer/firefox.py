@@ -20,7 +20,10 @@ from websockets.sync.connection import Connection
 FIREFOX = next(filter(None, map(shutil.which, ("firefox", "firefox-esr"))), None)
 # Without a display Firefox has no WebGL; this one needs no screen.
 DISPLAY = shutil.which("Xvfb")
-needs_firefox = pytest.mark.skipif(not (FIREFOX and DISPLAY), reason="no Firefox, or no Xvfb for it, here")
+needs_firefox = pytest.mark.skipif(
+    not (FIREFOX and DISPLAY and os.access(Path.home(), os.W_OK)),
+    reason="no Firefox, no Xvfb for it, or no home folder that it may write to",
+)
 # WebGL by the processor, and no calls to its makers.
 _PREFERENCES = {
     "webgl.force-enabled": "true",

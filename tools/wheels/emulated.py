@@ -15,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 from tools.wheels.build import build_wheel
+from tools.wheels.installed import copy_repository
 
 from carom.native.targets import TARGETS
 
@@ -57,8 +58,12 @@ def main() -> int:
         install(root, *_TEST_NEEDS)
     with tempfile.TemporaryDirectory() as temporary:
         install(root, str(asked.wheel or build_wheel(TARGETS["aarch64-linux"], Path(temporary))))
-    command = [launcher(folder, root), "-m", "pytest", "-p", "no:cacheprovider", *asked.tests, *options]
-    return subprocess.run(command, cwd=_ROOT, env={**os.environ, "PYTHONPATH": ""}, check=False).returncode
+        clone = Path(temporary) / "clone"
+        copy_repository(clone, _packages(root))
+        command = [launcher(folder, root), "-m", "pytest", "-p", "no:cacheprovider", *asked.tests, *options]
+        return subprocess.run(
+            command, cwd=clone, env={**os.environ, "PYTHONPATH": ""}, check=False
+        ).returncode
 
 
 def unpack_debian(folder: Path, root: Path) -> None:
@@ -88,11 +93,14 @@ def install(root: Path, *what: str) -> None:
         root: Where Debian's Python has been unpacked.
         *what: Packages and wheels.
     """
-    place = root / "usr" / "lib" / "python3" / "dist-packages"
     platforms = [f"--platform={platform}" for platform in _PLATFORMS]
     kind = ("--only-binary=:all:", f"--python-version={_PYTHON}", "--implementation=cp")
-    command = [sys.executable, "-m", "pip", "--quiet", "install", "--upgrade", f"--target={place}"]
+    command = [sys.executable, "-m", "pip", "--quiet", "install", "--upgrade", f"--target={_packages(root)}"]
     subprocess.run([*command, *platforms, *kind, *what], check=True)
+
+
+def _packages(root: Path) -> Path:
+    return root / "usr" / "lib" / "python3" / "dist-packages"
 
 
 def launcher(folder: Path, root: Path) -> Path:

@@ -136,11 +136,7 @@ def run_tests(environment: Environment, folder: Path, arguments: Sequence[str]) 
         Unfit: Something has been written to the home folder, or that user cannot run this Python.
     """
     clone, home, temporary = folder / "clone", folder / "home", folder / "temporary"
-    for name in _COPIED:
-        copy = shutil.copytree if (_ROOT / name).is_dir() else shutil.copyfile
-        clone.mkdir(exist_ok=True)
-        copy(_ROOT / name, clone / name)
-    (clone / "src").symlink_to(environment.packages())
+    copy_repository(clone, environment.packages())
     home.mkdir(mode=0o555)
     temporary.mkdir()
     unprivileged: dict[str, Any] = {}
@@ -163,6 +159,20 @@ def run_tests(environment: Environment, folder: Path, arguments: Sequence[str]) 
     if written:
         raise Unfit(f"written to the home folder: {written}")
     return done.returncode
+
+
+def copy_repository(clone: Path, packages: Path) -> None:
+    """Copy what tests read of the repository.
+
+    Args:
+        clone: The folder for it; must not be there.
+        packages: Where the wheel is installed; tests that start processes of their own find it as `src`.
+    """
+    clone.mkdir()
+    for name in _COPIED:
+        copy = shutil.copytree if (_ROOT / name).is_dir() else shutil.copyfile
+        copy(_ROOT / name, clone / name)
+    (clone / "src").symlink_to(packages)
 
 
 def _let_read(folder: Path) -> None:

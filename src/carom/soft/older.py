@@ -9,8 +9,8 @@ from carom.model.body_spec import BodySpec
 from carom.soft.files import soft_body_from_file
 from carom.soft.materials import Springs
 
-# Bullet projects the springs of such cloth 20 times in a step of 1/240 s, and halves the error of each: what
-# springs do at which two nodes swing against each other about three times as fast as steps follow.
+# Bullet projects the springs of such cloth 20 times in a step, whatever its mass. At this frequency of a
+# spring between two nodes, 1 m of cloth that hangs from an edge stretches by 0.1 mm; PyBullet's by 0.05 mm.
 _FREQUENCY = 720.0
 # Bullet's coefficient for it.
 _FRICTION = 0.5
