@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from hashlib import sha256
 from pathlib import Path
 
@@ -46,6 +46,19 @@ def test_a_log_with_columns_beyond_all_memory_is_refused(client: int, tmp_path: 
     with pytest.raises(p.error, match="maxLogDof is 2147483647"):
         p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, str(path), maxLogDof=2**31 - 1)
     assert not path.exists()
+
+
+def test_arrays_where_numbers_belong_are_refused(arm: int) -> None:
+    vectors = [np.array([1.0, 2.0])] * 3
+    calls: list[Callable[[], object]] = [
+        lambda: p.setJointMotorControlMultiDof(arm, 0, p.POSITION_CONTROL, [0.0], force=vectors),
+        lambda: p.setJointMotorControlMultiDof(arm, 0, p.POSITION_CONTROL, vectors),
+        lambda: p.calculateJacobian(arm, 6, [0, 0, 0], vectors, vectors, vectors),
+        lambda: p.calculateMassMatrix(arm, vectors),
+    ]
+    for call in calls:
+        with pytest.raises((p.error, TypeError)):
+            call()
 
 
 def test_a_fraction_beyond_all_angles_is_refused() -> None:

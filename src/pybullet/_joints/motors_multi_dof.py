@@ -216,7 +216,7 @@ def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[S
             and -inf < sum(chain.from_iterable(entries)) < inf  # type: ignore[arg-type]
         ):
             return entries  # type: ignore[return-value]
-    except TypeError:
+    except (TypeError, ValueError):
         pass
     return [_list(values, name, most) for values in entries]
 
@@ -234,7 +234,7 @@ def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
         try:
             if -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
                 return values
-        except TypeError:
+        except (TypeError, ValueError):
             pass
     return () if values is None else quantities(values, f"expected a {name} sequence", name)[:most]
 
