@@ -7,6 +7,7 @@ import struct
 from collections.abc import Callable, Iterator
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,8 +50,8 @@ def test_a_log_with_columns_beyond_all_memory_is_refused(client: int, tmp_path: 
 
 
 def test_arrays_where_numbers_belong_are_refused(arm: int) -> None:
-    vectors = [np.array([1.0, 2.0])] * 3
-    calls: list[Callable[[], object]] = [
+    vectors: Any = [np.array([1.0, 2.0])] * 3
+    calls: list[Callable[[], Any]] = [
         lambda: p.setJointMotorControlMultiDof(arm, 0, p.POSITION_CONTROL, [0.0], force=vectors),
         lambda: p.setJointMotorControlMultiDof(arm, 0, p.POSITION_CONTROL, vectors),
         lambda: p.calculateJacobian(arm, 6, [0, 0, 0], vectors, vectors, vectors),
