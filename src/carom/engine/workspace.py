@@ -60,7 +60,7 @@ class Workspace:
             self.soft_work.reserve(
                 {
                     "node": nodes,
-                    "contact_arrays": TOUCHES_PER_NODE * nodes,
+                    "touch": TOUCHES_PER_NODE * nodes,
                     "near": FACES_PER_NODE * nodes,
                     "bucket": BUCKETS,
                     "anchor": contact_arrays.soft.table.capacity["anchor"],

@@ -32,7 +32,7 @@ def relax_touch(
     work: SoftWork,
     world: Int32,
     node: Int32,
-    collide_shapes: Int32,
+    touch: Int32,
     h: real,
 ):
     """Keep a node outside of a shape, and let friction hold it within Coulomb's cone.
@@ -40,12 +40,12 @@ def relax_touch(
     The impulse along the normal is the one that leaves no overlap at the end of the small step, but for a
     share of one that was there at its start. Friction stops the slip of the small step, if it can.
     """
-    row = work.touch_row[world, collide_shapes]
-    normal = work.touch_normal[world, collide_shapes]
+    row = work.touch_row[world, touch]
+    normal = work.touch_normal[world, touch]
     mass = soft.node_inverse_mass[node]
-    point = work.touch_point[world, collide_shapes]
-    velocity = work.touch_velocity[world, collide_shapes]
-    offset = work.touch_offset[world, collide_shapes]
+    point = work.touch_point[world, touch]
+    velocity = work.touch_velocity[world, touch]
+    offset = work.touch_offset[world, touch]
     gap_before = wp.dot(normal, work.node_before[world, node] - point) - offset
     along = wp.dot(normal, velocity) + row_velocity(scratch, pair_rows, world, row)
     gap = wp.dot(normal, state.node_position[world, node] - point) - offset - h * along
@@ -54,9 +54,9 @@ def relax_touch(
         push = (wanted - gap) / (h * (mass + row_mass(pair_rows, world, row)))
         state.node_position[world, node] += normal * (push * mass * h)
         push_along(scratch, pair_rows, world, row, -push)
-        bound = push * work.touch_friction[world, collide_shapes]
+        bound = push * work.touch_friction[world, touch]
         if bound > 0.0:
-            relax_friction(scratch, pair_rows, state, work, world, node, collide_shapes, row, mass, bound, h)
+            relax_friction(scratch, pair_rows, state, work, world, node, touch, row, mass, bound, h)
 
 
 @func
@@ -67,21 +67,21 @@ def relax_friction(
     work: SoftWork,
     world: Int32,
     node: Int32,
-    collide_shapes: Int32,
+    touch: Int32,
     row: Int32,
     mass: real,
     bound: real,
     h: real,
 ):
     """Stop the slip of a node on a shape, as far as an impulse within `bound` [N s] can."""
-    normal = work.touch_normal[world, collide_shapes]
+    normal = work.touch_normal[world, touch]
     axes = tangents(normal)
     first = column(axes, 1)
     second = column(axes, 2)
     row1 = other_row(row, 1)
     row2 = other_row(row, 2)
     moved = state.node_position[world, node] - work.node_before[world, node]
-    slip = moved - work.touch_velocity[world, collide_shapes] * h
+    slip = moved - work.touch_velocity[world, touch] * h
     slip1 = wp.dot(slip, first) - h * row_velocity(scratch, pair_rows, world, row1)
     slip2 = wp.dot(slip, second) - h * row_velocity(scratch, pair_rows, world, row2)
     push1 = -slip1 / (h * (mass + row_mass(pair_rows, world, row1)))
@@ -109,10 +109,8 @@ def relax_touches(
     """Relax all touches of a body, one after the other."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
-        for collide_shapes in range(
-            TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]
-        ):
-            relax_touch(scratch, pair_rows, soft, state, work, world, node, collide_shapes, h)
+        for touch in range(TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]):
+            relax_touch(scratch, pair_rows, soft, state, work, world, node, touch, h)
 
 
 @func
@@ -178,14 +176,12 @@ def move_touches(
     """Let the points where nodes touch go along with their links for a small step."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
-        for collide_shapes in range(
-            TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]
-        ):
-            row = work.touch_row[world, collide_shapes]
+        for touch in range(TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]):
+            row = work.touch_row[world, touch]
             if row >= 0:
-                work.touch_point[world, collide_shapes] += moved_on(
-                    scratch, pair_rows, world, row, work.touch_velocity[world, collide_shapes],
-                    tangents(work.touch_normal[world, collide_shapes]), h,
+                work.touch_point[world, touch] += moved_on(
+                    scratch, pair_rows, world, row, work.touch_velocity[world, touch],
+                    tangents(work.touch_normal[world, touch]), h,
                 )  # fmt: skip
 
 

@@ -94,10 +94,10 @@ def keep_nearest(work: SoftWork, world: Int32, first: Int32, count: Int32, dista
         return first + count
     place = Int32(-1)
     most = distance + 0.0
-    for collide_shapes in range(first, first + count):
-        if work.touch_offset[world, collide_shapes] > most:
-            most = work.touch_offset[world, collide_shapes]
-            place = collide_shapes
+    for touch in range(first, first + count):
+        if work.touch_offset[world, touch] > most:
+            most = work.touch_offset[world, touch]
+            place = touch
     return place
 
 
@@ -230,27 +230,25 @@ def write_touches(
     own = model.tree[soft.soft[body].tree].first_link
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
-        for collide_shapes in range(
-            TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]
-        ):
-            shape = work.touch_row[world, collide_shapes]
+        for touch in range(TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]):
+            shape = work.touch_row[world, touch]
             link = shapes.shape_link[shape]
             tree = shapes.shape_tree[shape]
-            normal = work.touch_normal[world, collide_shapes]
-            point = state.node_position[world, node] - normal * work.touch_offset[world, collide_shapes]
-            work.touch_point[world, collide_shapes] = point
-            work.touch_offset[world, collide_shapes] = soft.soft[body].margin
-            work.touch_friction[world, collide_shapes] = (
+            normal = work.touch_normal[world, touch]
+            point = state.node_position[world, node] - normal * work.touch_offset[world, touch]
+            work.touch_point[world, touch] = point
+            work.touch_offset[world, touch] = soft.soft[body].margin
+            work.touch_friction[world, touch] = (
                 shapes.link_lateral_friction[world, own] * shapes.link_lateral_friction[world, link]
             )
-            work.touch_velocity[world, collide_shapes] = Vector3(0.0, 0.0, 0.0)
-            work.touch_row[world, collide_shapes] = Int32(-1)
+            work.touch_velocity[world, touch] = Vector3(0.0, 0.0, 0.0)
+            work.touch_row[world, touch] = Int32(-1)
             if can_be_pushed(model, state, world, tree, link):
                 make_ready(model, state, scratch, pair_rows, work, world, tree)
-                work.touch_velocity[world, collide_shapes] = point_velocity(
+                work.touch_velocity[world, touch] = point_velocity(
                     model, state, scratch, world, tree, link, point
                 )
-                work.touch_row[world, collide_shapes] = place[0]
+                work.touch_row[world, touch] = place[0]
                 place = add_push_rows(
                     model, state, scratch, pair_rows, world, tree, link, point, tangents(normal), place
                 )
