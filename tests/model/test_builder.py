@@ -103,7 +103,10 @@ def test_coordinates_are_counted_by_joint_type():
     types = [JointType.REVOLUTE, JointType.SPHERICAL, JointType.FIXED, JointType.PLANAR, JointType.PRISMATIC]
     links = [LinkSpec(f"l{j}", parent=j - 1, mass=1.0, joint_type=kind) for j, kind in enumerate(types)]
     arrays, (rows,) = filled([BodySpec("all", LinkSpec("base"), links, fixed_base=True)])
-    assert rows.count == {"tree": 1, "link": 6, "position": 7 + 9, "dof": 6 + 8, "block": 14 * 4, "delta": 4}
+    assert rows.count == {
+        **{"tree": 1, "link": 6, "position": 7 + 9, "dof": 6 + 8, "block": 14 * 4, "delta": 4},
+        "node": 0,
+    }
     model = arrays.model.numpy
     assert model["link_joint_type"][1:6].tolist() == [
         JointCode.REVOLUTE,

@@ -13,6 +13,8 @@ from tests.viewer.browser import HEIGHT, WIDTH, Page, needs_browser, wait_for
 import pybullet as p
 import pybullet_data
 from carom.viewer.viewer import Viewer
+from pybullet._clients.clients import clients
+from pybullet._window.page_window import PageWindow
 
 pytestmark = needs_browser
 
@@ -308,6 +310,10 @@ def test_plots_names_and_previews(page: Page):
 def test_a_paused_simulation_goes_step_by_step(page: Page):
     page.page.get_by_role("button", name="Pause").click()
     page.page.get_by_role("button", name="Continue").wait_for()
+    # The page shows at once what it has asked for.
+    window = clients[0].window
+    assert isinstance(window, PageWindow)
+    wait_for(lambda: window._viewer.pause_control.closed, page)
     steps = []
 
     def script() -> None:

@@ -57,7 +57,10 @@ class DeviceEngine(Engine):
 
         Raises:
             MemoryError: There is no room for them.
+            ValueError: There are soft bodies, which are stepped on processors only.
         """
+        if contact_arrays.soft.bodies:
+            raise ValueError("there are soft bodies, which are stepped on processors only in this version")
         check_room(device, count, lambda counter: cls.made(counter, arrays, contact_arrays, count).structs())
         return cls.made(device, arrays, contact_arrays, count)
 

@@ -24,8 +24,6 @@ def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
         plan: What steps have to look for.
     """
     launches = _Launches(structs)
-    if plan.soft:
-        raise ValueError("soft bodies are stepped on CPUs only in this version")
     if not plan.coupled:
         return launches.uncoupled()
     return _program(

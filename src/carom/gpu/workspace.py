@@ -17,9 +17,11 @@ from carom.gpu.tables import DeviceTable, struct_of_zeros
 from carom.layouts.contacts import ROW_ENTRY_VIEWS, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.layouts.parallel import MOST_CANDIDATES, IslandWork, PairWork, RunWork
+from carom.layouts.soft import SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable
 
 MOST_WORKERS = 32768
 """Threads that look for contacts: more than a GPU runs at a time. Each needs 23 kB."""
@@ -101,6 +103,8 @@ class DeviceWorkspace(Workspace):
         self.scratch = DeviceTable(device, Scratch, world_count, ENTRY_VIEWS, lasts=False)
         self.pairs = DeviceTable(device, Pairs, world_count, lasts=False)
         self.pair_rows = DeviceTable(device, PairRows, world_count, ROW_ENTRY_VIEWS, lasts=False)
+        # Stays empty and on the host: worlds with soft bodies are refused.
+        self.soft_work = ArrayTable(SoftWork, world_count)
         self.structs = self._on_device = DeviceStructs(device)
         self._extent: Extent | None = None
 
