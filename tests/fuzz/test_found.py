@@ -15,6 +15,7 @@ import pytest
 import pybullet as p
 import pybullet_data
 from carom.world_files import container
+from pybullet._logs.log_files import BinaryLog
 
 CYLINDER = """<robot name="thin"><link name="base"><collision><geometry>
 <cylinder radius="0.015" length="{length}"/></geometry></collision></link></robot>"""
@@ -60,6 +61,15 @@ def test_arrays_where_numbers_belong_are_refused(arm: int) -> None:
     for call in calls:
         with pytest.raises((p.error, TypeError)):
             call()
+
+
+def test_logs_take_numbers_that_single_precision_does_not(client: int, tmp_path: Path) -> None:
+    log = BinaryLog(tmp_path / "far.bin", ["far"], "f")
+    log.before_step()
+    log._write(1e300)
+    log.after_step()
+    log.close()
+    assert (tmp_path / "far.bin").read_bytes().endswith(struct.pack("<f", np.inf))
 
 
 def test_a_fraction_beyond_all_angles_is_refused() -> None:

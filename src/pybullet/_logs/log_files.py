@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from ctypes import c_float
 from pathlib import Path
 from struct import Struct
 from time import perf_counter_ns
@@ -75,7 +76,12 @@ class BinaryLog:
         self._write(self._steps, self._time, *values)
 
     def _write(self, *values: Any) -> None:
-        self._records.append(_MARKER + self._pack(*values))
+        try:
+            packed = self._pack(*values)
+        except OverflowError:
+            # What single precision cannot hold is infinite in it.
+            packed = self._pack(*(c_float(v).value if isinstance(v, float) else v for v in values))
+        self._records.append(_MARKER + packed)
 
     def _next(self, time_step: float) -> None:
         self._steps += 1
