@@ -29,6 +29,10 @@ def test_no_import_brings_in_plotting_meshes_or_a_viewer(statement):
     assert not modules_after(statement) & HEAVY
 
 
+def test_arrays_and_logging_wait_for_a_world_and_a_warning():
+    assert not modules_after("import pybullet") & {"numpy", "logging", "carom.formats.urdf"}
+
+
 @pytest.mark.parametrize(
     "statement", ["import carom", "import pybullet_data", "from carom.control import PID"]
 )

@@ -47,7 +47,7 @@ class CountingDevice(Device):
         structs: Mapping[str, Any],
         scalars: Mapping[str, float],
     ) -> FineLaunch:
-        raise NotImplementedError(f"{kernel} cannot run where arrays are only counted")
+        raise RuntimeError(f"{kernel} cannot run where arrays are only counted")
 
     def capture(self, launches: Callable[[], None]) -> Callable[[], None]:  # noqa: D102
         return launches

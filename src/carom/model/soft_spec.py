@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 # Rows of `SoftSpec.spring_terms`.
 LENGTH, STIFFNESS, DAMPING = 0, 1, 2
@@ -64,6 +67,8 @@ class SoftSpec:
 
     def edge_matrices(self) -> NDArray[np.float64]:
         """(t, 3, 3): the edges of each tetrahedron from its first node, as columns [m]."""
+        import numpy as np
+
         corners = self.nodes[self.tetras]
         return np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
 
@@ -72,6 +77,8 @@ class SoftSpec:
 
         The margin; but less than what is between neighbouring nodes at rest.
         """
+        import numpy as np
+
         corners = self.nodes[self.faces]
         if not len(corners):
             return self.margin
@@ -84,6 +91,8 @@ class SoftSpec:
         For springs by Gershgorin's theorem: twice the stiffness at a node by its mass. For tetrahedra, which
         resist most to being stretched along one axis, likewise by the stiffness at each corner.
         """
+        import numpy as np
+
         stiffness = self._at_nodes(self.lam + 1.5 * self.mu)
         for end in range(2):
             np.add.at(stiffness, self.springs[:, end], self.spring_terms[:, STIFFNESS])
@@ -95,6 +104,8 @@ class SoftSpec:
 
     def _at_nodes(self, modulus: float) -> NDArray[np.float64]:
         """(n,) stiffness of the tetrahedra around each node [N/m], by their modulus [Pa]."""
+        import numpy as np
+
         stiffness = np.zeros(len(self.nodes))
         if len(self.tetras):
             edges = self.edge_matrices()
@@ -107,4 +118,4 @@ class SoftSpec:
         return stiffness
 
     def _fastest(self, stiffness: NDArray[np.float64]) -> float:
-        return float(np.sqrt(2.0 * (stiffness / self.masses).max(initial=0.0)))
+        return sqrt(2.0 * float((stiffness / self.masses).max(initial=0.0)))

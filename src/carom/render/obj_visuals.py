@@ -16,6 +16,8 @@ from carom.render.mtl import ObjMaterial, read_materials
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
+# Pictures are drawn in single precision.
+_GREATEST = float(np.finfo(np.float32).max)
 # Keyword: what it states, and how many numbers are used and needed; colours or weights may follow.
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
@@ -92,8 +94,7 @@ def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path)
         if len(values) < least:
             raise DescriptionError(f"at least {least} numbers are due", file=file, line=number)
         rows[index, : len(values)] = values
-        # Pictures are drawn in single precision.
-        if not (np.abs(rows[index]) <= np.finfo(np.float32).max).all():
+        if not all(abs(value) <= _GREATEST for value in values):
             raise DescriptionError("a number is too large, or not finite", file=file, line=number)
     return rows
 
