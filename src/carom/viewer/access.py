@@ -61,13 +61,12 @@ class Access:
         return own and self.is_known(path, host_header, cookies)
 
     def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether a file of the page may be given out; they are the same for everybody.
+        """Whether the page may be given out.
 
         Args:
             path: What is asked for, with the query.
             host_header: `Host` of the request.
-            cookies: `Cookie` of the request. The page itself is asked for with the token; its parts come with
-                a cookie instead.
+            cookies: `Cookie` of the request.
         """
         return self.is_own(host_header) or self.knows_token(path) or self.has_cookie(cookies)
 
@@ -94,8 +93,11 @@ class Access:
 
     def knows_token(self, path: str) -> bool:
         """Whether a request states the token."""
-        stated = parse_qs(urlsplit(path).query).get("token", [""])[0]
-        return secrets.compare_digest(stated.encode(), self.token.encode())
+        return secrets.compare_digest(_stated_token(path).encode(), self.token.encode())
+
+    def guesses_token(self, path: str) -> bool:
+        """Whether a request states another token: it is meant for another server, or guesses."""
+        return bool(_stated_token(path)) and not self.knows_token(path)
 
 
 def reachable_host(host: str) -> str:
@@ -145,6 +147,10 @@ def origin_allowed(host_header: str | None, origin: str | None) -> bool:
         return True
     parts = urlsplit(origin)
     return parts.scheme in ("http", "https") and parts.netloc.lower() == (host_header or "").lower()
+
+
+def _stated_token(path: str) -> str:
+    return parse_qs(urlsplit(path).query).get("token", [""])[0]
 
 
 def _name(address: str) -> str | None:
