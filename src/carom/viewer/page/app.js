@@ -4,9 +4,10 @@ import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
 import { Grasp, pick } from "./view/picking.js";
+import { Help } from "./panel/help.js";
 import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
-import { Labels, labelJoints } from "./view/labels.js";
+import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
@@ -20,6 +21,7 @@ import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
 import { Timeline } from "./time/timeline.js";
 import { Toggles } from "./panel/toggles.js";
+import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
 
 /** Simulated time after which the view is no longer moved to bodies that come [s]. */
@@ -52,9 +54,12 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
     this.previews = new Previews();
     this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), say);
+    this.help = new Help();
     this.keys = new Keys(this);
+    this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);
     this.bindMouse();
     this.bodies.selectionChanged = (body, link) => this.select(body, link);
+    this.bodies.changed = () => this.changed();
     this.saving.changed = () => this.changed();
     this.saving.filming = (filming) => {
       this.renderer.pace.hold(filming);
@@ -100,6 +105,8 @@ export class App {
       frame: (header, payload) => this.showFrame(header, payload),
       constraints: (header) => (overlays.constraints = header.constraints),
       "no constraints": () => (overlays.constraints = []),
+      pyramid: (header) => (overlays.pyramid = header.corners),
+      "no pyramid": () => (overlays.pyramid = []),
       rays: (_, payload) => overlays.takeRays(payload),
       "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
       previews: (header, payload) => {
@@ -288,6 +295,7 @@ export class App {
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
     if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
+    if (options.linkNames) labelLinks(this.labels, camera, scene);
     this.labels.end();
     this.toggles.showScales(this.overlays.scales);
     this.viewpoint.show();
