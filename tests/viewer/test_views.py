@@ -2,6 +2,7 @@
 
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from tests.viewer.browser import Page, needs_browser, wait_for
 import pybullet as p
 import pybullet_data
 from carom.viewer.previews import pyramid
+from carom.viewer.viewer import Viewer
 
 pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()
@@ -22,9 +24,9 @@ def arm(page: Page) -> int:
     return arm
 
 
-def lines(page: Page) -> int:
-    page.page.wait_for_timeout(300)
-    return page.page.evaluate("app.overlays.lines.count")
+def until_lines(page: Page, count: int) -> None:
+    """Waits until as many lines are drawn."""
+    page.until(f"app.overlays.lines.count === {count}")
 
 
 def test_a_body_is_hidden_and_shown(page: Page, arm: int):
@@ -84,12 +86,12 @@ def test_depth_is_seen(page: Page, arm: int):
 
 def test_the_camera_of_a_script_is_drawn(page: Page, arm: int):
     page.page.locator("input[name=cameras]").check()
-    assert lines(page) == 0
+    until_lines(page, 0)
     view = p.computeViewMatrix([1, 0, 0.5], [0, 0, 0.5], [0, 0, 1])
     p.getCameraImage(64, 48, view, p.computeProjectionMatrixFOV(60, 4 / 3, 0.1, 10))
     page.until("app.overlays.pyramid.length === 8")
     # Four edges, two rectangles, and the mark above the image.
-    assert lines(page) == 4 + 8 + 2
+    until_lines(page, 4 + 8 + 2)
     middle = page.page.evaluate("app.overlays.pyramid")
     assert np.mean(middle[:4], axis=0) == pytest.approx([0.9, 0, 0.5], abs=1e-4)
     assert np.mean(middle[4:], axis=0) == pytest.approx([0.65, 0, 0.5], abs=1e-4)
@@ -103,7 +105,7 @@ def test_a_camera_that_sees_nothing_is_not_drawn():
 
 def test_the_skeleton_joins_links(page: Page, arm: int):
     page.page.locator("input[name=skeleton]").check()
-    assert lines(page) == 3 * (1 + p.getNumJoints(arm)) + p.getNumJoints(arm)
+    until_lines(page, 3 * (1 + p.getNumJoints(arm)) + p.getNumJoints(arm))
 
 
 def test_the_selected_link_leaves_a_trail(page: Page):
@@ -155,3 +157,78 @@ def test_keys_are_listed_over_the_view(page: Page):
     page.page.get_by_text("record a video").wait_for()
     page.page.locator("#help").click()
     page.page.locator("#help").wait_for(state="hidden")
+
+
+def test_the_background_is_that_of_the_script(page: Page):
+    p.configureDebugVisualizer(rgbBackground=[1, 0, 0])
+    page.wait_for_picture(lambda picture: (picture[5, 5] == (255, 0, 0)).all())
+
+
+def test_a_profile_is_recorded_while_its_key_is_held(
+    page: Page, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+):
+    monkeypatch.setattr("pybullet._window.page_window.gettempdir", lambda: str(tmp_path))
+    page.page.focus("#view")
+    page.page.keyboard.down("p")
+    wait_for(lambda: list(tmp_path.iterdir()), page)
+    p.stepSimulation()
+    page.page.keyboard.up("p")
+    (file,) = tmp_path.iterdir()
+    wait_for(lambda: "stepSimulation" in file.read_text(), page)
+
+
+def drag(page: Page, start: list[float], end: list[float]) -> None:
+    """Drags the mouse from one pixel to another."""
+    page.page.mouse.move(*start[:2])
+    page.page.mouse.down()
+    for share in (0.3, 0.6, 1.0):
+        page.page.mouse.move(*(a + share * (b - a) for a, b in zip(start[:2], end[:2], strict=True)))
+    page.page.mouse.up()
+
+
+def test_a_handle_is_shifted_carried_and_turned(page: Page, viewer: Viewer):
+    handle = viewer.handle("goal", (0.2, 0.1, 0.3))
+    page.page.locator("#labels").get_by_text("goal").wait_for()
+    p.resetDebugVisualizerCamera(2, 30, -30, [0.2, 0.1, 0.3])
+    page.until("app.camera.distance === 2 && app.viewpoint.undecided === false")
+    yaw = page.page.evaluate("app.camera.yaw")
+    pixel = "point => app.camera.pixel(point)"
+
+    def knob(kind: str, axis: int | None) -> list[float]:
+        found = "([kind, axis]) => app.handles.knobs(app.handles.items.get(0)).find("
+        return page.page.evaluate(found + "(k) => k.kind === kind && k.axis === axis).point", [kind, axis])
+
+    tip = knob("shift", 0)
+    aim = [tip[0] + 0.25, tip[1], tip[2]]
+    drag(page, page.page.evaluate(pixel, tip), page.page.evaluate(pixel, aim))
+    wait_for(lambda: handle.position[0] == pytest.approx(0.45, abs=0.01), page)
+    assert handle.position[1:] == pytest.approx((0.1, 0.3), abs=1e-9)
+    middle = page.page.evaluate(pixel, knob("carry", None))
+    drag(page, middle, [middle[0], middle[1] - 60])
+    wait_for(lambda: handle.position[2] > 0.35, page)
+    # A quarter of a turn about the upward axis.
+    spoke = knob("turn", 2)
+    arm = [spoke[0] - handle.position[0], spoke[1] - handle.position[1]]
+    aim = [handle.position[0] - arm[1], handle.position[1] + arm[0], spoke[2]]
+    drag(page, page.page.evaluate(pixel, spoke), page.page.evaluate(pixel, aim))
+    wait_for(lambda: handle.orientation[3] < 0.9, page)
+    assert handle.orientation == pytest.approx((0, 0, math.sqrt(0.5), math.sqrt(0.5)), abs=0.03)
+    assert page.page.evaluate("app.camera.yaw") == yaw
+
+
+def test_handles_take_poses_only(viewer: Viewer):
+    for position, orientation in (((0, 0, math.nan), (0, 0, 0, 1)), ((0, 0, 0), (0, 0, 0, 0))):
+        with pytest.raises(ValueError, match="goal"):
+            viewer.handle("goal", position, orientation)
+    handle = viewer.handle("goal", (1, 2, 3), (0, 0, 0, 2))
+    assert handle.orientation == (0, 0, 0, 1)
+    viewer._handles.move(0, (0, 0, math.inf), (0, 0, 0, 1))
+    viewer._handles.move(0, (0, 0, 0), (0, 0, 0, 0))
+    viewer._handles.move(7, (0, 0, 0), (0, 0, 0, 1))
+    assert handle.position == (1, 2, 3)
+
+
+def test_a_button_of_the_modern_api_counts(page: Page, viewer: Viewer):
+    button = viewer.button("again")
+    page.page.get_by_role("button", name="again").click()
+    wait_for(lambda: button.value == 1, page)

@@ -1,4 +1,4 @@
-"""What scripts draw into the scene, and the sliders and buttons they add."""
+"""What scripts draw into the scene, and the sliders, buttons and handles they add."""
 
 from __future__ import annotations
 
@@ -52,6 +52,29 @@ class DebugPoints(DebugItem):
     positions: tuple[Vector3, ...] = ()
     colours: tuple[Vector3, ...] = ()
     size: float = 1.0
+
+
+@dataclass(slots=True)
+class Handle:
+    """A frame that the user moves with the mouse.
+
+    Attributes:
+        name: What is written beside it.
+        pose: Position [m] and orientation (x, y, z, w), in the world.
+    """
+
+    name: str
+    pose: tuple[Vector3, Quaternion]
+
+    @property
+    def position(self) -> Vector3:
+        """Where it is [m]."""
+        return self.pose[0]
+
+    @property
+    def orientation(self) -> Quaternion:
+        """How it is turned: a unit quaternion (x, y, z, w)."""
+        return self.pose[1]
 
 
 @dataclass(slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import inf, isfinite
+from math import hypot, inf, isfinite
 from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
@@ -19,11 +19,12 @@ from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import drive
+from carom.viewer.input.handles import Handles
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
-from carom.viewer.items import Slider
+from carom.viewer.items import Handle, Slider
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -108,6 +109,7 @@ class Viewer:
         self._board.put("title", {"type": "title", "title": title})
         self.controls: Controls = Controls(self._board)
         self.drawings: Drawings = Drawings(self._board)
+        self._handles = Handles(self._board)
         self.camera: SharedCamera = SharedCamera(self._board, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
@@ -137,6 +139,7 @@ class Viewer:
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             "want": lambda page, told: self._want(page, Wish.told(told)),
             "drive": self._take_drive,
+            "handle": self._take_handle,
             "sleep": lambda page, told: self._chores.add(self._sleeping.toggle),
             "profile": lambda page, told: self.on_profile(bool(told["running"])),
             "grasp": self._take_grasp,
@@ -271,7 +274,38 @@ class Viewer:
         """
         if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
             raise ValueError(f"slider {name!r} goes from {lower} to {upper} and starts at {start}")
-        slider = Slider(name, float(lower), float(upper), float(start))
+        return self._add_control(Slider(name, float(lower), float(upper), float(start)))
+
+    def button(self, name: str) -> Slider:
+        """Adds a button to the panel; its `value` counts how often it was pressed."""
+        return self._add_control(Slider(name, 1.0, 0.0, 0.0))
+
+    def handle(
+        self, name: str, position: Iterable[float], orientation: Iterable[float] = (0.0, 0.0, 0.0, 1.0)
+    ) -> Handle:
+        """Adds a frame that the user moves with the mouse, such as the target of a hand.
+
+        Args:
+            name: What is written beside it.
+            position: Where it is at first [m].
+            orientation: How it is turned at first: a quaternion (x, y, z, w).
+
+        Returns:
+            The handle; its `position` and `orientation` are where the user has put it.
+
+        Raises:
+            ValueError: The numbers are no position and no quaternion.
+        """
+        x, y, z = map(float, position)
+        a, b, c, d = map(float, orientation)
+        if not all(map(isfinite, (x, y, z, a, b, c, d))) or not any((a, b, c, d)):
+            raise ValueError(f"handle {name!r} is at {(x, y, z)} and turned by {(a, b, c, d)}")
+        size = hypot(a, b, c, d)
+        handle = Handle(name, ((x, y, z), (a / size, b / size, c / size, d / size)))
+        self._handles.add(handle)
+        return handle
+
+    def _add_control(self, slider: Slider) -> Slider:
         self.controls.add(max(self.controls.sliders, default=-1) + 1, slider)
         return slider
 
@@ -398,6 +432,10 @@ class Viewer:
     def _take_drive(self, page: int, told: dict[str, Any]) -> None:
         body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])
         self._chores.add(lambda: drive(self._world, body, joint, target, place=self.pause_control.closed))
+
+    def _take_handle(self, page: int, told: dict[str, Any]) -> None:
+        x, y, z, w = map(float, told["orientation"])
+        self._handles.move(int(told["handle"]), _vector(told["position"]), (x, y, z, w))
 
     def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
         point, target = _vector(told["point"]), _vector(told["target"])

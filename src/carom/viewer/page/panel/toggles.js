@@ -11,7 +11,7 @@ const GROUPS = [
     ["grid", "Grid", ""],
     ["frames", "Link frames", "J"],
     ["bounds", "Bounds", "A"],
-    ["names", "Name under mouse", ""],
+    ["names", "Name at mouse", ""],
     ["linkNames", "Link names", ""],
     ["linkColours", "Colour by link", ""],
     ["depth", "Depth", ""],

@@ -30,8 +30,8 @@ const BONE = [0.95, 0.75, 0.15];
 const TRAIL = [0.9, 0.3, 0.55];
 
 export class Overlays {
-  constructor(scene, options, readings) {
-    Object.assign(this, { scene, options, readings });
+  constructor(scene, options, readings, handles) {
+    Object.assign(this, { scene, options, readings, handles });
     this.lines = new Lines();
     this.constraints = [];
     this.rays = new Float32Array(0);
@@ -72,14 +72,16 @@ export class Overlays {
     if (options.frames) this.eachLink((body, link) => this.addFrame(body.body, link));
     if (options.bounds) this.eachLink((body, link) => this.addBounds(boundsOfLink(scene, body, link, options.collisions), BOUNDS));
     this.addSelection();
-    this.addMasses();
     if (options.constraints) this.addConstraints();
     if (options.rays) this.addRays();
     if (options.cameras) this.addCamera();
-    if (options.skeleton) this.addSkeleton();
     if (options.trail) this.addTrail();
     addContacts(this);
+    lines.goInside();
+    this.addMasses();
+    if (options.skeleton) this.addSkeleton();
     addJoints(this);
+    this.handles.addLines(lines);
     return lines;
   }
 
