@@ -13,12 +13,18 @@ import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from io import BytesIO
 
+import numpy as np
 import pytest
+from PIL import Image
 from tests.patience import until
 from tests.viewer.browser import Page, chromium, needs_browser, wait_for
 
 import pybullet as p
+import pybullet_data
+from carom import World
+from carom.viewer.still import still
 from carom.viewer.viewer import Viewer
 
 # As Colab and VS Code have it around the outputs of cells.
@@ -168,6 +174,30 @@ def test_a_cell_of_colab_shows_the_window_without_sockets(viewer: Viewer):
         # It says so when the simulation ends.
         p.disconnect()
         page.page.frame_locator("iframe").frame_locator("iframe").get_by_text("has ended").wait_for()
+
+
+@needs_browser
+def test_a_cell_that_reaches_nothing_shows_a_picture(viewer: Viewer):
+    assert "image/png" not in viewer._repr_html_()
+    p.loadURDF(f"{pybullet_data.getDataPath()}/r2d2.urdf")
+    with cell(viewer._repr_html_(), IN_CODE_SERVER, "") as page:
+        shown = page.page.frame_locator("iframe").frame_locator("iframe")
+        picture = shown.get_by_alt_text("The simulation")
+        picture.wait_for()
+        assert picture.evaluate("(image) => image.naturalWidth") == 640
+        shown.get_by_text("cannot be reached").wait_for()
+
+
+def test_a_picture_shows_what_there_is():
+    world = World()
+    assert still(world) is None
+    world.load_urdf("plane.urdf")
+    world.load_urdf("r2d2.urdf", (2, 3, 0.5))
+    world.load_urdf("cube.urdf", (0, 0, 0.5))
+    picture = np.asarray(Image.open(BytesIO(still(world) or b"")))
+    assert picture.shape == (420, 640, 3)
+    # The blue of R2D2, the red and the grey of other things: many colours in the middle.
+    assert len(np.unique(picture[100:320, 160:480].reshape(-1, 3), axis=0)) > 200
 
 
 def test_a_page_that_asks_is_open_until_it_stops(viewer: Viewer, monkeypatch: pytest.MonkeyPatch):

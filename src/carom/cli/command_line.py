@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Iterable, Sequence
@@ -36,6 +37,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         options.command(options)
+    except BrokenPipeError:
+        # Whoever reads the output has had enough, as `head` has; Python is not to write the rest at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (CaromError, OSError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
         return FAILED
@@ -61,7 +65,9 @@ def _parser() -> argparse.ArgumentParser:
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
     view.add_argument(
-        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data"
+        "file",
+        type=Path,
+        help="URDF, SDF or MJCF (.xml) file; one that pybullet_data ships is found by its name",
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(

@@ -6,6 +6,7 @@ import html
 import json
 import os
 import sys
+from base64 import b64encode
 from typing import Any
 from uuid import uuid4
 
@@ -20,12 +21,13 @@ What needs no connection is a recording: <code>with world.record("run.html") as 
 <code>replay</code> as the last line of a cell.</p>"""
 
 
-def frame(port: int, token: str, height: int = HEIGHT) -> str:
+def frame(port: int, token: str, picture: bytes | None = None, height: int = HEIGHT) -> str:
     """HTML that shows the page of a server on the machine of the kernel.
 
     Args:
         port: Of the server.
         token: Of the server.
+        picture: PNG file to show where the page cannot be reached.
         height: Of the frame [pixels].
     """
     identifier = f"carom-{uuid4().hex}"
@@ -35,7 +37,7 @@ def frame(port: int, token: str, height: int = HEIGHT) -> str:
             "port": port,
             "token": token,
             "proxy": _proxy_of_editor(port),
-            "unreachable": _UNREACHABLE,
+            "unreachable": _shown(picture) + _UNREACHABLE,
         }
     )
     script = page_files()["notebook.js"].decode().replace("FACTS", facts.replace("</", "<\\/"))
@@ -45,6 +47,12 @@ def frame(port: int, token: str, height: int = HEIGHT) -> str:
         f'<iframe id="{identifier}" style="{style}" allow="{_ALLOWED}"></iframe><script>{script}</script>'
         f'<noscript><iframe src="{address}" style="{style}"></iframe></noscript>'
     )
+
+
+def _shown(picture: bytes | None) -> str:
+    if picture is None:
+        return ""
+    return f'<img alt="The simulation" src="data:image/png;base64,{b64encode(picture).decode()}">'
 
 
 def replay_frame(page: str, height: int = HEIGHT) -> str:

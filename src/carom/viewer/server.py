@@ -31,6 +31,7 @@ _quiet = logging.getLogger("carom.viewer.sockets")
 _quiet.setLevel(logging.CRITICAL)
 _THREAD_NAME = "carom viewer"
 
+_OTHER_NAME = "This server does not answer to that host name; the option --names of connect allows it.\n"
 _WHOLE_ADDRESS = "Open the whole address that the simulation has printed, with its token.\n"
 
 
@@ -221,7 +222,7 @@ class PageServer:
             return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
         # Several of what may be there once are none of them.
         if len(origins) > 1 or not (_is_part(path) or access.may_read(request.path, host, cookies)):
-            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
+            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, _OTHER_NAME)
         if path == "/socket":
             if access.may_connect(request.path, host, origins[0] if origins else None, cookies):
                 return None

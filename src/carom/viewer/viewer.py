@@ -36,6 +36,7 @@ from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.sleeping import Sleeping
 from carom.viewer.steps.step_lock import StepLock
+from carom.viewer.still import still
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -273,7 +274,10 @@ class Viewer:
             ValueError: A number is not finite, or the bounds are no interval with the start in it.
         """
         if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
-            raise ValueError(f"slider {name!r} goes from {lower} to {upper} and starts at {start}")
+            raise ValueError(
+                f"slider {name!r} needs a lower bound below the upper one and a start value between them, "
+                f"not {lower}, {upper} and {start}"
+            )
         return self._add_control(Slider(name, float(lower), float(upper), float(start)))
 
     def button(self, name: str) -> Slider:
@@ -299,7 +303,10 @@ class Viewer:
         x, y, z = map(float, position)
         a, b, c, d = map(float, orientation)
         if not all(map(isfinite, (x, y, z, a, b, c, d))) or not any((a, b, c, d)):
-            raise ValueError(f"handle {name!r} is at {(x, y, z)} and turned by {(a, b, c, d)}")
+            raise ValueError(
+                f"handle {name!r} needs a finite position and a quaternion that is not 0, "
+                f"not {(x, y, z)} and {(a, b, c, d)}"
+            )
         size = hypot(a, b, c, d)
         handle = Handle(name, ((x, y, z), (a / size, b / size, c / size, d / size)))
         self._handles.add(handle)
@@ -343,7 +350,9 @@ class Viewer:
 
     def _repr_html_(self) -> str:
         """The page, for notebooks."""
-        return frame(self._server.port, self._server.access.token)
+        with self.lock:
+            picture = still(self._world)
+        return frame(self._server.port, self._server.access.token, picture)
 
     def close(self) -> None:
         """Ends it: pages say that the simulation is over."""
