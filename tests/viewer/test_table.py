@@ -61,6 +61,7 @@ TRIED = {
     ],
     "pull bodies with the mouse": ["page.a_body_is_dragged_with_the_mouse"],
     "sliders and buttons of a script": ["page.a_slider_moves_what_the_script_reads"],
+    "lists and boxes to check of a script": ["views.a_script_has_lists_and_boxes"],
     "frames of a script that the mouse moves": ["views.a_handle_is_shifted_carried_and_turned"],
     "keys and mouse events for a script": [
         "page.keys_are_down_triggered_and_released",

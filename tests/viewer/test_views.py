@@ -232,3 +232,20 @@ def test_a_button_of_the_modern_api_counts(page: Page, viewer: Viewer):
     button = viewer.button("again")
     page.page.get_by_role("button", name="again").click()
     wait_for(lambda: button.value == 1, page)
+
+
+def test_a_script_has_lists_and_boxes(page: Page, viewer: Viewer):
+    gait, slow = viewer.choice("gait", ["walk", "trot", "pace"], 1), viewer.checkbox("slow")
+    assert (gait.chosen, slow.checked) == ("trot", False)
+    select = page.page.get_by_label("gait")
+    page.until("document.querySelector('#sliders select')?.value === '1'")
+    select.select_option("pace")
+    wait_for(lambda: gait.chosen == "pace", page)
+    page.page.get_by_label("slow").check()
+    wait_for(lambda: slow.checked, page)
+    for value in (0.4, 99, math.nan):
+        viewer.controls.move(0, value)
+    assert gait.chosen == "pace"
+    page.until("document.querySelector('#sliders select')?.value === '2'")
+    with pytest.raises(ValueError, match="gait"):
+        viewer.choice("gait", [])

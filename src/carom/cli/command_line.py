@@ -142,7 +142,8 @@ def _view(options: argparse.Namespace) -> None:
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
-    print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    # Terminals take what follows an address without a space for a part of it.
+    print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
     if tunnel := tunnel_command(view.viewer.address):
         print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
     try:

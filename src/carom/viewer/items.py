@@ -90,3 +90,20 @@ class Slider:
     def is_button(self) -> bool:
         """Whether it is a button."""
         return self.lower > self.upper
+
+
+@dataclass(slots=True)
+class Choice(Slider):
+    """One of several texts; `value` is its number. With no texts it is a box to check: 0 or 1."""
+
+    options: tuple[str, ...] = ()
+
+    @property
+    def chosen(self) -> str:
+        """The text that the user has chosen."""
+        return self.options[int(self.value)]
+
+    @property
+    def checked(self) -> bool:
+        """Whether the user has checked the box."""
+        return self.value != 0.0

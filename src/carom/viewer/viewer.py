@@ -24,7 +24,7 @@ from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
-from carom.viewer.items import Handle, Slider
+from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -278,11 +278,34 @@ class Viewer:
                 f"slider {name!r} needs a lower bound below the upper one and a start value between them, "
                 f"not {lower}, {upper} and {start}"
             )
-        return self._add_control(Slider(name, float(lower), float(upper), float(start)))
+        slider = Slider(name, float(lower), float(upper), float(start))
+        self._add_control(slider)
+        return slider
 
     def button(self, name: str) -> Slider:
         """Adds a button to the panel; its `value` counts how often it was pressed."""
-        return self._add_control(Slider(name, 1.0, 0.0, 0.0))
+        button = Slider(name, 1.0, 0.0, 0.0)
+        self._add_control(button)
+        return button
+
+    def choice(self, name: str, options: Iterable[str], start: int = 0) -> Choice:
+        """Adds a list of texts to the panel, of which the user chooses one: its `chosen`.
+
+        Raises:
+            ValueError: There are no texts, or none of that number.
+        """
+        texts = tuple(map(str, options))
+        if not 0 <= start < len(texts):
+            raise ValueError(f"choice {name!r} needs a start between 0 and {len(texts) - 1}, not {start}")
+        choice = Choice(name, 0.0, float(len(texts) - 1), float(start), texts)
+        self._add_control(choice)
+        return choice
+
+    def checkbox(self, name: str, start: bool = False) -> Choice:
+        """Adds a box to the panel that the user checks or not: its `checked`."""
+        box = Choice(name, 0.0, 1.0, float(start))
+        self._add_control(box)
+        return box
 
     def handle(
         self, name: str, position: Iterable[float], orientation: Iterable[float] = (0.0, 0.0, 0.0, 1.0)
@@ -312,9 +335,8 @@ class Viewer:
         self._handles.add(handle)
         return handle
 
-    def _add_control(self, slider: Slider) -> Slider:
-        self.controls.add(max(self.controls.sliders, default=-1) + 1, slider)
-        return slider
+    def _add_control(self, control: Slider) -> None:
+        self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
 
     @property
     def rays(self) -> Rays:
