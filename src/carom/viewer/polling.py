@@ -52,7 +52,7 @@ class Polling:
         self._askers: dict[str, _Asker] = {}
 
     async def answer(self, path: str) -> bytes:
-        """What is sent to whoever asks for a path.
+        """The answer to a request for a path.
 
         Raises:
             ValueError: The request does not say who asks.
