@@ -29,6 +29,22 @@ def product(a: Floats, b: Floats) -> Floats:
     return total
 
 
+def dots(a: Floats, b: Floats) -> Floats:
+    """Scalar products of vectors, with terms added in the order in which they stand.
+
+    Args:
+        a: Shape (..., n).
+        b: Shape (..., n); the axes before the last are broadcast against those of `a`.
+
+    Returns:
+        Shape (...).
+    """
+    total = a[..., 0] * b[..., 0]
+    for k in range(1, a.shape[-1]):
+        total = total + a[..., k] * b[..., k]
+    return total
+
+
 def length(vector: Floats) -> float:
     """Length of a vector of shape (n,)."""
     return sqrt(sum(x * x for x in vector.tolist()))
