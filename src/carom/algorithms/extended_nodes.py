@@ -8,7 +8,7 @@ x axis of their inertial frame, and a base without shapes is left out when a fix
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +23,7 @@ from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, LinkSpec
 from carom.model.bounds import Bounds, shape_bounds
 from carom.native.products import product
+from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
