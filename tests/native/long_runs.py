@@ -1,7 +1,7 @@
 """Long runs, and digests of their results, which are the same on every machine.
 
-Nothing in them comes from a random generator or from Python's own sines: scripts that use those differ from one
-machine to the next by themselves.
+Nothing in them comes from a random generator or from Python's own sines: scripts that use those differ from
+one machine to the next by themselves.
 """
 
 from __future__ import annotations
@@ -192,7 +192,7 @@ def _mounted_camera() -> list[float]:
 
 
 def robots() -> list[float]:
-    """Robots from files, which give rotations as angles: the arm is driven, the others fall onto the floor."""
+    """Robots from files, which give rotations as angles: an arm is driven, others fall onto the floor."""
     _begin()
     p.setAdditionalSearchPath(pybullet_data.getDataPath())
     p.loadURDF("plane.urdf", [0, 0, 0], p.getQuaternionFromEuler([0.03125, -0.0625, 0]))

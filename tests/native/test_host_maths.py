@@ -66,5 +66,11 @@ def test_scalar_products():
     np.testing.assert_array_equal(products.dots(np.array([[1e16, 1.0, -1e16]]), np.ones(3)), [0.0])
 
 
+def test_inverses_and_determinants_are_those_of_numpy():
+    matrices = np.random.default_rng(SEED).normal(size=(20, 3, 3))
+    np.testing.assert_allclose(products.determinants(matrices), np.linalg.det(matrices), rtol=1e-10)
+    np.testing.assert_allclose(products.inverses(matrices), np.linalg.inv(matrices), rtol=1e-9, atol=1e-12)
+
+
 def test_length():
     assert products.length(np.array([2.0, -3.0, 6.0])) == 7.0

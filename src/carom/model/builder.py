@@ -28,7 +28,7 @@ from carom.layouts.codes import (
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
-from carom.native.products import length
+from carom.native.products import length, product
 from carom.native.tables import ArrayTable
 
 # Bullet's default, a float32 in its source.
@@ -129,7 +129,9 @@ class WorldArrays:
         if spec.soft is not None:
             nodes = slice(rows.first["node"], rows.first["node"] + count["node"])
             turn = np.array(rotation_matrix(base_pose.orientation))
-            self.state.numpy["node_position"][:, nodes] = spec.soft.nodes @ turn.T + base_pose.position
+            self.state.numpy["node_position"][:, nodes] = (
+                product(spec.soft.nodes, turn.T) + base_pose.position
+            )
         for axis, number in count.items():
             self.used[axis] += number
         return rows
