@@ -157,7 +157,8 @@ class Pairs:
     previous_point_b: Vector3Rows
     previous_anchor_a: Vector3Rows
     previous_anchor_b: Vector3Rows
-    previous_impulse: Vector4Rows
+    previous_impulse: Vector3Rows
+    previous_warm_start: RealRows
     previous_taken: IntRows  # 1 once a contact has been matched with it
 
     # Its columns are PAIRS and so on.
@@ -179,8 +180,8 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    # Of the last substep: normal, along directions 1 and 2; then what `warm_starting.next_warm_start` says.
-    contact_impulse: Vector4Rows
+    contact_impulse: Vector3Rows  # of the last substep: normal, along directions 1 and 2
+    contact_warm_start: RealRows  # what `warm_starting.next_warm_start` said after it
     count_contacts: IntRows  # its column is THERE
 
 

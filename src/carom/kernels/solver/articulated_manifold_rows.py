@@ -121,12 +121,12 @@ def write_long_contact(
     row = Int32(0)
     while row < 3:
         direction = row_direction(terms, row)
-        moved = write_jacobians(
+        inverse_mass, velocity = write_jacobians(
             model, state, scratch, pair_rows, world, terms.ends, terms.point_a, terms.point_b, direction,
             0.0 * direction, start,
         )  # fmt: skip
         mass = write_row_numbers(
-            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, moved[1], moved[0]
+            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, velocity, inverse_mass
         )
         if row == 0:
             write_normal_matrices(pair_rows, world, part_a, place[1], contact, mass, start)

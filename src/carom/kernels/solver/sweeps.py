@@ -8,7 +8,7 @@ from carom.kernels.solver.joint_solver import relax_row
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
 from carom.kernels.structs import PairRows, Scratch, Settings
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROW_FRICTION, ROW_IMPULSE, SPINNING_ROW
 
 
@@ -128,18 +128,18 @@ def friction_sweep(
 
 @func
 def contact_sweep(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, units: Index4
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, torsion: Int32
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` is what `units.write_units` returns.
+    `units` and `torsion` are what `units.write_units` returns.
     """
-    residual = normal_sweep(scratch, pair_rows, world, units[0])
+    residual = normal_sweep(scratch, pair_rows, world, units)
     kind = Int32(LATERAL_ROW)
-    if units[2] != 0:
+    if torsion != 0:
         kind = Int32(SPINNING_ROW)
     while kind >= LATERAL_ROW:
-        residual = maximum(residual, friction_sweep(settings, scratch, pair_rows, world, units[0], kind))
+        residual = maximum(residual, friction_sweep(settings, scratch, pair_rows, world, units, kind))
         kind -= 1
     return residual
 
