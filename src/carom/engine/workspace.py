@@ -50,6 +50,7 @@ class Workspace:
                 "unit": contacts,
                 "run": contacts,
                 "manifold": contacts // 2,
+                "side": 2 * (contacts // 2),
                 "constraint": arrays.model.capacity["constraint"],
                 "visit": self.scratch.capacity["row"] + ROWS_PER_PAIR * users,
                 "user": users,

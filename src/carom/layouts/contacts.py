@@ -211,10 +211,8 @@ class UserConstraints:
 class ManifoldBlock:
     """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.rigid_manifolds`.
 
-    Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
-    response is what an impulse does to the velocities of the dofs of a tree, one of a gain by how much it
-    lowers the impulses wanted along the other rows. Weighted Jacobians have a row for each dof: by how much
-    its velocity lowers these impulses.
+    Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a gain
+    says by how much an impulse lowers the impulses wanted along the other rows.
     """
 
     place: Index4  # as `row_place`
@@ -228,10 +226,6 @@ class ManifoldBlock:
     normal_search: Vector4
     friction_before: Vector8
     friction_search: Vector8
-    normal_weighted_a: Matrix84
-    normal_weighted_b: Matrix84
-    normal_response_a: Matrix48
-    normal_response_b: Matrix48
     normal_gain: Matrix4
     normal_share: Vector4
     normal_softness: Vector4
@@ -241,15 +235,25 @@ class ManifoldBlock:
     # compute them four at a time.
     normal_wanted: Vector4
 
-    friction_weighted_a: Matrix8
-    friction_weighted_b: Matrix8
-    friction_response_a: Matrix8
-    friction_response_b: Matrix8
     friction_gain: Matrix8
     friction_share: Vector8
     friction_inverse_mass: Vector8
     friction_impulse: Vector8
     friction_wanted: Vector8
+
+
+@struct
+class ManifoldSide:
+    """One of the two rigid bodies of a manifold block, as the rows of the block see it.
+
+    A row of a response is what an impulse does to the velocities of the dofs. Weighted Jacobians have a row
+    for each dof: by how much its velocity lowers the impulses wanted.
+    """
+
+    normal_weighted: Matrix84
+    normal_response: Matrix48
+    friction_weighted: Matrix8
+    friction_response: Matrix8
 
 
 @struct
@@ -278,9 +282,11 @@ class ContactTerms:
 
 if TYPE_CHECKING:
     ManifoldBlocks = Any
+    ManifoldSides = Any
     TermsRows = Any
 else:
     ManifoldBlocks = ArrayType(ManifoldBlock, 2)
+    ManifoldSides = ArrayType(ManifoldSide, 2)
     TermsRows = ArrayType(ContactTerms, 2)
 
 
@@ -314,6 +320,7 @@ class PairRows:
 
     terms: TermsRows  # of the contacts of the manifold whose rows are being written
     manifold_block: ManifoldBlocks
+    side: ManifoldSides  # of each manifold block its body a, then its body b
     run_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
     entry_run: RealRows
 

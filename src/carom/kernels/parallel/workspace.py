@@ -87,9 +87,9 @@ def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, roo
     own.unit_code = pair_rows.unit_code[
         :, unit : window_end(work, world, root, UNIT, pair_rows.unit_code.shape[1])
     ]
-    own.manifold_block = pair_rows.manifold_block[
-        :, manifold_block : window_end(work, world, root, MANIFOLD_BLOCK, pair_rows.manifold_block.shape[1])
-    ]
+    last_manifold_block = window_end(work, world, root, MANIFOLD_BLOCK, pair_rows.manifold_block.shape[1])
+    own.manifold_block = pair_rows.manifold_block[:, manifold_block:last_manifold_block]
+    own.side = pair_rows.side[:, 2 * manifold_block : 2 * last_manifold_block]
     own.terms = work.terms[:, terms : window_end(work, world, root, TERMS, work.terms.shape[1])]
     return own
 

@@ -63,13 +63,12 @@ def write_normal_gains(
     place = pair_rows.manifold_block[world, manifold_block].place
     part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
     lowered = pair_rows.manifold_block[world, manifold_block].normal_share * real(0.0)
-    if place[1] > 0:
-        lowered += combine4(pair_rows.run_block, part[0], pair_rows.jacobian_response, start, world, place[1])
-    if place[3] > 0:
-        lowered += combine4(
-            pair_rows.run_block, part[0] + 4 * place[1], pair_rows.jacobian_response, start + place[1],
-            world, place[3],
-        )  # fmt: skip
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            lowered += combine4(
+                pair_rows.run_block, part[0] + 4 * place[1] * side, pair_rows.jacobian_response,
+                start + place[1] * side, world, place[2 * side + 1],
+            )  # fmt: skip
     for i in range(4):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[i]
         pair_rows.manifold_block[world, manifold_block].normal_gain[i, contact] = (
@@ -85,13 +84,12 @@ def write_friction_gains(
     place = pair_rows.manifold_block[world, manifold_block].place
     part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
     lowered = pair_rows.manifold_block[world, manifold_block].friction_share * real(0.0)
-    if place[1] > 0:
-        lowered += combine8(pair_rows.run_block, part[1], pair_rows.jacobian_response, start, world, place[1])
-    if place[3] > 0:
-        lowered += combine8(
-            pair_rows.run_block, part[1] + 8 * place[1], pair_rows.jacobian_response, start + place[1],
-            world, place[3],
-        )  # fmt: skip
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            lowered += combine8(
+                pair_rows.run_block, part[1] + 8 * place[1] * side, pair_rows.jacobian_response,
+                start + place[1] * side, world, place[2 * side + 1],
+            )  # fmt: skip
     for i in range(8):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i]
         pair_rows.manifold_block[world, manifold_block].friction_gain[i, row] = (
@@ -100,7 +98,7 @@ def write_friction_gains(
 
 
 @func
-def write_long_contact(
+def write_articulated_contact(
     settings: Settings,
     model: Model,
     state: State,
@@ -115,9 +113,7 @@ def write_long_contact(
 ):
     """Write the three rows of a contact; blocks of rows over two trees from `start` on are free."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    part_a = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
-    part_b = part_a + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1])
-    start_b = start + place[1]
+    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
     row = Int32(0)
     while row < 3:
         direction = row_direction(terms, row)
@@ -128,13 +124,17 @@ def write_long_contact(
         mass = write_row_numbers(
             settings, shapes, pair_rows, terms, world, manifold_block, contact, row, velocity, inverse_mass
         )
+        line = 2 * contact + row - 1
+        for side in range(2):
+            # What is of body b comes after what is of body a.
+            own = part + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1]) * side
+            jacobian = start + place[1] * side
+            if row == 0:
+                write_normal_matrices(pair_rows, world, own, place[2 * side + 1], contact, mass, jacobian)
+            else:
+                write_friction_matrices(pair_rows, world, own, place[2 * side + 1], line, mass, jacobian)
         if row == 0:
-            write_normal_matrices(pair_rows, world, part_a, place[1], contact, mass, start)
-            write_normal_matrices(pair_rows, world, part_b, place[3], contact, mass, start_b)
             write_normal_gains(pair_rows, world, manifold_block, contact, mass, start)
         else:
-            line = 2 * contact + row - 1
-            write_friction_matrices(pair_rows, world, part_a, place[1], line, mass, start)
-            write_friction_matrices(pair_rows, world, part_b, place[3], line, mass, start_b)
             write_friction_gains(pair_rows, world, manifold_block, line, mass, start)
         row += 1

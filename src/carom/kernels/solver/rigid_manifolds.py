@@ -59,16 +59,13 @@ def push_manifold_block(
 ):
     """Apply impulses along the rows of a manifold block of rigid bodies."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    if place[1] > 0:
-        moved = push_of_normals(
-            pair_rows.manifold_block[world, manifold_block].normal_response_a, normal
-        ) + combination(pair_rows.manifold_block[world, manifold_block].friction_response_a, friction)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_normals(
-            pair_rows.manifold_block[world, manifold_block].normal_response_b, normal
-        ) + combination(pair_rows.manifold_block[world, manifold_block].friction_response_b, friction)
-        add_change(scratch, world, place[2], moved)
+    for body in range(2):
+        side = 2 * manifold_block + body
+        if place[2 * body + 1] > 0:
+            moved = push_of_normals(pair_rows.side[world, side].normal_response, normal) + combination(
+                pair_rows.side[world, side].friction_response, friction
+            )
+            add_change(scratch, world, place[2 * body], moved)
 
 
 @func
@@ -174,27 +171,19 @@ def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, man
         pair_rows.manifold_block[world, manifold_block].normal_softness,
         pair_rows.manifold_block[world, manifold_block].normal_impulse,
     )
-    if place[1] > 0:
-        pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].normal_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].normal_weighted_a,
-            body_change(scratch, world, place[0]),
-        )
-    if place[3] > 0:
-        pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].normal_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].normal_weighted_b,
-            body_change(scratch, world, place[2]),
-        )
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
+                world, manifold_block
+            ].normal_wanted - combination(
+                pair_rows.side[world, 2 * manifold_block + body].normal_weighted,
+                body_change(scratch, world, place[2 * body]),
+            )
     change = bounded_normals(pair_rows, world, manifold_block)
-    if place[1] > 0:
-        moved = push_of_normals(pair_rows.manifold_block[world, manifold_block].normal_response_a, change)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_normals(pair_rows.manifold_block[world, manifold_block].normal_response_b, change)
-        add_change(scratch, world, place[2], moved)
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            response = pair_rows.side[world, 2 * manifold_block + body].normal_response
+            add_change(scratch, world, place[2 * body], push_of_normals(response, change))
     return normal_residual(pair_rows, world, manifold_block, change)
 
 
@@ -207,25 +196,17 @@ def relax_rigid_friction(
     pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
         world, manifold_block
     ].friction_share
-    if place[1] > 0:
-        pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].friction_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].friction_weighted_a,
-            body_change(scratch, world, place[0]),
-        )
-    if place[3] > 0:
-        pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].friction_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].friction_weighted_b,
-            body_change(scratch, world, place[2]),
-        )
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
+                world, manifold_block
+            ].friction_wanted - combination(
+                pair_rows.side[world, 2 * manifold_block + body].friction_weighted,
+                body_change(scratch, world, place[2 * body]),
+            )
     change = bounded_friction(settings, pair_rows, world, manifold_block)
-    if place[1] > 0:
-        moved = combination(pair_rows.manifold_block[world, manifold_block].friction_response_a, change)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = combination(pair_rows.manifold_block[world, manifold_block].friction_response_b, change)
-        add_change(scratch, world, place[2], moved)
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            response = pair_rows.side[world, 2 * manifold_block + body].friction_response
+            add_change(scratch, world, place[2 * body], combination(response, change))
     return friction_residual(pair_rows, world, manifold_block, change)

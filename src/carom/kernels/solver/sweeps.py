@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.min_max import maximum
-from carom.kernels.solver.articulated_manifolds import relax_long_friction, relax_long_normals
+from carom.kernels.solver.articulated_manifolds import relax_articulated_friction, relax_articulated_normals
 from carom.kernels.solver.joint_solver import relax_row
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
@@ -48,7 +48,7 @@ def relax_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_
     """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
     if pair_rows.manifold_block[world, manifold_block].run < 0:
         return relax_rigid_normals(scratch, pair_rows, world, manifold_block)
-    return relax_long_normals(scratch, pair_rows, world, manifold_block)
+    return relax_articulated_normals(scratch, pair_rows, world, manifold_block)
 
 
 @func
@@ -58,7 +58,7 @@ def relax_friction(
     """Relax the friction rows of a manifold block; returns as `relax_normals`."""
     if pair_rows.manifold_block[world, manifold_block].run < 0:
         return relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block)
-    return relax_long_friction(settings, scratch, pair_rows, world, manifold_block)
+    return relax_articulated_friction(settings, scratch, pair_rows, world, manifold_block)
 
 
 @func
