@@ -69,7 +69,7 @@ def read_state(reader: Reader, data: Any) -> SavedState:
     for name in _OF_NODES:
         # Files of versions without soft bodies do not have them.
         arrays["state"].setdefault(name, np.zeros((0, 3)))
-    _split_impulses(arrays["contacts"])
+    split_impulses(arrays["contacts"])
     _check_counts(reader, bodies, arrays["state"])
     impulses = reader.array(
         data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
@@ -84,7 +84,7 @@ def read_state(reader: Reader, data: Any) -> SavedState:
     )
 
 
-def _split_impulses(contacts: dict[str, np.ndarray]) -> None:
+def split_impulses(contacts: dict[str, np.ndarray]) -> None:
     """Give warm starting an array of its own: older files have it in a fourth column of impulses."""
     impulses = contacts.get("contact_impulse")
     if impulses is not None and impulses.ndim == 2 and "contact_warm_start" not in contacts:
