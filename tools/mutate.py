@@ -131,25 +131,27 @@ class Copy:
             "CI": "1",
         }
 
-    def passes(self, tests: Sequence[str]) -> str | None:
+    def passes(
+        self, tests: Sequence[str], limit: float | None = _SECONDS_TO_TEST, *, quiet: bool = True
+    ) -> str | None:
         """None if tests pass; else `killed`, or `timed out`."""
         options = ("-x", "-q", "-p", "no:cacheprovider")
-        return self._runs(("pytest", *options, *tests), _SECONDS_TO_TEST, "killed")
+        return self._runs(("pytest", *options, *tests), limit, "killed", quiet)
 
     def builds(self) -> str | None:
         """None if the native library can be built; else what is wrong."""
-        return self._runs(("carom", "warmup"), _SECONDS_TO_BUILD, "does not build")
+        return self._runs(("carom", "warmup"), _SECONDS_TO_BUILD, "does not build", True)
 
-    def _runs(self, command: Sequence[str], limit: float, failed: str) -> str | None:
+    def _runs(self, command: Sequence[str], limit: float | None, failed: str, quiet: bool) -> str | None:
         arguments = [sys.executable, "-m", *command]
-        quiet = subprocess.DEVNULL
+        output = subprocess.DEVNULL if quiet else None
         try:
             done = subprocess.run(
                 arguments,
                 cwd=self._folder,
                 env=self._environment,
-                stdout=quiet,
-                stderr=quiet,
+                stdout=output,
+                stderr=output,
                 timeout=limit,
                 check=False,
             )
@@ -186,9 +188,8 @@ def try_all(mutations: Sequence[Mutation], copies: int) -> list[Outcome]:
             free.put(Copy(folder, cache))
         unchanged = free.get()
         tests = sorted({test for mutation in mutations for test in mutation.tests})
-        problem = unchanged.builds() or unchanged.passes(tests)
-        if problem:
-            sys.exit(f"without any change: {problem}: {' '.join(tests)}")
+        if unchanged.builds() or unchanged.passes(tests, None, quiet=False):
+            sys.exit("without any change the library does not build, or a test fails")
         free.put(unchanged)
 
         def attempt(mutation: Mutation) -> Outcome:
