@@ -1,7 +1,7 @@
 """What collision detection and contact response work on: `Shapes`, `Pairs`, `Contacts`.
 
-As in `layouts.model`, a field's axis is the first word of its name. A *manifold* is a run of at most four
-contacts of the same two shapes; runs are sorted by the lower, then by the higher row of the two.
+As in `layouts.model`, a field's axis is the first word of its name. A *manifold* is at most four contacts
+of the same two shapes, one after the other; they are sorted by the lower, then by the higher row of the two.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -216,7 +216,7 @@ class ManifoldBlock:
     """
 
     place: Index4  # as `row_place`
-    run: Int32  # where in `run_block` the matrices of articulated trees are, or -1
+    matrices: Int32  # where in `matrix_block` the matrices of articulated trees are, or -1
     members: Index4  # its contacts, -1 for none
     count: Int32
     friction: Vector4  # coefficients
@@ -311,8 +311,8 @@ class PairRows:
     )
     constraint_next: IntRows
     contact_next: IntRows
-    run_first: IntRows  # first contact of each manifold, in the order in which they are relaxed
-    run_island: IntRows  # what they are sorted by: the last tree of its island
+    order_first: IntRows  # first contact of each manifold, in the order in which they are relaxed
+    order_island: IntRows  # what they are sorted by: the last tree of its island
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )
@@ -321,8 +321,8 @@ class PairRows:
     terms: TermsRows  # of the contacts of the manifold whose rows are being written
     manifold_block: ManifoldBlocks
     side: ManifoldSides  # of each manifold block its body a, then its body b
-    run_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
-    entry_run: RealRows
+    matrix_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
+    entry_matrix: RealRows
 
     user_first_row: IntRows
     visit_row: IntRows  # rows of motors, limits and user constraints in their order: -1 - row of the latter
@@ -332,5 +332,5 @@ class PairRows:
 ROW_ENTRY_VIEWS = {
     "entry_row": "jacobian_row",
     "entry_response": "jacobian_response",
-    "entry_run": "run_block",
+    "entry_matrix": "matrix_block",
 }

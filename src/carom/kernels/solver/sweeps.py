@@ -46,7 +46,7 @@ def visit_sweep(
 @func
 def relax_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
     """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
-    if pair_rows.manifold_block[world, manifold_block].run < 0:
+    if pair_rows.manifold_block[world, manifold_block].matrices < 0:
         return relax_rigid_normals(scratch, pair_rows, world, manifold_block)
     return relax_articulated_normals(scratch, pair_rows, world, manifold_block)
 
@@ -56,7 +56,7 @@ def relax_friction(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
 ) -> real:
     """Relax the friction rows of a manifold block; returns as `relax_normals`."""
-    if pair_rows.manifold_block[world, manifold_block].run < 0:
+    if pair_rows.manifold_block[world, manifold_block].matrices < 0:
         return relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block)
     return relax_articulated_friction(settings, scratch, pair_rows, world, manifold_block)
 

@@ -1,6 +1,6 @@
 """The contacts of an island as its sweeps relax them: in manifold blocks, or one by one."""
 
-from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK
+from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.kernels.solver.contact_terms import contact_friction, contact_terms
@@ -84,7 +84,7 @@ def write_units(
     units = Int32(0)
     manifold_blocks = Int32(0)
     torsion = Int32(0)
-    next_run = Int32(0)
+    next_matrices = Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
@@ -100,15 +100,15 @@ def write_units(
             i += 1
         room = has_room(model, pair_rows, row, block, a, b)
         if count > 1:
-            run = Int32(-1)
+            matrices = Int32(-1)
             if not rigid:
-                run = next_run + 0
-                next_run += RUN_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
-                if next_run > pair_rows.run_block.shape[1] or not room:
+                matrices = next_matrices + 0
+                next_matrices += VECTORS_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
+                if next_matrices > pair_rows.matrix_block.shape[1] or not room:
                     return Int32(-1), manifold_blocks, torsion
             write_manifold_block(
                 settings, model, state, scratch, shapes, pair_rows, world,
-                manifold_blocks, members, count, a, b, run,
+                manifold_blocks, members, count, a, b, matrices,
                 block,
             )  # fmt: skip
             pair_rows.unit_code[world, units] = -1 - manifold_blocks
