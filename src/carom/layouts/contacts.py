@@ -211,8 +211,9 @@ class UserConstraints:
 class ManifoldBlock:
     """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.rigid_manifolds`.
 
-    Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a gain
-    says by how much an impulse lowers the impulses wanted along the other rows.
+    Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
+    Delassus matrix, J M⁻¹ Jᵀ times effective masses, says by how much an impulse lowers the impulses wanted along
+    the other rows.
     """
 
     place: Index4  # as `row_place`
@@ -226,7 +227,7 @@ class ManifoldBlock:
     normal_search: Vector4
     friction_before: Vector8
     friction_search: Vector8
-    normal_gain: Matrix4
+    normal_delassus: Matrix4
     normal_share: Vector4
     normal_softness: Vector4
     normal_inverse_mass: Vector4
@@ -235,7 +236,7 @@ class ManifoldBlock:
     # compute them four at a time.
     normal_wanted: Vector4
 
-    friction_gain: Matrix8
+    friction_delassus: Matrix8
     friction_share: Vector8
     friction_inverse_mass: Vector8
     friction_impulse: Vector8
@@ -275,7 +276,7 @@ class ContactTerms:
     erp: real
     start: Vector3  # impulses to start from
     ignored: Int32  # 1: too far apart to be solved
-    gain: real  # velocity along the normal that forces gave it in this substep, where it can rebound
+    from_forces: real  # velocity along the normal that forces gave it in this substep, where it can rebound
     carried: Vector3  # velocity of a's point against b's that comes from fixed bases which move
     carried_spin: Vector3  # likewise the angular velocity
 

@@ -53,7 +53,7 @@ def write_friction_matrices(
 
 
 @func
-def write_normal_gains(
+def write_normal_delassus(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, contact: Int32, mass: real, start: Int32
 ):
     """Write by how much the normal rows before this, of effective mass `mass`, lower its impulse wanted.
@@ -71,16 +71,16 @@ def write_normal_gains(
             )  # fmt: skip
     for i in range(4):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[i]
-        pair_rows.manifold_block[world, manifold_block].normal_gain[i, contact] = (
+        pair_rows.manifold_block[world, manifold_block].normal_delassus[i, contact] = (
             lowered[i] * inverse_mass * mass
         )
 
 
 @func
-def write_friction_gains(
+def write_friction_delassus(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, row: Int32, mass: real, start: Int32
 ):
-    """As `write_normal_gains`, for friction row `row` of eight."""
+    """As `write_normal_delassus`, for friction row `row` of eight."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     lowered = pair_rows.manifold_block[world, manifold_block].friction_share * real(0.0)
@@ -92,7 +92,7 @@ def write_friction_gains(
             )  # fmt: skip
     for i in range(8):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i]
-        pair_rows.manifold_block[world, manifold_block].friction_gain[i, row] = (
+        pair_rows.manifold_block[world, manifold_block].friction_delassus[i, row] = (
             lowered[i] * inverse_mass * mass
         )
 
@@ -134,7 +134,7 @@ def write_articulated_contact(
             else:
                 write_friction_matrices(pair_rows, world, own, place[2 * side + 1], line, mass, jacobian)
         if row == 0:
-            write_normal_gains(pair_rows, world, manifold_block, contact, mass, start)
+            write_normal_delassus(pair_rows, world, manifold_block, contact, mass, start)
         else:
-            write_friction_gains(pair_rows, world, manifold_block, line, mass, start)
+            write_friction_delassus(pair_rows, world, manifold_block, line, mass, start)
         row += 1

@@ -96,7 +96,7 @@ def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32,
 
 
 @func
-def gained(
+def velocity_from_forces(
     settings: Settings,
     model: Model,
     state: State,
@@ -191,11 +191,13 @@ def contact_terms(
     terms.carried_spin = carried_spin(model, state, world, terms.ends[0]) - carried_spin(
         model, state, world, terms.ends[2]
     )
-    terms.gain = real(0.0)
+    terms.from_forces = real(0.0)
     if combined_restitution(shapes, world, a, b) > 0.0:
-        terms.gain = gained(
+        terms.from_forces = velocity_from_forces(
             settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
-        ) - gained(settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal)
+        ) - velocity_from_forces(
+            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal
+        )
     return terms
 
 
@@ -218,7 +220,7 @@ def normal_change(
     restitution = combined_restitution(shapes, world, terms.ends[1], terms.ends[3])
     if restitution <= 0.0:
         return parting - velocity
-    rebound = maximum(restitution, 1.0) * (terms.gain - velocity)
+    rebound = maximum(restitution, 1.0) * (terms.from_forces - velocity)
     return minimum(parting - restitution * velocity, maximum(rebound, parting)) - velocity
 
 

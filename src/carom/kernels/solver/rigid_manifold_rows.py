@@ -150,7 +150,8 @@ def write_rigid_jacobians(
 def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, side: Int32, body: RigidBody):
     """Turn the Jacobians of a body into responses, and add up what rows are to know of both bodies.
 
-    Until masses are known gains hold products of Jacobians and responses, shares the present velocities.
+    Until masses are known the Delassus matrices hold products of Jacobians and responses, and shares the
+    present velocities.
     """
     normal = pair_rows.side[world, side].normal_weighted
     friction = pair_rows.side[world, side].friction_weighted
@@ -158,8 +159,8 @@ def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, si
     friction_response = pair_rows.side[world, side].friction_response * body.inverse_mass
     pair_rows.side[world, side].normal_response = normal_response
     pair_rows.side[world, side].friction_response = friction_response
-    pair_rows.manifold_block[world, manifold_block].normal_gain += normal_response * normal
-    pair_rows.manifold_block[world, manifold_block].friction_gain += friction_response * friction
+    pair_rows.manifold_block[world, manifold_block].normal_delassus += normal_response * normal
+    pair_rows.manifold_block[world, manifold_block].friction_delassus += friction_response * friction
     pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
         world, manifold_block
     ].normal_share + combination(normal, body.velocity)
@@ -172,7 +173,7 @@ def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, si
 def weigh(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, normal_mass: Vector4, friction_mass: Vector8
 ):
-    """Multiply Jacobians and gains by the effective masses of their rows."""
+    """Multiply Jacobians and Delassus matrices by the effective masses of their rows."""
     for body in range(2):
         side = 2 * manifold_block + body
         for dof in range(6):
@@ -183,12 +184,12 @@ def weigh(
                 friction_mass, pair_rows.side[world, side].friction_weighted[dof]
             )
     for i in range(4):
-        pair_rows.manifold_block[world, manifold_block].normal_gain[i] = wp.cw_mul(
-            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_gain[i]
+        pair_rows.manifold_block[world, manifold_block].normal_delassus[i] = wp.cw_mul(
+            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_delassus[i]
         )
     for i in range(8):
-        pair_rows.manifold_block[world, manifold_block].friction_gain[i] = wp.cw_mul(
-            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_gain[i]
+        pair_rows.manifold_block[world, manifold_block].friction_delassus[i] = wp.cw_mul(
+            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_delassus[i]
         )
 
 
@@ -229,10 +230,10 @@ def write_rigid_rows(
         part = row % 3
         i = 2 * contact + part - 1
         velocity = pair_rows.manifold_block[world, manifold_block].normal_share[contact]
-        inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_gain[contact, contact]
+        inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_delassus[contact, contact]
         if part > 0:
             velocity = pair_rows.manifold_block[world, manifold_block].friction_share[i]
-            inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_gain[i, i]
+            inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_delassus[i, i]
         mass = write_row_numbers(
             settings, shapes, pair_rows, pair_rows.terms[world, contact],
             world, manifold_block, contact, part,

@@ -80,13 +80,13 @@ def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) ->
     """Change the normal impulses of a manifold block by what is wanted as far as they stay pushes."""
     before = pair_rows.manifold_block[world, manifold_block].normal_impulse
     wanted = pair_rows.manifold_block[world, manifold_block].normal_wanted
-    gain = pair_rows.manifold_block[world, manifold_block].normal_gain
+    delassus = pair_rows.manifold_block[world, manifold_block].normal_delassus
     change = Vector4(0.0, 0.0, 0.0, 0.0)
     for i in range(4):
         change[i] = wanted[i]
         if change[i] < -before[i]:
             change[i] = -before[i]
-        wanted -= change[i] * gain[i]
+        wanted -= change[i] * delassus[i]
     pair_rows.manifold_block[world, manifold_block].normal_impulse = before + change
     return change
 
@@ -119,7 +119,7 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
         pair_rows.manifold_block[world, manifold_block].friction,
         pair_rows.manifold_block[world, manifold_block].normal_impulse,
     )
-    gain = pair_rows.manifold_block[world, manifold_block].friction_gain
+    delassus = pair_rows.manifold_block[world, manifold_block].friction_delassus
     change = Vector8(0.0)
     for i in range(4):
         bound = bounds[i]
@@ -135,14 +135,14 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
                 change2 = second * scale - before[2 * i + 1]
         elif bound > 0.0:
             change1 = within_bounds(first, -bound, bound) - before[2 * i]
-            second -= change1 * gain[2 * i, 2 * i + 1]
+            second -= change1 * delassus[2 * i, 2 * i + 1]
             change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
         else:
             change1 = real(0.0)
             change2 = real(0.0)
         change[2 * i] = change1
         change[2 * i + 1] = change2
-        wanted -= change1 * gain[2 * i] + change2 * gain[2 * i + 1]
+        wanted -= change1 * delassus[2 * i] + change2 * delassus[2 * i + 1]
     pair_rows.manifold_block[world, manifold_block].friction_impulse = before + change
     return change
 
