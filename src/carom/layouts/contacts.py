@@ -212,8 +212,8 @@ class ManifoldBlock:
     """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.rigid_manifolds`.
 
     Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
-    Delassus matrix, J M⁻¹ Jᵀ times effective masses, says by how much an impulse lowers the impulses wanted along
-    the other rows.
+    Delassus matrix, J M⁻¹ Jᵀ times effective masses, says by how much an impulse lowers the impulses wanted
+    along the other rows.
     """
 
     place: Index4  # as `row_place`
