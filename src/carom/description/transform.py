@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import asin, atan2, cos, pi, sin, sqrt
+from math import pi, sqrt
 
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
+from carom.native.trigonometry import asin, atan2, cos, sin
 
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 """Row-major rotation matrix."""

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.products import dots
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polyhedron:
@@ -37,7 +39,7 @@ class Polyhedron:
     def moved(self, offset: NDArray[np.float64]) -> Polyhedron:
         """The same shape, every vertex moved by `offset`."""
         planes = self.planes.copy()
-        planes[:, 3] += planes[:, :3] @ offset
+        planes[:, 3] += dots(planes[:, :3], offset)
         return Polyhedron(self.vertices + offset, planes, self.first_corner, self.corner_count, self.corners)
 
 
@@ -125,7 +127,7 @@ def _planes(
     there = vertices[corners[following]] - anchor
     normals = np.add.reduceat(np.cross(here, there), firsts, axis=0)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    heights = np.einsum("ij,ij->i", vertices[corners], np.repeat(normals, counts, axis=0))
+    heights = dots(vertices[corners], np.repeat(normals, counts, axis=0))
     return np.column_stack([normals, np.maximum.reduceat(heights, firsts)])
 
 
@@ -133,5 +135,5 @@ def _triangle_planes(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Planes of triangles, from corners (m, 3, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    heights = np.einsum("ijk,ik->ij", corners, normals)
+    heights = dots(corners, normals[:, None])
     return np.column_stack([normals, heights.max(axis=1)])

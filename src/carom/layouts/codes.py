@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from carom.description import JointType
-from carom.description.joint import SLIDES
-
 
 class JointCode(IntEnum):
     """Kinds of joint as the engine sees them; the values are PyBullet's."""
@@ -69,15 +66,6 @@ class Rolling(IntEnum):
     ABOUT_ANY = 4
 
 
-JOINT_CODE = {
-    JointType.REVOLUTE: JointCode.REVOLUTE,
-    JointType.CONTINUOUS: JointCode.REVOLUTE,
-    JointType.PRISMATIC: JointCode.PRISMATIC,
-    JointType.SPHERICAL: JointCode.SPHERICAL,
-    JointType.PLANAR: JointCode.PLANAR,
-    JointType.FIXED: JointCode.FIXED,
-    JointType.FLOATING: JointCode.FIXED,
-}
 DOF_COUNT = {
     JointCode.REVOLUTE: 1,
     JointCode.PRISMATIC: 1,
@@ -87,7 +75,7 @@ DOF_COUNT = {
 }
 POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
 # Joints whose positions are lengths, not angles.
-SLIDING_JOINTS = tuple(JOINT_CODE[kind] for kind in SLIDES)
+SLIDING_JOINTS = (JointCode.PRISMATIC,)
 # The motor and the limit that a joint can have.
 MOTOR_KIND: dict[int, ConstraintKind] = {
     JointCode.REVOLUTE: ConstraintKind.MOTOR,

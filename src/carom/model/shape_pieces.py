@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, pi, sin
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from carom.geometry.rolling import round_about
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.layouts.codes import Rolling, ShapeKind
 from carom.layouts.contacts import MARGIN
+from carom.native.trigonometry import cos, sin
 
 MOST_HULL_VERTICES = 128
 """Hulls of finer meshes are simplified to so many vertices."""

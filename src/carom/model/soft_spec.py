@@ -106,12 +106,14 @@ class SoftSpec:
         """(n,) stiffness of the tetrahedra around each node [N/m], by their modulus [Pa]."""
         import numpy as np
 
+        from carom.native.products import determinants, inverses
+
         stiffness = np.zeros(len(self.nodes))
         if len(self.tetras):
             edges = self.edge_matrices()
-            gradients = np.linalg.inv(edges)
+            gradients = inverses(edges)
             gradients = np.concatenate([-gradients.sum(axis=1, keepdims=True), gradients], axis=1)
-            volume = np.linalg.det(edges) / 6.0
+            volume = determinants(edges) / 6.0
             at_corner = modulus * volume[:, None] * (gradients**2).sum(axis=2)
             for corner in range(4):
                 np.add.at(stiffness, self.tetras[:, corner], at_corner[:, corner])

@@ -1,14 +1,15 @@
-"""Where what is built is kept, so that nothing is built twice."""
+"""Where what is built is kept, so that nothing is built twice.
+
+Every start in a clone comes here to find its library: what only building needs is imported when that begins.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
-from hashlib import blake2b
 from pathlib import Path
 
 MANIFEST = "manifest.json"
@@ -60,6 +61,8 @@ def content_key(*contents: bytes | str) -> str:
     Args:
         *contents: The contents, in an order that matters.
     """
+    from hashlib import blake2b
+
     digest = blake2b(digest_size=_KEY_BYTES)
     for content in contents:
         content = content.encode() if isinstance(content, str) else content
@@ -75,6 +78,8 @@ def work_folder(cache: Path) -> Iterator[Path]:
     Args:
         cache: The cache folder.
     """
+    import tempfile
+
     cache.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=cache, prefix="work-", ignore_cleanup_errors=True) as folder:
         yield Path(folder)
