@@ -4,6 +4,7 @@
 #   make test         the test suite
 #   make quick        lint and the tests that matter most, in under a minute on two cores
 #   make check        lint, types and tests
+#   make mutate       break the code on purpose, change by change, and see that tests notice; takes an hour or more
 #   make docs         the documentation, in site/
 #   make figures      the plots of the tutorials and the pictures of the viewer, by running them; needs Chromium
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
@@ -44,7 +45,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -142,6 +143,11 @@ quick: lint
 lint: $(VENV)/dev
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
+
+# MUTATE=rays.py for those with that in their files or texts.
+mutate: $(VENV)/dev
+	$(RUN) -m carom warmup
+	PYTHONPATH=. $(RUN) -m tools.mutate $(MUTATE)
 
 types: $(VENV)/dev
 	$(RUN) -m pyright

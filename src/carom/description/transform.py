@@ -127,6 +127,11 @@ def dot(a: Vector3, b: Vector3) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
+def subtracted(a: Vector3, b: Vector3) -> Vector3:
+    """A - b."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
 def rotate(quaternion: Quaternion, v: Vector3) -> Vector3:
     """A vector turned by a quaternion."""
     return matrix_vector(rotation_matrix(quaternion), v)

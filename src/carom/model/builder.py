@@ -11,7 +11,7 @@ import numpy as np
 
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import Pose, Vector3
-from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix
+from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix, subtracted
 from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
@@ -227,7 +227,7 @@ class WorldArrays:
         model = self.model.numpy
         to_parent_inertial = conjugate(parent.inertial_frame.orientation)
         to_inertial = conjugate(link.inertial_frame.orientation)
-        from_parent_com = _difference(link.joint_frame.position, parent.inertial_frame.position)
+        from_parent_com = subtracted(link.joint_frame.position, parent.inertial_frame.position)
         axis = rotate(to_inertial, link.joint_axis)
         # An axis that is not of unit length scales the joint's rate, not the angle it turns by.
         rate = link.joint_axis_length
@@ -313,7 +313,3 @@ class WorldArrays:
     def structs(self) -> dict[str, Any]:
         """Warp structs over the present arrays, by the name kernels give them."""
         return {"model": self.model.struct(), "state": self.state.struct()}
-
-
-def _difference(a: Vector3, b: Vector3) -> Vector3:
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
