@@ -70,6 +70,8 @@ def read_state(reader: Reader, data: Any) -> SavedState:
         # Files of versions without soft bodies do not have them.
         arrays["state"].setdefault(name, np.zeros((0, 3)))
     split_impulses(arrays["contacts"])
+    # Nor do the first ones with soft bodies have this; the next step finds it.
+    arrays["state"].setdefault("node_push", np.zeros_like(arrays["state"]["node_position"]))
     _check_counts(reader, bodies, arrays["state"])
     impulses = reader.array(
         data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
