@@ -85,6 +85,13 @@ def test_a_motor_is_left_alone_by_arguments_that_are_refused(arm: int) -> None:
     assert _motors(arm) == motors
 
 
+def test_a_joint_stays_where_it_is_if_its_velocity_is_refused(arm: int) -> None:
+    before = p.getJointState(arm, 0)
+    with pytest.raises(TypeError, match="targetVelocity"):
+        p.resetJointState(arm, 0, 0.7, targetVelocity=np.array([1.0]))  # type: ignore[arg-type]
+    assert p.getJointState(arm, 0) == before
+
+
 def test_a_log_may_be_written_to_a_device(arm: int) -> None:
     p.setPhysicsEngineParameter(numSubSteps=3)
     p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, "/dev/null")
