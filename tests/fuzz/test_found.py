@@ -140,6 +140,32 @@ def test_saved_worlds_with_immense_numbers(client: int, tmp_path: Path) -> None:
     assert p.getNumBodies() == 0
 
 
+@pytest.mark.parametrize("robot", ["cube_small.urdf", "spherical_joint_limit.urdf"])
+@pytest.mark.parametrize("damage", [1e228, 0.0])
+def test_saved_worlds_whose_bodies_are_nowhere(
+    client: int, tmp_path: Path, robot: str, damage: float
+) -> None:
+    p.loadURDF(robot, [0, 0, 0.6])
+    file = tmp_path / "world.bullet"
+    p.saveBullet(str(file))
+    document, blocks = container.unpacked(file.read_bytes(), file)
+    blocks = bytearray(blocks)
+    place = document["state"]["state"]["position"]["at"]
+    # The last quaternion of the body.
+    count = document["state"]["state"]["position"]["shape"][0]
+    blocks[place + 8 * (count - 4) : place + 8 * count] = struct.pack("<4d", *[damage] * 4)
+    text = json.dumps(document).encode()
+    payload = struct.pack("<Q", len(text)) + text + bytes(blocks)
+    header = struct.pack("<8sIIQ32s", container.MAGIC, 1, 0, len(payload), sha256(payload).digest())
+    file.write_bytes(header + payload)
+    with pytest.raises(p.error, match=r"very large|quaternion"):
+        p.restoreState(fileName=str(file))
+    p.resetSimulation()
+    with pytest.raises(p.error, match=r"very large|quaternion"):
+        p.loadBullet(str(file))
+    assert p.getNumBodies() == 0
+
+
 def _motors(body: int) -> list[float]:
     from pybullet._clients.clients import clients
 

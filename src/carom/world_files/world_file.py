@@ -202,7 +202,7 @@ def restore_world(world: World, path: Path) -> None:
         document, reader, _ = _read(path)
         snapshot = read_state(reader, document.get("state")).snapshot()
         check_same(snapshot.layout, layout(world))
-        check_arrays(world, snapshot)
+        check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
         world.restore(snapshot)
 
     _guarded(path, restore)
