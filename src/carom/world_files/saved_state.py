@@ -185,7 +185,8 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
 
 
 def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
-    """See that orientations of bases and of spherical joints are quaternions of about length 1."""
+    """See that orientations of links, bases and spherical joints are quaternions of about length 1."""
+    turns = [snapshot.state["link_pose"][:, 3:]]
     first = 0
     for body, saved in zip(bodies, snapshot.layout.bodies, strict=True):
         places = [_BASE_TURN]
@@ -194,9 +195,11 @@ def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
                 places.append(place - body.first_position)
         for place in places:
             turn = snapshot.state["position"][first + place : first + place + _QUATERNION]
-            if abs(float(turn @ turn) - 1.0) > _UNIT_TOLERANCE:
-                raise ValueError("a quaternion does not have length 1")
+            turns.append(turn[None])
         first += saved.positions
+    lengths = np.square(np.concatenate(turns)).sum(axis=1)
+    if (np.abs(lengths - 1.0) > _UNIT_TOLERANCE).any():
+        raise ValueError("a quaternion does not have length 1")
 
 
 def _check_contacts(world: World, snapshot: Snapshot) -> None:
