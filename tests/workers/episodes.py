@@ -8,6 +8,7 @@ process that is alone, and none grows.
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import multiprocessing
 import sys
@@ -89,6 +90,8 @@ def _make() -> Any:
 
 
 def _resident() -> int:
+    # What closed environments leave is in circles, and may wait long.
+    gc.collect()
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[1])
     except OSError:
