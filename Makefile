@@ -22,7 +22,7 @@
 #   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
 #   make gpu          the tests of worlds on a GPU, and how fast they are there; needs an NVIDIA GPU
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
-#   make soak         a million steps and thousands of loads and removals; memory must not grow
+#   make soak         a million steps, thousands of loads and removals, 80,000 episodes of workers; memory must not grow
 #   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
 #   make wine         step the libraries for Windows under Wine: the same bits as here
 #   make aarch64      the wheel for aarch64 under emulation: conformance; needs Debian, and its qemu-user
@@ -224,6 +224,7 @@ fuzz: $(VENV)/dev
 
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak
+	$(RUN) -m tests.workers.episodes
 
 bench: oracle .mujoco/mujoco $(VENV)/dev
 	$(RUN) -m carom warmup

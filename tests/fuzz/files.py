@@ -163,7 +163,7 @@ def fuzz(kind: str, cases: int, seed: int) -> Counter[str]:
                 file.write_bytes(harm(content, random))
                 try:
                     outcomes[_load(kind, str(file))] += 1
-                except Broken:
+                except Exception:
                     print(f"kind {kind}, seed {seed}, case {number}: {file.read_bytes()!r}", file=sys.stderr)
                     raise
                 file.unlink()
