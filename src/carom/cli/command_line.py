@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Iterable, Sequence
@@ -35,6 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         options.command(options)
+    except BrokenPipeError:
+        # Whoever reads the output has had enough, as `head` has; Python is not to write the rest at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (CaromError, OSError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
         return FAILED
@@ -60,7 +64,9 @@ def _parser() -> argparse.ArgumentParser:
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
     view.add_argument(
-        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data"
+        "file",
+        type=Path,
+        help="URDF, SDF or MJCF (.xml) file; one that pybullet_data ships is found by its name",
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(
@@ -138,7 +144,8 @@ def _view(options: argparse.Namespace) -> None:
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
-    print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    # Terminals take what follows an address without a space for a part of it.
+    print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
     if tunnel := tunnel_command(view.viewer.address):
         print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
     try:
