@@ -15,10 +15,9 @@ from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import CaromError
 from carom.formats.search import AssetSearch
-from carom.formats.urdf import read_urdf
 from carom.layouts.flags import LoadFlags
-from carom.model.assemble import assemble
 from carom.model.body_spec import BASE, BodySpec
+from carom.soft.from_urdf import urdf_body
 from carom.version import __version__
 
 OK, FAILED = 0, 1
@@ -132,8 +131,11 @@ def _info(options: argparse.Namespace) -> None:
     if options.merge_fixed_links:
         flags |= LoadFlags.MERGE_FIXED_LINKS
     search = AssetSearch(Path(pybullet_data.getDataPath()))
-    robot = read_urdf(options.file, scale=options.scale, search=search)
-    print(describe(assemble(robot, flags=flags, fixed_base=options.fixed_base)))
+    print(
+        describe(
+            urdf_body(options.file, search, scale=options.scale, flags=flags, fixed_base=options.fixed_base)
+        )
+    )
 
 
 def _view(options: argparse.Namespace) -> None:

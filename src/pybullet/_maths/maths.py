@@ -6,7 +6,7 @@ only where single precision decides between two answers is it asked.
 
 from __future__ import annotations
 
-from math import acos, asin, atan2, cos, hypot, inf, isfinite, pi, sin, sqrt
+from math import hypot, inf, isfinite, pi, sqrt
 from struct import Struct
 
 from carom.description.pose import Quaternion, Vector3
@@ -18,6 +18,7 @@ from carom.description.transform import (
     transposed,
     turns_about_axes,
 )
+from carom.native.trigonometry import acos, asin, atan2, cos, sin
 from pybullet._calls.arguments import Vector, quantity, real, rotation, vector3, vector4
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
