@@ -48,6 +48,8 @@ def _is_of_use(folder: Path) -> bool:
 @functools.cache
 def _temporary_folder() -> Path:
     """The cache of who has no home to write to: one for all processes, unless others could write to it."""
+    import tempfile
+
     if os.name != "nt":
         folder = Path(tempfile.gettempdir()) / f"carom-native-{os.getuid()}"
         with contextlib.suppress(OSError):
