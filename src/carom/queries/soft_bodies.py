@@ -12,6 +12,7 @@ import numpy as np
 from carom.layouts.soft import TOUCHES_PER_NODE
 from carom.native.kernels import find_touches_kernel
 from carom.native.launch import KernelStructs, Launch
+from carom.native.products import dots, length
 from carom.native.tables import ArrayTable
 from carom.queries.contact_search import ContactColumns
 from carom.queries.ray_cast import Points, RayHit
@@ -136,9 +137,9 @@ class SoftQueries:
                 place = self._state["node_position"][0, node]
                 ends = [place, place - (distance + soft.spec.margin) * normal]
                 on_a, on_b = ends if sign > 0.0 else ends[::-1]
-                along = float(force @ normal)
+                along = float(dots(force, normal))
                 friction = force - along * normal
-                size = float(np.linalg.norm(friction))
+                size = length(friction)
                 first = friction / size if size > 0.0 else _across(normal)
                 second = np.cross(normal, first)
                 rows.append(
@@ -158,7 +159,7 @@ class SoftQueries:
             gaps = work["touch_offset"][0, rows] - soft.spec.margin
             normals = work["touch_normal"][0, rows]
             push = self._state["node_push"][0, node]
-            along = normals @ push
+            along = dots(normals, push)
             # Of several shapes the one that faces the force most gets all of it.
             strongest = int(along.argmax())
             for touch, gap in enumerate(gaps.tolist()):
@@ -245,7 +246,7 @@ def _across(normal: np.ndarray) -> np.ndarray:
     """Some unit vector across another one."""
     aside = np.eye(3)[int(np.abs(normal).argmin())]
     across = np.cross(normal, aside)
-    return across / np.linalg.norm(across)
+    return across / length(across)
 
 
 def _tuple(vector: np.ndarray) -> tuple[float, float, float]:

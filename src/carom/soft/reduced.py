@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
+from carom.native.products import determinants, inverses, product
 from carom.soft.materials import NeoHookean
 
 if TYPE_CHECKING:
@@ -73,19 +74,19 @@ def _modulus(mesh: Path, stiffness: NDArray[np.float64], modes: NDArray[np.float
     if not count:
         raise DescriptionError("its modes are of another mesh", file=mesh)
     edges = np.swapaxes(nodes[tetras][:, 1:] - nodes[tetras][:, :1], 1, 2)
-    volume = np.abs(np.linalg.det(edges)) / 6.0
+    volume = np.abs(determinants(edges)) / 6.0
     if not volume.min() > 0.0:
         raise DescriptionError(f"tetrahedron {int(volume.argmin())} has no volume", file=mesh)
-    inverse = np.linalg.inv(edges)
+    inverse = inverses(edges)
     # Of a solid with a Young's modulus of 1 Pa.
     shear = 0.5 / (1.0 + POISSONS_RATIO)
     first = 2.0 * shear * POISSONS_RATIO / (1.0 - 2.0 * POISSONS_RATIO)
     energy = 0.0
     for mode in modes[: count * nodes.size].reshape(count, -1, 3):
-        gradient = np.swapaxes(mode[tetras][:, 1:] - mode[tetras][:, :1], 1, 2) @ inverse
+        gradient = product(np.swapaxes(mode[tetras][:, 1:] - mode[tetras][:, :1], 1, 2), inverse)
         strain = 0.5 * (gradient + np.swapaxes(gradient, 1, 2))
         traces = np.trace(strain, axis1=1, axis2=2)
-        energy += float(volume @ (2.0 * shear * (strain**2).sum(axis=(1, 2)) + first * traces**2))
+        energy += float((volume * (2.0 * shear * (strain**2).sum(axis=(1, 2)) + first * traces**2)).sum())
     if not (energy > 0.0 and stiffness[:count].min() >= 0.0):
         raise DescriptionError("its modes do not change its shape, or have negative stiffness", file=mesh)
     return float(stiffness[:count].sum()) / energy
