@@ -29,6 +29,7 @@ from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
 from carom.scene.joint_constraints import JointConstraints
 from carom.scene.observers import Observer, SubstepObserver
+from carom.scene.quick_scene import QuickScene
 from carom.scene.snapshot import Layout, Snapshot, layout, return_to, take
 from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
@@ -70,6 +71,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         time: Simulated time [s].
         user_data: Texts attached to bodies.
         undo: What makes the world whole again, should a change of it be broken off.
+        quick: What builtins in the native library know of it.
         observers: What is told of every step, such as logs.
 
     Args:
@@ -86,6 +88,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self._viewed: ArrayTable | None = None
         self._replacements = 0
         self.undo: Undo = Undo()
+        self.quick: QuickScene = QuickScene()
         self._start_empty()
 
     def _start_empty(self) -> None:
@@ -338,6 +341,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     def scene_changed(self) -> None:
         """Bring everything up to date before it is used again: bodies, constraints or arrays have changed."""
+        self.quick.forget()
         self._derived = Derived()
         self._made_for: tuple[int, int] | None = None
         self.engine.changed()
@@ -557,6 +561,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Bring `link_pose` up to date with the coordinates of a body."""
         if self._derived.pose_launch is None:
             self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
+            self.quick.know_poses(self._derived.pose_launch, self.contact_arrays)
         self._derived.pose_launch(body.rows.tree)
 
     def update_soft_poses(self) -> None:
@@ -569,4 +574,5 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Fill `link_velocity` for the present coordinates of a body."""
         if self._derived.twist_launch is None:
             self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
+            self.quick.know_twists(self._derived.twist_launch)
         self._derived.twist_launch(body.rows.tree)

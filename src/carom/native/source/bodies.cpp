@@ -1,0 +1,158 @@
+// Reading and writing the state of bodies: kernels of quick calls.
+
+#include "export.h"
+#include "quick_calls.h"
+#include "turns.h"
+
+#define CAROM_QUICK(name) extern "C" CAROM_EXPORT int carom_##name(const double* in, double* out, const Call* call)
+
+namespace {
+
+enum { WORLD_FRAME = 2, LINK_FRAME = 1 };
+enum { POSE = 7, SPATIAL = 6 };
+
+const double ROUNDING = 1e-15;  // of the squared length of a unit quaternion
+
+bool is_given(double number) { return number == number; }
+
+bool has_link(const Body& body, double link) { return -1.0 <= link && link < body.link_count; }
+
+void run(const Launch& launch, int64_t tree) {
+    // The host keeps in mind which tree it asked for last.
+    const int32_t before = *launch.tree;
+    *launch.tree = static_cast<int32_t>(tree);
+    launch.function(launch.bounds, launch.arguments);
+    *launch.tree = before;
+}
+
+struct Pose {
+    Vector position;
+    Quaternion orientation;
+};
+
+// Of the inertial frame of a link, -1 for the base.
+Pose pose_of(const Body& body, int64_t link) {
+    if (link < 0)
+        return {vector_at(body.position), canonical(quaternion_at(body.position + 3))};
+    const double* row = body.pose + (link + 1) * POSE;
+    return {vector_at(row), quaternion_at(row + 3)};
+}
+
+void push(const Body& body, int64_t link, Vector force, Vector torque) {
+    double* row = body.wrench + (link + 1) * SPATIAL;
+    put(put(row, vector_at(row) + force), vector_at(row + 3) + torque);
+}
+
+}  // namespace
+
+// Body, connection.
+CAROM_QUICK(base_pose) {
+    const Pose pose = pose_of(*call->body, -1);
+    put(put(out, pose.position), pose.orientation);
+    return 2;
+}
+
+// Body, connection.
+CAROM_QUICK(base_velocity) {
+    const double* velocity = call->body->velocity;
+    put(put(out, vector_at(velocity + 3)), vector_at(velocity));
+    return 2;
+}
+
+// Body, link, force, position, frame, connection.
+CAROM_QUICK(apply_force) {
+    const Body& body = *call->body;
+    const double frame = in[8];
+    if (!has_link(body, in[1]) || (frame != WORLD_FRAME && frame != LINK_FRAME))
+        return 0;
+    const int64_t link = static_cast<int64_t>(in[1]);
+    const Pose pose = pose_of(body, link);
+    Vector force = vector_at(in + 2), arm = vector_at(in + 5);
+    if (frame == LINK_FRAME)
+        force = turned(pose.orientation, force), arm = turned(pose.orientation, arm);
+    else
+        arm = arm - pose.position;
+    push(body, link, force, cross(arm, force));
+    return 1;
+}
+
+// Body, link, torque, frame, connection.
+CAROM_QUICK(apply_torque) {
+    const Body& body = *call->body;
+    const double frame = in[5];
+    if (!has_link(body, in[1]) || (frame != WORLD_FRAME && frame != LINK_FRAME))
+        return 0;
+    const int64_t link = static_cast<int64_t>(in[1]);
+    Vector torque = vector_at(in + 2);
+    if (frame == LINK_FRAME)
+        torque = turned(pose_of(body, link).orientation, torque);
+    push(body, link, {0.0, 0.0, 0.0}, torque);
+    return 1;
+}
+
+// Body, position, orientation, connection.
+CAROM_QUICK(place_base) {
+    const Body& body = *call->body;
+    const Scene& scene = *call->client->scene;
+    const Lock lock(*call->client);
+    if (!lock.is_held || !scene.find_poses.function || *scene.contact_count > scene.contact_room)
+        return 0;
+    const Quaternion q = quaternion_at(in + 4);
+    const double squared = dot(q, q);
+    // A pose that was read and is written back stays the same to the last digit.
+    const double scale = __builtin_fabs(squared - 1.0) < ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
+    for (int i = 0; i < SPATIAL; ++i)
+        body.velocity[i] = 0.0;
+    put(put(body.position, vector_at(in + 1)), Quaternion{q.x * scale, q.y * scale, q.z * scale, q.w * scale});
+    for (int32_t i = 0; i < *scene.contact_count; ++i)
+        scene.contact_impulses[4 * i + 3] = 0.0;
+    run(scene.find_poses, body.tree);
+    return 1;
+}
+
+// Body, linear velocity, angular velocity, connection.
+CAROM_QUICK(set_base_velocity) {
+    const Body& body = *call->body;
+    const Scene& scene = *call->client->scene;
+    if (!is_given(in[1]) && !is_given(in[4]))
+        return 0;
+    const Lock lock(*call->client);
+    if (!lock.is_held || !scene.find_poses.function)
+        return 0;
+    if (is_given(in[1]))
+        put(body.velocity + 3, vector_at(in + 1));
+    if (is_given(in[4]))
+        put(body.velocity, vector_at(in + 4));
+    // PyBullet's getLinkState is up to date from here on.
+    run(scene.find_poses, body.tree);
+    return 1;
+}
+
+// Body, link, whether to find velocities, whether to find poses, connection.
+CAROM_QUICK(link_state) {
+    const Body& body = *call->body;
+    const Scene& scene = *call->client->scene;
+    const bool with_velocity = in[2] != 0.0, with_poses = in[3] != 0.0;
+    if (!body.links || !(0.0 <= in[1] && in[1] < body.link_count))
+        return 0;
+    if ((with_velocity && !scene.find_twists.function) || (with_poses && !scene.find_poses.function))
+        return 0;
+    const int64_t index = static_cast<int64_t>(in[1]);
+    if (with_poses)
+        run(scene.find_poses, body.tree);
+    if (with_velocity)
+        run(scene.find_twists, body.tree);
+    const Link& link = body.links[index];
+    const Pose pose = pose_of(body, index);
+    out = put(put(out, pose.position), pose.orientation);
+    for (int i = 0; i < POSE; ++i)
+        *out++ = link.inertial_frame[i];
+    out = put(out, pose.position + turned(pose.orientation, vector_at(link.from_inertial_frame)));
+    const Quaternion turn = quaternion_at(link.from_inertial_frame + 3);
+    out = put(out, link.is_turned ? canonical(pose.orientation * turn) : pose.orientation);
+    if (!with_velocity)
+        return 6;
+    const double* twist = body.twist + (index + 1) * SPATIAL;
+    put(put(out, vector_at(twist)), vector_at(twist + 3));
+    return 8;
+}
