@@ -32,9 +32,15 @@ quaternions = st.lists(numbers, min_size=4, max_size=4).filter(lambda q: sum(x *
 ARGUMENTS: dict[str, st.SearchStrategy[Any]] = {
     "3": vectors, "4": quaternions, "q": quaternions, "r": numbers, "i": st.integers(-1, 2),
     "b": st.integers(0, 1), "c": st.just(0), "-": st.just(0),
+    "s": st.one_of(
+        st.lists(st.integers(-1, 7)), st.lists(st.integers(0, 6)).map(tuple), st.just(range(7))
+    ),
 }  # fmt: skip
 MATHS = [name for name, (_, kinds, _) in quick._KERNELS.items() if "c" not in kinds]
-READING = ["getBasePositionAndOrientation", "getBaseVelocity", "getLinkState"]
+READING = [
+    *("getBasePositionAndOrientation", "getBaseVelocity", "getLinkState", "getLinkStates"),
+    "getContactPoints",
+]
 WRITING = [name for name in quick._KERNELS if name not in (*MATHS, *READING)]
 
 
@@ -54,6 +60,7 @@ def _scene(client: int) -> None:
     p.loadURDF(f"{pybullet_data.getDataPath()}/kuka_iiwa/model.urdf", physicsClientId=client)
     box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
     p.createMultiBody(1.0, box, basePosition=[2, 0, 3], physicsClientId=client)
+    p.createMultiBody(0.0, box, basePosition=[2, 0, 2.805], physicsClientId=client)
     for _ in range(3):
         p.stepSimulation(client)
 
@@ -126,10 +133,13 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "getBasePositionAndOrientation": (1,),
     "getBaseVelocity": (1,),
     "getLinkState": (0, 3, 1, 1),
+    "getLinkStates": (0, [3, 1], 1, 1),
+    "getContactPoints": (1,),
     "applyExternalForce": (0, 3, [1, 2, 3], [0, 0, 1], p.LINK_FRAME),
     "applyExternalTorque": (0, -1, [1, 2, 3], p.WORLD_FRAME),
     "resetBasePositionAndOrientation": (1, [1, 2, 3], [0, 0, 0.6, 0.8]),
     "resetBaseVelocity": (1, [1, 2, 3], None),
+    "resetJointState": (0, 3, 0.5),
 }
 
 
@@ -227,7 +237,7 @@ def test_no_call_keeps_or_loses_what_it_is_given(name: str, one: int) -> None:
 
 def test_bodies_that_move_in_memory_are_found_again(one: int) -> None:
     for number in range(40):
-        p.createMultiBody(1.0, basePosition=[number, 0, 0], physicsClientId=one)
+        p.createMultiBody(1.0, basePosition=[number, 0, 9], physicsClientId=one)
         for body in range(p.getNumBodies(one)):
             for name in READING[:2]:
                 assert getattr(p, name)(body, one) == _in_python(name)(body, one)
@@ -236,7 +246,7 @@ def test_bodies_that_move_in_memory_are_found_again(one: int) -> None:
         with pytest.raises(p.error):
             p.getBasePositionAndOrientation(body, one)
         position = p.getBasePositionAndOrientation(20, one)[0]
-        assert position == (18.0, 0.0, 0.0)
+        assert position == (17.0, 0.0, 9.0)
     p.resetSimulation(physicsClientId=one)
     with pytest.raises(p.error):
         p.getBasePositionAndOrientation(20, one)

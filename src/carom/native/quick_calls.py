@@ -22,6 +22,15 @@ MOST_PARAMETERS = 16
 MOST_GROUPS = 8
 
 
+REPORT_SCALARS = ("count", "body_a", "link_a", "body_b", "link_b", "time_step")
+"""What the kernel that lists contacts is asked, as it calls it."""
+REPORT_ARRAYS = (
+    *("count", "body_a", "body_b", "link_a", "link_b", "point_a", "point_b", "normal", "distance"),
+    *("force", "force1", "force2", "direction1", "direction2"),
+)
+"""What it finds: fields of `ContactReport`, without the word for their axis."""
+
+
 class Launch(ctypes.Structure):
     """A kernel that is asked about one tree."""
 
@@ -30,6 +39,20 @@ class Launch(ctypes.Structure):
         ("bounds", ctypes.c_void_p),
         ("arguments", ctypes.c_void_p),
         ("tree", ctypes.c_void_p),
+    )
+
+
+class ContactReport(ctypes.Structure):
+    """The kernel that lists contacts, what it is asked and what it finds."""
+
+    _fields_ = (
+        ("function", ctypes.c_void_p),
+        ("bounds", ctypes.c_void_p),
+        ("arguments", ctypes.c_void_p),
+        *((f"asked_{name}", ctypes.c_void_p) for name in REPORT_SCALARS),
+        ("there", ctypes.c_void_p),
+        ("room", ctypes.c_int64),
+        *((f"found_{name}", ctypes.c_void_p) for name in REPORT_ARRAYS),
     )
 
 
@@ -42,6 +65,7 @@ class Scene(ctypes.Structure):
         ("contact_count", ctypes.c_void_p),
         ("contact_impulses", ctypes.c_void_p),
         ("contact_room", ctypes.c_int64),
+        ("report", ContactReport),
     )
 
 
@@ -55,6 +79,12 @@ class Link(ctypes.Structure):
     )
 
 
+class Joint(ctypes.Structure):
+    """Where the coordinates of a joint of one freedom are among those of its body; -1 for other joints."""
+
+    _fields_ = (("position", ctypes.c_int32), ("velocity", ctypes.c_int32))
+
+
 class Body(ctypes.Structure):
     """Where the state of a body is; its links are null as long as nobody has asked for one."""
 
@@ -65,6 +95,7 @@ class Body(ctypes.Structure):
         ("twist", ctypes.c_void_p),
         ("wrench", ctypes.c_void_p),
         ("links", ctypes.c_void_p),
+        ("joints", ctypes.c_void_p),
         ("link_count", ctypes.c_int64),
         ("tree", ctypes.c_int64),
     )
@@ -80,6 +111,8 @@ class Client(ctypes.Structure):
         ("acquire", ctypes.c_void_p),
         ("release", ctypes.c_void_p),
         ("without_waiting", ctypes.c_void_p),
+        ("connection", ctypes.c_void_p),
+        ("time_step_name", ctypes.c_void_p),
     )
 
 
@@ -95,6 +128,7 @@ class _Parameter(ctypes.Structure):
 class _QuickCall(ctypes.Structure):
     _fields_ = (
         ("kernel", ctypes.c_void_p),
+        ("maker", ctypes.c_void_p),
         ("parameter_count", ctypes.c_int64),
         ("parameters", _Parameter * MOST_PARAMETERS),
         ("groups", ctypes.c_int32 * (MOST_GROUPS + 1)),
@@ -109,7 +143,7 @@ class Parameter:
     Attributes:
         name: Its name, interned, as names of parameters are.
         kind: A letter: `i` integer, `r` number, `3` and `4` so many numbers, `q` quaternion that has a
-            direction, `b` number of a body, `c` of a connection, `-` not used.
+            direction, `s` list, tuple or range, `b` number of a body, `c` of a connection, `-` not used.
         missing: Its numbers where it is left out; NaN for None. None if it has to be there.
     """
 
@@ -142,17 +176,25 @@ class QuickCalls:
         self._kept: list[Any] = []
         self._made = 0
 
-    def add(self, kernel: str, parameters: Sequence[Parameter], groups: Sequence[int], *, flat: bool) -> int:
+    def add(
+        self, kernel: str, parameters: Sequence[Parameter], groups: Sequence[int] | None, *, flat: bool
+    ) -> int:
         """The address of the C code of a builtin that tries a kernel first.
 
         Args:
             kernel: Its name in the library, without the prefix.
             parameters: Those of the Python function, in order.
             groups: Lengths of the tuples in the result, 0 for numbers among them; none for a result of None.
+                None if the kernel makes the result.
             flat: The result is its one group.
         """
         made = self._calls[self._made]
-        made.kernel = ctypes.cast(self._symbols[f"carom_{kernel}"], ctypes.c_void_p)
+        function = ctypes.cast(self._symbols[f"carom_{kernel}"], ctypes.c_void_p)
+        if groups is None:
+            made.maker = function
+        else:
+            made.kernel = function
+            made.groups[: len(groups) + 1] = [*groups, -1]
         made.parameter_count = len(parameters)
         for parameter, given in zip(made.parameters, parameters, strict=False):
             self._kept.append(given.name)
@@ -160,7 +202,6 @@ class QuickCalls:
             parameter.kind = ord(given.kind)
             parameter.is_required = given.missing is None
             parameter.missing = given.missing or 0.0
-        made.groups[: len(groups) + 1] = [*groups, -1]
         made.is_flat = flat
         entry = self._symbols.carom_quick_entry
         entry.restype = ctypes.c_void_p

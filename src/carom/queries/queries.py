@@ -12,6 +12,7 @@ import numpy as np
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.engine.contact_arrays import ContactArrays
+from carom.engine.quick_scene import QuickScene
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
@@ -38,6 +39,7 @@ class Queries:
         present_poses: `World.present_poses`.
         contact_arrays: The arrays of shapes.
         pairs: Room for the intermediate results of collision detection.
+        quick: What builtins in the native library know of the world.
     """
 
     def __init__(
@@ -48,11 +50,13 @@ class Queries:
         present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         contact_arrays: ContactArrays,
         pairs: ArrayTable,
+        quick: QuickScene,
     ) -> None:
         self._structs = structs
         structs["places"] = row_map_struct(places)
         self._link_count = len(places)
         self._touch = contact_arrays
+        self._quick = quick
         self._positions = positions
         self._present_poses = present_poses
         self._all_shapes = contact_arrays.shapes
@@ -80,7 +84,7 @@ class Queries:
 
     @cached_property
     def _contacts(self) -> ContactSearch:
-        return ContactSearch(self._structs)
+        return ContactSearch(self._structs, self._touch.contacts, self._quick)
 
     @cached_property
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -15,6 +15,7 @@ from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.engine.quick_scene import QuickScene
 from carom.errors import SimulationError
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
@@ -29,7 +30,6 @@ from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
 from carom.scene.joint_constraints import JointConstraints
 from carom.scene.observers import Observer, SubstepObserver
-from carom.scene.quick_scene import QuickScene
 from carom.scene.snapshot import Layout, Snapshot, layout, return_to, take
 from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
@@ -463,6 +463,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.contact_arrays)
         self.contact_arrays.soft.write_anchors()
+        self.quick.forget_contacts()
         self._derived.queries = None
         self._made_for = self._structure()
         self.engine.update_settings(self.parameters)
@@ -522,6 +523,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
                 self.present_poses,
                 self.contact_arrays,
                 self.engine.workspace.pairs,
+                self.quick,
             )
         return self._derived.queries
 

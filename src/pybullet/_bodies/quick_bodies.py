@@ -7,20 +7,24 @@ there, so that what is out of date could only be wrong, and not somebody else's 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection
 from ctypes import Array, addressof, c_void_p
 from typing import TYPE_CHECKING, Any
 
-from carom.native.quick_calls import Body, Client, Link
+from carom.native.quick_calls import Body, Client, Joint, Link
 
 if TYPE_CHECKING:
     from carom.native.quick_calls import QuickCalls
+    from carom.scene.body import Body as Handle
     from pybullet._bodies.body_access import BodyAccess
     from pybullet._bodies.link_access import LinkAccess
     from pybullet._clients.clients import Client as Connection
 
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW = 7 * _DOUBLE, 6 * _DOUBLE
+# Names of attributes are interned.
+_TIME_STEP = sys.intern("time_step")
 _FIRST_ROOM = 16
 # Bodies of greater numbers are left to Python.
 _MOST_ROOM = 1 << 20
@@ -52,6 +56,8 @@ class QuickBodies:
             acquire=id(self._kept[1]),
             release=id(self._kept[2]),
             without_waiting=id(self._kept[3]),
+            connection=id(client),
+            time_step_name=id(_TIME_STEP),
         )
         self._clients[number] = addressof(self._record)
 
@@ -71,19 +77,21 @@ class QuickBodies:
             return
         state = body.world.arrays.state.struct()
         row = body.first_link
+        joints = _joint_records(body)
         record = Body(
             position=state.position.data + body.first_position * _DOUBLE,
             velocity=state.dof_velocity.data + body.first_velocity * _DOUBLE,
             pose=state.link_pose.data + row * _POSE_ROW,
             twist=state.link_twist.data + row * _SPATIAL_ROW,
             wrench=state.link_wrench.data + row * _SPATIAL_ROW,
+            joints=addressof(joints),
             link_count=body.joint_count,
             tree=body.rows.tree,
         )
         access.record = record
         if body.id >= len(self._places):
             self._make_room(body.id + 1)
-        self._shown[body.id] = record, access, state
+        self._shown[body.id] = record, access, state, joints
         self._places[body.id] = addressof(record)
 
     def hide(self, body_id: int) -> None:
@@ -108,6 +116,18 @@ class QuickBodies:
         self._record.bodies = addressof(places)
         self._places = places
         self._record.body_count = len(places)
+
+
+def _joint_records(body: Handle) -> Array[Joint]:
+    first, first_velocity = body.first_position, body.first_velocity
+    return (Joint * body.joint_count)(
+        *[
+            (position - first, velocity - first_velocity) if freedoms == 1 else (-1, -1)
+            for position, velocity, freedoms in zip(
+                body.position_index, body.velocity_index, body.velocity_count, strict=True
+            )
+        ]
+    )
 
 
 def link_records(links: Collection[LinkAccess]) -> Array[Link]:

@@ -15,7 +15,7 @@ from pybullet._calls.builtin import exports, vectorcall
 if TYPE_CHECKING:
     from carom.native.quick_calls import QuickCalls
 
-_KERNELS: dict[str, tuple[str, str, tuple[int, ...]]] = {
+_KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "getQuaternionFromEuler": ("quaternion_from_euler", "3-", (4,)),
     "getEulerFromQuaternion": ("euler_from_quaternion", "4-", (3,)),
     "getMatrixFromQuaternion": ("matrix_from_quaternion", "q-", (9,)),
@@ -31,13 +31,16 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "getBasePositionAndOrientation": ("base_pose", "bc", (3, 4)),
     "getBaseVelocity": ("base_velocity", "bc", (3, 3)),
     "getLinkState": ("link_state", "biiic", (3, 4, 3, 4, 3, 4, 3, 3)),
+    "getLinkStates": ("link_states", "bsiic", None),
+    "getContactPoints": ("contact_points", "iiiic", None),
     "applyExternalForce": ("apply_force", "bi33ic", ()),
     "applyExternalTorque": ("apply_torque", "bi3ic", ()),
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
     "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
+    "resetJointState": ("reset_joint", "birrc", ()),
 }
-"""Kernel, kinds of parameters and lengths of the groups of results, by the name of the function. What the
-letters mean is in `carom.native.quick_calls.Parameter`."""
+"""Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the
+result), by the name of the function. What the letters mean is in `carom.native.quick_calls.Parameter`."""
 
 
 class _Installed:
@@ -83,7 +86,7 @@ def pause(*, paused: bool) -> None:
             _Installed.calls.is_paused.value = paused
 
 
-def _install(calls: QuickCalls, name: str, kernel: str, kinds: str, groups: tuple[int, ...]) -> None:
+def _install(calls: QuickCalls, name: str, kernel: str, kinds: str, groups: tuple[int, ...] | None) -> None:
     from carom.native.quick_calls import Parameter
 
     export = exports[name]
@@ -93,4 +96,6 @@ def _install(calls: QuickCalls, name: str, kernel: str, kinds: str, groups: tupl
     required = len(names) - len(defaults)
     missing = [None] * required + [nan if value is None else float(value) for value in defaults]
     parameters = [Parameter(*parts) for parts in zip(names, kinds, missing, strict=True)]
-    export.definition.code = calls.add(kernel, parameters, groups, flat=len(groups) == 1)
+    export.definition.code = calls.add(
+        kernel, parameters, groups, flat=groups is not None and len(groups) == 1
+    )

@@ -10,6 +10,8 @@ namespace {
 
 enum { WORLD_FRAME = 2, LINK_FRAME = 1 };
 enum { POSE = 7, SPATIAL = 6 };
+// Numbers of the state of a link, and links that are asked for at once; more are left to Python.
+enum { LINK_NUMBERS = 3 * POSE + SPATIAL, MOST_LINKS = 32 };
 
 const double ROUNDING = 1e-15;  // of the squared length of a unit quaternion
 
@@ -128,20 +130,55 @@ CAROM_QUICK(set_base_velocity) {
     return 1;
 }
 
-// Body, link, whether to find velocities, whether to find poses, connection.
-CAROM_QUICK(link_state) {
+// Body, joint, position, velocity, connection.
+CAROM_QUICK(reset_joint) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
-    const bool with_velocity = in[2] != 0.0, with_poses = in[3] != 0.0;
-    if (!body.links || !(0.0 <= in[1] && in[1] < body.link_count))
+    if (!(0.0 <= in[1] && in[1] < body.link_count))
         return 0;
-    if ((with_velocity && !scene.find_twists.function) || (with_poses && !scene.find_poses.function))
+    const Joint joint = body.joints[static_cast<int64_t>(in[1])];
+    const Lock lock(*call->client);
+    if (!lock.is_held || !scene.find_poses.function || joint.position < 0)
         return 0;
-    const int64_t index = static_cast<int64_t>(in[1]);
+    body.position[joint.position] = in[2];
+    body.velocity[joint.velocity] = in[3];
+    run(scene.find_poses, body.tree);
+    return 1;
+}
+
+namespace {
+
+// Brings up to date what links are asked for; false if it is not known how.
+bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
+    const Body& body = *call.body;
+    const Scene& scene = *call.client->scene;
+    if (!body.links || (with_velocity && !scene.find_twists.function) || (with_poses && !scene.find_poses.function))
+        return false;
     if (with_poses)
         run(scene.find_poses, body.tree);
     if (with_velocity)
         run(scene.find_twists, body.tree);
+    return true;
+}
+
+// A tuple of three numbers, of four, of three, and so on, but for velocities, which are three numbers each.
+PyObject* tuple_of_poses(const double* numbers, int count) {
+    PyObject* tuple = python.PyTuple_New(count);
+    for (int i = 0; tuple && i < count; ++i) {
+        const int length = i % 2 && i < 6 ? 4 : 3;
+        PyObject* group = tuple_of(numbers, length);
+        if (!group) {
+            python.Py_DecRef(tuple);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(tuple, i, group);
+        numbers += length;
+    }
+    return tuple;
+}
+
+// Writes the groups of numbers that make the state of a link; returns how many there are.
+int put_link_state(double* out, const Body& body, int64_t index, bool with_velocity) {
     const Link& link = body.links[index];
     const Pose pose = pose_of(body, index);
     out = put(put(out, pose.position), pose.orientation);
@@ -155,4 +192,52 @@ CAROM_QUICK(link_state) {
     const double* twist = body.twist + (index + 1) * SPATIAL;
     put(put(out, vector_at(twist)), vector_at(twist + 3));
     return 8;
+}
+
+}  // namespace
+
+// Body, link, whether to find velocities, whether to find poses, connection.
+CAROM_QUICK(link_state) {
+    const Body& body = *call->body;
+    const bool with_velocity = in[2] != 0.0;
+    if (!(0.0 <= in[1] && in[1] < body.link_count) || !prepare_links(*call, with_velocity, in[3] != 0.0))
+        return 0;
+    return put_link_state(out, body, static_cast<int64_t>(in[1]), with_velocity);
+}
+
+// Body, whether to find velocities, whether to find poses, connection; a sequence of links.
+extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call* call) {
+    const Body& body = *call->body;
+    const bool with_velocity = in[1] != 0.0;
+    double numbers[MOST_LINKS][LINK_NUMBERS];
+    int64_t links[MOST_LINKS];
+    const intptr_t count = python.PySequence_Size(call->sequence);
+    if (count > MOST_LINKS)
+        return nullptr;
+    for (intptr_t i = 0; i < count; ++i) {
+        PyObject* item = python.PySequence_GetItem(call->sequence, i);
+        double index = -1.0;
+        const bool well = item && read_integer(item, &index) && 0.0 <= index && index < body.link_count;
+        if (item)
+            python.Py_DecRef(item);
+        if (!well)
+            return nullptr;
+        links[i] = static_cast<int64_t>(index);
+    }
+    if (!prepare_links(*call, with_velocity, in[2] != 0.0))
+        return nullptr;
+    int groups = 0;
+    for (intptr_t i = 0; i < count; ++i)
+        groups = put_link_state(numbers[i], body, links[i], with_velocity);
+    // From here on the body may be gone: new tuples let Python collect garbage, which may do anything.
+    PyObject* states = python.PyTuple_New(count);
+    for (intptr_t i = 0; states && i < count; ++i) {
+        PyObject* state = tuple_of_poses(numbers[i], groups);
+        if (!state) {
+            python.Py_DecRef(states);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(states, i, state);
+    }
+    return states;
 }

@@ -32,6 +32,9 @@ struct PyBuffer {
     F(int, PyTuple_SetItem, (PyObject*, intptr_t, PyObject*))                         \
     F(intptr_t, PyList_Size, (PyObject*))                                             \
     F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                               \
+    F(intptr_t, PySequence_Size, (PyObject*))                                         \
+    F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))                           \
+    F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))                            \
     F(PyObject*, PyFloat_FromDouble, (double))                                        \
     F(double, PyFloat_AsDouble, (PyObject*))                                          \
     F(PyObject*, PyLong_FromLong, (long))                                             \
@@ -48,7 +51,7 @@ struct PyBuffer {
 // Objects that are there once.
 #define CAROM_PYTHON_OBJECTS(F) F(None) F(True) F(False)
 // Types, of which instances have exactly this one.
-#define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(ndarray) F(float64)
+#define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(range) F(ndarray) F(float64)
 
 struct Python {
 #define F(result, name, arguments) result(*name) arguments;

@@ -31,6 +31,7 @@ struct Parameter {
 
 struct QuickCall {
     Kernel kernel;
+    Maker maker;  // in the place of a kernel
     int64_t parameter_count;
     Parameter parameters[MOST_PARAMETERS];
     // Lengths of the groups of results, 0 for a number alone, and -1 after the last one.
@@ -54,10 +55,6 @@ bool read_number(PyObject* value, double* number) {
         return false;
     }
     return __builtin_fabs(*number) <= GREATEST;
-}
-
-bool read_integer(PyObject* value, double* number) {
-    return value->type == python.int_type && read_number(value, number) && __builtin_fabs(*number) <= 0x7FFFFFFF;
 }
 
 bool read_array(PyObject* value, int count, double* numbers) {
@@ -100,7 +97,7 @@ bool read_numbers(PyObject* value, int count, double* numbers) {
 }
 
 int width_of(int kind) {
-    return kind == '-' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
+    return kind == '-' || kind == 's' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
 }
 
 // Reads an argument; false if it is not of the kind.
@@ -123,6 +120,9 @@ bool read(int kind, PyObject* value, double* numbers, Call* call) {
         const double squared = x * x + y * y + z * z + w * w;
         return LEAST_SQUARE < squared && squared < GREATEST_SQUARE;
     }
+    case 's':  // a sequence
+        call->sequence = value;
+        return value->type == python.list_type || value->type == python.tuple_type || value->type == python.range_type;
     case 'b':  // the number of a body
     case 'c':  // that of a connection
         return read_integer(value, numbers);
@@ -188,19 +188,6 @@ bool read_all(
     return used == named;
 }
 
-PyObject* tuple_of(const double* numbers, int count) {
-    PyObject* tuple = python.PyTuple_New(count);
-    for (int i = 0; tuple && i < count; ++i) {
-        PyObject* number = python.PyFloat_FromDouble(numbers[i]);
-        if (!number) {
-            python.Py_DecRef(tuple);
-            return nullptr;
-        }
-        python.PyTuple_SetItem(tuple, i, number);
-    }
-    return tuple;
-}
-
 PyObject* group_of(const double* numbers, int length) {
     return length ? tuple_of(numbers, length) : python.PyFloat_FromDouble(*numbers);
 }
@@ -229,11 +216,15 @@ PyObject* answer(
     const QuickCall& made, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names
 ) {
     double numbers[MOST_NUMBERS], results[MOST_RESULTS];
-    Call call = {nullptr, nullptr};
+    Call call = {nullptr, nullptr, nullptr};
     if (read_all(made, arguments, count, names, numbers, &call) && find(made, numbers, &call)) {
-        const int groups = made.kernel(numbers, results, &call);
-        if (groups)
+        if (made.maker) {
+            PyObject* result = made.maker(numbers, &call);
+            if (result || python.PyErr_Occurred())
+                return result;
+        } else if (const int groups = made.kernel(numbers, results, &call)) {
             return result_of(made, results, groups);
+        }
     }
     return python.PyObject_Vectorcall(function, arguments, count, names);
 }
@@ -257,6 +248,23 @@ struct Entries<0> {
 };
 
 }  // namespace
+
+PyObject* tuple_of(const double* numbers, int count) {
+    PyObject* tuple = python.PyTuple_New(count);
+    for (int i = 0; tuple && i < count; ++i) {
+        PyObject* number = python.PyFloat_FromDouble(numbers[i]);
+        if (!number) {
+            python.Py_DecRef(tuple);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(tuple, i, number);
+    }
+    return tuple;
+}
+
+bool read_integer(PyObject* value, double* number) {
+    return value->type == python.int_type && read_number(value, number) && __builtin_fabs(*number) <= 0x7FFFFFFF;
+}
 
 Lock::Lock(const Client& of) : client(of) {
     PyObject* taken = python.PyObject_CallObject(client.acquire, client.without_waiting);

@@ -14,6 +14,19 @@ struct Launch {
     int32_t* tree;  // among the arguments
 };
 
+// The kernel that lists contacts, what it is asked, and where it writes what it finds.
+struct ContactReport {
+    void (*function)(void* bounds, void* arguments);
+    void* bounds;
+    void* arguments;
+    int32_t *count, *body_a, *link_a, *body_b, *link_b;
+    double* time_step;
+    const int32_t* there;  // contacts there are
+    int64_t room;          // for so many
+    const int32_t *found, *bodies_a, *bodies_b, *links_a, *links_b;
+    const double *points_a, *points_b, *normals, *distances, *forces, *forces1, *forces2, *directions1, *directions2;
+};
+
 // What follows from bodies and arrays of a world; where it is not known, functions are null.
 struct Scene {
     Launch find_poses;
@@ -21,12 +34,17 @@ struct Scene {
     int32_t* contact_count;
     double* contact_impulses;  // four for each contact, the last of which is where the solver starts
     int64_t contact_room;      // for so many contacts
+    ContactReport report;
 };
 
 struct Link {
     double inertial_frame[7];       // in the link frame
     double from_inertial_frame[7];  // the link frame in the inertial frame
     int64_t is_turned;              // the axes of these differ
+};
+
+struct Joint {
+    int32_t position, velocity;  // places among those of the body; -1 for all but joints of one freedom
 };
 
 struct Body {
@@ -36,6 +54,7 @@ struct Body {
     double* twist;     // linear and angular velocity of each
     double* wrench;    // force and torque on each in the next step
     Link* links;       // but for the base; null where nobody has asked yet
+    const Joint* joints;
     int64_t link_count;
     int64_t tree;
 };
@@ -46,17 +65,30 @@ struct Client {
     int64_t body_count;
     // Of the lock that is held while the world changes, and arguments for the former.
     PyObject *acquire, *release, *without_waiting;
+    // What has the duration of a step as an attribute of a name.
+    PyObject *connection, *time_step_name;
 };
 
 struct Call {
     const Client* client;
     const Body* body;
+    PyObject* sequence;  // a list, a tuple or a range among the arguments
 };
 
 // Works out a call. Numbers are the arguments in their order, those left out NaN if they have no default.
 // Returns 0 if Python has to see to the call, and nothing has been done; or else how many groups of results
 // there are.
 typedef int (*Kernel)(const double* numbers, double* results, const Call* call);
+
+// The same for results that are not so many numbers. Returns null where Python has to see to the call; then no error
+// is set, unless memory is short. What it reads of the world it reads before it makes the first object: that lets
+// Python collect garbage, which may do anything.
+typedef PyObject* (*Maker)(const double* numbers, const Call* call);
+
+PyObject* tuple_of(const double* numbers, int count);
+
+// Reads an integer of 32 bits as Python has them; false if it is none.
+bool read_integer(PyObject* value, double* number);
 
 // Takes the lock of a client for as long as this lives, if nobody else has it.
 struct Lock {

@@ -5,11 +5,12 @@ from __future__ import annotations
 from ctypes import addressof
 from typing import TYPE_CHECKING, Any
 
-from carom.native.quick_calls import Launch, Scene
+from carom.native.quick_calls import REPORT_ARRAYS, REPORT_SCALARS, Launch, Scene
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
     from carom.native.launch import TreeLaunch
+    from carom.queries.question import Question
 
 
 class QuickScene:
@@ -30,7 +31,12 @@ class QuickScene:
         """Forget all addresses: the world has changed."""
         self.record.find_poses.function = None
         self.record.find_twists.function = None
+        self.forget_contacts()
         self._kept.clear()
+
+    def forget_contacts(self) -> None:
+        """Forget what lists contacts: it is about to be made anew."""
+        self.record.report.function = None
 
     def know_poses(self, launch: TreeLaunch, contact_arrays: ContactArrays) -> None:
         """Take what brings the link poses of a body up to date, and where contacts are."""
@@ -45,6 +51,27 @@ class QuickScene:
         """Take what brings the link velocities of a body up to date."""
         self._kept.append(launch)
         _know(self.record.find_twists, launch)
+
+    def know_contacts(self, question: Question, there: int, keep: Any) -> None:
+        """Take what lists contacts.
+
+        Args:
+            question: The question, whose arrays are a `ContactReport`.
+            there: Address of how many contacts there are.
+            keep: What this address points to.
+        """
+        report = question.arrays.struct()
+        launch = question.launch
+        self._kept += (launch, report, keep)
+        record = self.record.report
+        # The function last: without it nothing else is looked at.
+        function, record.bounds, record.arguments, *asked = launch.addresses(*REPORT_SCALARS)
+        for name, address in zip(REPORT_SCALARS, asked, strict=True):
+            setattr(record, f"asked_{name}", address)
+        for name in REPORT_ARRAYS:
+            setattr(record, f"found_{name}", getattr(report, f"report_{name}").data)
+        record.there, record.room = there, question.room
+        record.function = function
 
     @property
     def address(self) -> int:
