@@ -20,6 +20,8 @@ from tests.fuzz.values import spoiled
 
 import pybullet as p
 import pybullet_data
+from carom.native.quick_calls import DAMPING as OF_BODY
+from carom.native.quick_calls import SURFACE
 from pybullet._calls import quick
 from pybullet._calls.builtin import exports
 from pybullet._clients.clients import clients
@@ -139,6 +141,7 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "applyExternalTorque": (0, -1, [1, 2, 3], p.WORLD_FRAME),
     "resetBasePositionAndOrientation": (1, [1, 2, 3], [0, 0, 0.6, 0.8]),
     "resetBaseVelocity": (1, [1, 2, 3], None),
+    "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
     "resetJointState": (0, 3, 0.5),
 }
 
@@ -201,6 +204,50 @@ def test_odd_arguments_meet_what_they_meet_in_python(name: str, two: tuple[int, 
         first_outcome, second_outcome = (str(outcome).split(" object at 0x")[0] for outcome in outcomes)
         assert first_outcome == second_outcome
     assert _state(first) == _state(second)
+
+
+FRICTION = ["lateralFriction", "spinningFriction", "rollingFriction", "restitution"]
+SOFTNESS = ["contactStiffness", "contactDamping"]
+DAMPING = ["linearDamping", "angularDamping"]
+
+
+def _dynamics(client: int) -> list[Any]:
+    world = clients[client].world
+    shapes, model = world.contact_arrays.shapes.table.numpy, world.arrays.model.numpy
+    surfaces = [shapes[field].tobytes() for field in SURFACE.values()]
+    infos = [p.getDynamicsInfo(0, link, client) for link in range(-1, 7)]
+    return [infos, surfaces, [model[field].tobytes() for field in OF_BODY]]
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.integers(-2, 7),
+    st.dictionaries(st.sampled_from(FRICTION), st.floats(-1.0, 2.0)),
+    st.dictionaries(st.sampled_from(SOFTNESS), st.floats(-1.0, 1e4)),
+    st.dictionaries(st.sampled_from(DAMPING), st.floats(-1.0, 1.0)),
+    st.dictionaries(st.sampled_from(["jointDamping", "mass", "frictionAnchor"]), st.integers(0, 1)),
+    st.integers(0, 3),
+)
+def test_dynamics_are_changed_as_python_changes_them(
+    two: tuple[int, int],
+    link: int,
+    friction: dict[str, float],
+    softness: dict[str, float],
+    damping: dict[str, float],
+    others: dict[str, float],
+    which: int,
+) -> None:
+    changes = [friction | softness, damping, friction | damping, friction | others][which]
+    first, second = two
+    ours = _outcome(p.changeDynamics, 0, link, **changes, physicsClientId=first)
+    assert ours == _outcome(_in_python("changeDynamics"), 0, link, **changes, physicsClientId=second)
+    assert _dynamics(first) == _dynamics(second)
+
+
+def test_friction_and_damping_need_no_python(one: int) -> None:
+    p.resetBaseVelocity(1, [0, 0, 0], physicsClientId=one)
+    for changes in ({"lateralFriction": 0.5, "restitution": 1}, {"linearDamping": 0.0, "angularDamping": 0}):
+        assert _takes_no_python("changeDynamics", 1, -1, **changes, physicsClientId=one)
 
 
 class _Rude(float):

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from ctypes import addressof
+from sys import intern
 from typing import TYPE_CHECKING, Any
 
-from carom.native.quick_calls import REPORT_ARRAYS, REPORT_SCALARS, Launch, Scene
+from carom.native.quick_calls import DAMPING, REPORT_ARRAYS, REPORT_SCALARS, SURFACE, Launch, Scene
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
+    from carom.model.builder import WorldArrays
     from carom.native.launch import TreeLaunch
     from carom.queries.question import Question
+
+
+# Names of attributes are interned.
+_NAMES = [intern(name) for name in SURFACE]
 
 
 class QuickScene:
@@ -38,10 +44,14 @@ class QuickScene:
         """Forget what lists contacts: it is about to be made anew."""
         self.record.report.function = None
 
-    def know_poses(self, launch: TreeLaunch, contact_arrays: ContactArrays) -> None:
-        """Take what brings the link poses of a body up to date, and where contacts are."""
-        contacts = contact_arrays.contacts.struct()
-        self._kept += (launch, contacts)
+    def know_poses(self, launch: TreeLaunch, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
+        """Take what brings the link poses of a body up to date, and where contacts and surfaces are."""
+        contacts, shapes = contact_arrays.contacts.struct(), contact_arrays.shapes.table.struct()
+        model = arrays.model.struct()
+        self._kept += (launch, contacts, shapes, model)
+        self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
+        self.record.surface_names[:] = [id(name) for name in _NAMES]
+        self.record.damping[:] = [getattr(model, field).data for field in DAMPING]
         self.record.contact_count = contacts.count_contacts.data
         self.record.contact_impulses = contacts.contact_impulse.data
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]

@@ -18,7 +18,7 @@ from typing import Any
 
 from carom.native.library import library
 
-MOST_PARAMETERS = 16
+MOST_PARAMETERS = 26
 MOST_GROUPS = 8
 
 
@@ -29,6 +29,19 @@ REPORT_ARRAYS = (
     *("force", "force1", "force2", "direction1", "direction2"),
 )
 """What it finds: fields of `ContactReport`, without the word for their axis."""
+
+
+SURFACE = {
+    "lateral_friction": "link_lateral_friction",
+    "spinning_friction": "link_spinning_friction",
+    "rolling_friction": "link_rolling_friction",
+    "restitution": "link_restitution",
+    "contact_stiffness": "link_stiffness",
+    "contact_damping": "link_contact_damping",
+}
+"""Fields of `LinkDynamics` that quick calls change, and those of `Shapes` that are the same."""
+DAMPING = ("tree_linear_damping", "tree_angular_damping")
+"""Fields of `Model` that they change."""
 
 
 class Launch(ctypes.Structure):
@@ -65,6 +78,9 @@ class Scene(ctypes.Structure):
         ("contact_count", ctypes.c_void_p),
         ("contact_impulses", ctypes.c_void_p),
         ("contact_room", ctypes.c_int64),
+        ("surface", ctypes.c_void_p * len(SURFACE)),
+        ("surface_names", ctypes.c_void_p * len(SURFACE)),
+        ("damping", ctypes.c_void_p * len(DAMPING)),
         ("report", ContactReport),
     )
 
@@ -98,6 +114,8 @@ class Body(ctypes.Structure):
         ("joints", ctypes.c_void_p),
         ("link_count", ctypes.c_int64),
         ("tree", ctypes.c_int64),
+        ("first_link", ctypes.c_int64),
+        ("dynamics", ctypes.c_void_p),
     )
 
 

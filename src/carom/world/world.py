@@ -561,10 +561,18 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
+        (self._derived.pose_launch or self.be_quick())(body.rows.tree)
+
+    def be_quick(self) -> TreeLaunch:
+        """Let builtins in the native library know where things are again, after a change of the scene.
+
+        Returns:
+            What brings the link poses of a body up to date.
+        """
         if self._derived.pose_launch is None:
             self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
-            self.quick.know_poses(self._derived.pose_launch, self.contact_arrays)
-        self._derived.pose_launch(body.rows.tree)
+            self.quick.know_poses(self._derived.pose_launch, self.arrays, self.contact_arrays)
+        return self._derived.pose_launch
 
     def update_soft_poses(self) -> None:
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""

@@ -233,6 +233,9 @@ def changeDynamics(
             client.bodies.forget(body.id)
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
+        # Loops that do this before every step pay for it once.
+        client.bodies[body.id]
+        client.world.be_quick()
 
 
 @exported

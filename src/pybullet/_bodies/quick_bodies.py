@@ -87,11 +87,13 @@ class QuickBodies:
             joints=addressof(joints),
             link_count=body.joint_count,
             tree=body.rows.tree,
+            first_link=row,
+            dynamics=id(body.all_dynamics),
         )
         access.record = record
         if body.id >= len(self._places):
             self._make_room(body.id + 1)
-        self._shown[body.id] = record, access, state, joints
+        self._shown[body.id] = record, access, state, joints, body.all_dynamics
         self._places[body.id] = addressof(record)
 
     def hide(self, body_id: int) -> None:

@@ -37,6 +37,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "applyExternalTorque": ("apply_torque", "bi3ic", ()),
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
     "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
+    "changeDynamics": ("change_surface", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),
 }
 """Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the

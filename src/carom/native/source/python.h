@@ -35,6 +35,7 @@ struct PyBuffer {
     F(intptr_t, PySequence_Size, (PyObject*))                                         \
     F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))                           \
     F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))                            \
+    F(int, PyObject_SetAttr, (PyObject*, PyObject*, PyObject*))                       \
     F(PyObject*, PyFloat_FromDouble, (double))                                        \
     F(double, PyFloat_AsDouble, (PyObject*))                                          \
     F(PyObject*, PyLong_FromLong, (long))                                             \

@@ -16,7 +16,7 @@ extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused;
 
 namespace {
 
-enum { MOST_CALLS = 48, MOST_PARAMETERS = 16, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8, MOST_CLIENTS = 1024 };
+enum { MOST_CALLS = 48, MOST_PARAMETERS = 26, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8, MOST_CLIENTS = 1024 };
 enum { RECORDS = 0x1C };  // PyBUF_RECORDS_RO
 
 // What is greater is refused, or looked at more closely, by Python.

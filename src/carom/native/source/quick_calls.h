@@ -34,6 +34,9 @@ struct Scene {
     int32_t* contact_count;
     double* contact_impulses;  // four for each contact, the last of which is where the solver starts
     int64_t contact_room;      // for so many contacts
+    double* surface[6];  // by row of link: friction, restitution, softness; see `surfaces.cpp`
+    PyObject* surface_names[6];
+    double* damping[2];  // by row of tree
     ContactReport report;
 };
 
@@ -57,6 +60,8 @@ struct Body {
     const Joint* joints;
     int64_t link_count;
     int64_t tree;
+    int64_t first_link;
+    PyObject* dynamics;  // a list with what the host keeps of the links, the base's first
 };
 
 struct Client {
