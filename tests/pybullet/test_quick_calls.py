@@ -41,7 +41,7 @@ ARGUMENTS: dict[str, st.SearchStrategy[Any]] = {
 MATHS = [name for name, (_, kinds, _) in quick._KERNELS.items() if "c" not in kinds]
 READING = [
     *("getBasePositionAndOrientation", "getBaseVelocity", "getLinkState", "getLinkStates"),
-    "getContactPoints",
+    *("getContactPoints", "getClosestPoints", "getOverlappingObjects"),
 ]
 WRITING = [name for name in quick._KERNELS if name not in (*MATHS, *READING)]
 
@@ -137,6 +137,8 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "getLinkState": (0, 3, 1, 1),
     "getLinkStates": (0, [3, 1], 1, 1),
     "getContactPoints": (1,),
+    "getClosestPoints": (0, 1, 10.0),
+    "getOverlappingObjects": ([-9, -9, -9], [9, 9, 9]),
     "applyExternalForce": (0, 3, [1, 2, 3], [0, 0, 1], p.LINK_FRAME),
     "applyExternalTorque": (0, -1, [1, 2, 3], p.WORLD_FRAME),
     "resetBasePositionAndOrientation": (1, [1, 2, 3], [0, 0, 0.6, 0.8]),

@@ -37,12 +37,15 @@ class QuickScene:
         """Forget all addresses: the world has changed."""
         self.record.find_poses.function = None
         self.record.find_twists.function = None
-        self.forget_contacts()
+        self.forget_queries()
         self._kept.clear()
 
-    def forget_contacts(self) -> None:
-        """Forget what lists contacts: it is about to be made anew."""
+    def forget_queries(self) -> None:
+        """Forget what answers questions about contacts and shapes: it is about to be made anew."""
         self.record.report.function = None
+        self.record.placement.place.function = None
+        self.record.placement.changes = -1
+        self.record.nearest.search.function = None
 
     def know_poses(self, launch: TreeLaunch, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Take what brings the link poses of a body up to date, and where contacts and surfaces are."""
@@ -61,6 +64,10 @@ class QuickScene:
         """Take what brings the link velocities of a body up to date."""
         self._kept.append(launch)
         _know(self.record.find_twists, launch)
+
+    def keep(self, *what: Any) -> None:
+        """Keep what addresses in the record point to, until they are forgotten."""
+        self._kept += what
 
     def know_contacts(self, question: Question, there: int, keep: Any) -> None:
         """Take what lists contacts.

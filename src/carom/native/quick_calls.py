@@ -69,6 +69,46 @@ class ContactReport(ctypes.Structure):
     )
 
 
+class KernelCall(ctypes.Structure):
+    """A kernel and its arguments."""
+
+    _fields_ = tuple((name, ctypes.c_void_p) for name in ("function", "bounds", "arguments"))
+
+
+class Placement(ctypes.Structure):
+    """The shapes of all links, and what places them by the present coordinates."""
+
+    _fields_ = (
+        ("place", KernelCall),
+        ("find_poses", KernelCall),
+        ("positions", ctypes.c_void_p),
+        ("placed_at", ctypes.c_void_p),
+        ("position_count", ctypes.c_int64),
+        ("poses", ctypes.c_void_p),
+        ("poses_before", ctypes.c_void_p),
+        ("pose_count", ctypes.c_int64),
+        ("readiness", ctypes.c_void_p),
+        ("shapes", ctypes.c_void_p),
+        ("changes_name", ctypes.c_void_p),
+        ("changes", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("lower", "upper", "kind", "link")),
+        ("shape_count", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("first_shape", "link_shapes", "place_body", "place_link")),
+        ("has_bare_links", ctypes.c_int64),
+    )
+
+
+class PairSearch(ctypes.Structure):
+    """The kernel that finds nearest points, what it is asked and what it finds."""
+
+    _fields_ = (
+        ("search", KernelCall),
+        *((name, ctypes.c_void_p) for name in ("count", "max_distance", "first", "second")),
+        ("room", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("found", "pairs", "points")),
+    )
+
+
 class Scene(ctypes.Structure):
     """What follows from the bodies and arrays of a world."""
 
@@ -82,6 +122,8 @@ class Scene(ctypes.Structure):
         ("surface_names", ctypes.c_void_p * len(SURFACE)),
         ("damping", ctypes.c_void_p * len(DAMPING)),
         ("report", ContactReport),
+        ("placement", Placement),
+        ("nearest", PairSearch),
     )
 
 

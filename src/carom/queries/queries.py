@@ -17,14 +17,17 @@ from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
 from carom.model.bounds import Bounds, turned_box
-from carom.native.kernels import place_shapes_kernel, prepare_rays_kernel
+from carom.native.kernels import link_poses_kernel, place_shapes_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
+from carom.queries.quick_queries import tell_placement
 from carom.queries.ray_cast import Points, RayCast, RayHit
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
+# Of shapes that have not been placed.
+NEVER = -1
 # A distance that counts as none.
 _FAR = 1e30
 
@@ -62,10 +65,15 @@ class Queries:
         self._all_shapes = contact_arrays.shapes
         self._shape_count = contact_arrays.shapes.shape_count
         self._shapes = contact_arrays.shapes.table.numpy
+        self._pair_table = pairs
         self._pairs = pairs.numpy
         self._counts = memoryview(pairs.numpy["count_pairs"][0])
         self._contact_counts = memoryview(contact_arrays.contacts.numpy["count_contacts"][0])
-        self._ready_for: tuple[int, bytes] | None = None
+        # The coordinates for which shapes have been placed last; quick calls place them, too.
+        self._placed_at = bytearray(positions.nbytes)
+        self._placement = quick.record.placement
+        self._placement.changes = NEVER
+        self._has_asked = False
 
     @cached_property
     def _make_ready(self) -> dict[int, Launch]:
@@ -80,7 +88,7 @@ class Queries:
 
     @cached_property
     def _search(self) -> PairSearch:
-        return PairSearch(self._structs, self._touch)
+        return PairSearch(self._structs, self._touch, self._quick)
 
     @cached_property
     def _contacts(self) -> ContactSearch:
@@ -194,11 +202,35 @@ class Queries:
         What steps leave is overwritten, and the other way round; everything else that could move a shape ends
         these `Queries`.
         """
-        wanted = (self._all_shapes.changes, self._positions.tobytes())
-        if self._counts[READINESS] < readiness or wanted != self._ready_for:
+        changes, positions = self._all_shapes.changes, self._positions.tobytes()
+        if (
+            self._counts[READINESS] < readiness
+            or self._placement.changes != changes
+            or self._placed_at != positions
+        ):
             with self._present_poses():
                 self._make_ready[readiness]()
-            self._ready_for = wanted
+            self._placed_at[:] = positions
+            self._placement.changes = changes
+        # Not the first time: many ask once, and then change the scene.
+        if self._has_asked and not self._placement.place.function:
+            with self._present_poses() as poses:
+                self._tell(poses)
+        self._has_asked = True
+
+    def _tell(self, poses: memoryview[int]) -> None:
+        """Tell quick calls what places the shapes."""
+        tell_placement(
+            self._quick,
+            (self._make_ready[PLACED], self._structs.launch(link_poses_kernel, first_world=0)),
+            self._all_shapes,
+            self._pair_table,
+            (self._positions, poses),
+            self._placed_at,
+            self._structs["places"],
+            readiness=READINESS,
+            has_bare_links=bool(self._without_shapes),
+        )
 
 
 def _meet(center: float, half: float, lower: float, upper: float) -> bool:

@@ -463,7 +463,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.contact_arrays)
         self.contact_arrays.soft.write_anchors()
-        self.quick.forget_contacts()
+        self.quick.forget_queries()
         self._derived.queries = None
         self._made_for = self._structure()
         self.engine.update_settings(self.parameters)

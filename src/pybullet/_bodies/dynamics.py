@@ -233,7 +233,7 @@ def changeDynamics(
             client.bodies.forget(body.id)
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
-        # Loops that do this before every step pay for it once.
+        # So that the native library can see to it next time.
         client.bodies[body.id]
         client.world.be_quick()
 

@@ -33,6 +33,8 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "getLinkState": ("link_state", "biiic", (3, 4, 3, 4, 3, 4, 3, 3)),
     "getLinkStates": ("link_states", "bsiic", None),
     "getContactPoints": ("contact_points", "iiiic", None),
+    "getClosestPoints": ("closest_points", "biriiii----c", None),
+    "getOverlappingObjects": ("overlapping", "33c", None),
     "applyExternalForce": ("apply_force", "bi33ic", ()),
     "applyExternalTorque": ("apply_torque", "bi3ic", ()),
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),

@@ -2,36 +2,12 @@
 
 #include "export.h"
 #include "quick_calls.h"
-#include "turns.h"
+#include "rows.h"
 
 namespace {
 
 // More are found by Python, which lets other threads run meanwhile.
 enum { MOST_CONTACTS = 64 };
-
-// Fills a tuple item by item, as long as memory lasts.
-struct Row {
-    explicit Row(int length) : tuple(python.PyTuple_New(length)) {}
-
-    void add(PyObject* item) {
-        if (tuple && item) {
-            python.PyTuple_SetItem(tuple, place++, item);
-            return;
-        }
-        if (item)
-            python.Py_DecRef(item);
-        if (tuple)
-            python.Py_DecRef(tuple);
-        tuple = nullptr;
-    }
-
-    void add(long number) { add(python.PyLong_FromLong(number)); }
-    void add(double number) { add(python.PyFloat_FromDouble(number)); }
-    void add(Vector v) { add(::tuple_of(&v.x, 3)); }
-
-    PyObject* tuple;
-    int place = 0;
-};
 
 struct Contact {
     int32_t body_a, body_b, link_a, link_b;
@@ -88,15 +64,6 @@ bool read_time_step(const Client& client, double* seconds) {
     python.Py_DecRef(value);
     return well;
 }
-
-// Puts a value in the place of another for as long as this lives: the host keeps in mind what it asked last.
-template <typename T>
-struct Instead {
-    Instead(T* at, T value) : at(at), before(*at) { *at = value; }
-    ~Instead() { *at = before; }
-    T* at;
-    T before;
-};
 
 }  // namespace
 

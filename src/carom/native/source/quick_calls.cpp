@@ -147,9 +147,7 @@ bool find(const QuickCall& made, const double* numbers, Call* call) {
         numbers += width_of(kind);
     }
     if (body) {
-        if (!call->client || !(*body >= 0.0 && *body < call->client->body_count))
-            return false;
-        call->body = call->client->bodies[static_cast<int64_t>(*body)];
+        call->body = call->client ? find_body(*call->client, *body) : nullptr;
         return call->body;
     }
     return true;
@@ -260,6 +258,10 @@ PyObject* tuple_of(const double* numbers, int count) {
         python.PyTuple_SetItem(tuple, i, number);
     }
     return tuple;
+}
+
+const Body* find_body(const Client& client, double number) {
+    return number >= 0.0 && number < client.body_count ? client.bodies[static_cast<int64_t>(number)] : nullptr;
 }
 
 bool read_integer(PyObject* value, double* number) {

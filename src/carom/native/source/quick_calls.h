@@ -27,6 +27,44 @@ struct ContactReport {
     const double *points_a, *points_b, *normals, *distances, *forces, *forces1, *forces2, *directions1, *directions2;
 };
 
+struct KernelCall {
+    void (*function)(void* bounds, void* arguments);
+    void* bounds;
+    void* arguments;
+};
+
+// The shapes of all links, and what places them by the present coordinates, unless they are there already.
+struct Placement {
+    KernelCall place;  // null where nothing else is known
+    KernelCall find_poses;
+    const double* positions;  // of all bodies
+    double* placed_at;        // what these were when shapes were placed last
+    int64_t position_count;
+    double* poses;            // of all links, which are put back afterwards
+    double* poses_before;
+    int64_t pose_count;
+    const int32_t* readiness;  // less than 1 if shapes have been elsewhere since
+    PyObject *shapes, *changes_name;  // whose attribute says how often shapes have changed
+    int64_t changes;                  // what it was when they were placed last; -1 if they have not been
+    const double *lower, *upper;      // bounds of each shape
+    const int32_t *kind, *link;
+    int64_t shape_count;
+    const int32_t *first_shape, *link_shapes;  // by row of link: its run of shapes
+    const int32_t *place_body, *place_link;    // by row of link
+    int64_t has_bare_links;                    // there are links without shapes
+};
+
+// The kernel that finds nearest points, what it is asked, and where it writes what it finds.
+struct PairSearch {
+    KernelCall search;
+    int32_t* count;
+    double* max_distance;
+    int32_t *first, *second;
+    int64_t room;
+    const int32_t *found, *pairs;
+    const double* points;  // eight for each: point on the second shape, normal, distance, nothing
+};
+
 // What follows from bodies and arrays of a world; where it is not known, functions are null.
 struct Scene {
     Launch find_poses;
@@ -38,6 +76,8 @@ struct Scene {
     PyObject* surface_names[6];
     double* damping[2];  // by row of tree
     ContactReport report;
+    Placement placement;
+    PairSearch nearest;
 };
 
 struct Link {
@@ -92,8 +132,20 @@ typedef PyObject* (*Maker)(const double* numbers, const Call* call);
 
 PyObject* tuple_of(const double* numbers, int count);
 
+// A body by its number; null if there is none, or it is not known.
+const Body* find_body(const Client& client, double number);
+
 // Reads an integer of 32 bits as Python has them; false if it is none.
 bool read_integer(PyObject* value, double* number);
+
+// Puts a value in the place of another for as long as this lives: the host keeps in mind what it asked last.
+template <typename T>
+struct Instead {
+    Instead(T* at, T value) : at(at), before(*at) { *at = value; }
+    ~Instead() { *at = before; }
+    T* at;
+    T before;
+};
 
 // Takes the lock of a client for as long as this lives, if nobody else has it.
 struct Lock {
