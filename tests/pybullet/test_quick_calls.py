@@ -34,6 +34,7 @@ quaternions = st.lists(numbers, min_size=4, max_size=4).filter(lambda q: sum(x *
 ARGUMENTS: dict[str, st.SearchStrategy[Any]] = {
     "3": vectors, "4": quaternions, "q": quaternions, "r": numbers, "i": st.integers(-1, 2),
     "b": st.integers(0, 1), "c": st.just(0), "-": st.just(0),
+    "v": st.one_of(st.none(), st.lists(numbers, min_size=3, max_size=3)),
     "s": st.one_of(
         st.lists(st.integers(-1, 7)), st.lists(st.integers(0, 6)).map(tuple), st.just(range(7))
     ),
@@ -76,6 +77,8 @@ def _state(client: int) -> list[bytes]:
             world.velocity_memory,
             world.link_force_memory,
             world.link_pose_memory,
+            world.motor_memory,
+            world.joint_torque_memory,
         )
     ]
 
@@ -143,6 +146,7 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "applyExternalTorque": (0, -1, [1, 2, 3], p.WORLD_FRAME),
     "resetBasePositionAndOrientation": (1, [1, 2, 3], [0, 0, 0.6, 0.8]),
     "resetBaseVelocity": (1, [1, 2, 3], None),
+    "setJointMotorControlArray": (0, [3, 1, 2], p.POSITION_CONTROL, [0.5, 0.25, 0.125], None, (5, 6.0, 7)),
     "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
     "resetJointState": (0, 3, 0.5),
 }

@@ -143,6 +143,18 @@ class Joint(ctypes.Structure):
     _fields_ = (("position", ctypes.c_int32), ("velocity", ctypes.c_int32))
 
 
+class MotorGroup(ctypes.Structure):
+    """Joints that are commanded together, and the kernel that commands them."""
+
+    _fields_ = (
+        ("command", KernelCall),
+        *((name, ctypes.c_void_p) for name in ("mode", "given", "time_step", "refused")),
+        *((name, ctypes.c_void_p) for name in ("position", "velocity", "force", "kp", "kd")),
+        ("indices", ctypes.c_void_p),
+        ("count", ctypes.c_int64),
+    )
+
+
 class Body(ctypes.Structure):
     """Where the state of a body is; its links are null as long as nobody has asked for one."""
 
@@ -154,6 +166,7 @@ class Body(ctypes.Structure):
         ("wrench", ctypes.c_void_p),
         ("links", ctypes.c_void_p),
         ("joints", ctypes.c_void_p),
+        ("motors", ctypes.c_void_p),
         ("link_count", ctypes.c_int64),
         ("tree", ctypes.c_int64),
         ("first_link", ctypes.c_int64),
@@ -203,7 +216,8 @@ class Parameter:
     Attributes:
         name: Its name, interned, as names of parameters are.
         kind: A letter: `i` integer, `r` number, `3` and `4` so many numbers, `q` quaternion that has a
-            direction, `s` list, tuple or range, `b` number of a body, `c` of a connection, `-` not used.
+            direction, `s` list, tuple or range, `v` any number of numbers or None, `b` number of a
+            body, `c` of a connection, `-` not used.
         missing: Its numbers where it is left out; NaN for None. None if it has to be there.
     """
 

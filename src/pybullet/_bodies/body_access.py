@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Quaternion, Vector3
 from pybullet._bodies.link_access import LinkAccess
 from pybullet._joints.joint_access import JointAccess, joint_access
-from pybullet._joints.joint_groups import JointGroups
+from pybullet._joints.joint_groups import JointGroup, JointGroups
 from pybullet._joints.joint_info import JointInfo, joint_info
 from pybullet._maths.rotations import canonical
 
@@ -63,6 +63,14 @@ class BodyAccess:
             self._link_records = link_records(links.values())
             self.record.links = addressof(self._link_records)
         return links
+
+    def commanded(self, group: JointGroup) -> None:
+        """Lets the native library see to the next commands to joints that have been commanded together."""
+        if self.record is not None and group.record is not None:
+            # What the library sees is there as long as it sees it.
+            self.record.motors = None
+            self._group = group
+            self.record.motors = addressof(group.record)
 
     @cached_property
     def boxes(self) -> Mapping[int, LinkBox | SoftBox]:

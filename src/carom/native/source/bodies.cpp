@@ -211,11 +211,11 @@ extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call
     const bool with_velocity = in[1] != 0.0;
     double numbers[MOST_LINKS][LINK_NUMBERS];
     int64_t links[MOST_LINKS];
-    const intptr_t count = python.PySequence_Size(call->sequence);
+    const intptr_t count = python.PySequence_Size(call->sequences[0]);
     if (count > MOST_LINKS)
         return nullptr;
     for (intptr_t i = 0; i < count; ++i) {
-        PyObject* item = python.PySequence_GetItem(call->sequence, i);
+        PyObject* item = python.PySequence_GetItem(call->sequences[0], i);
         double index = -1.0;
         const bool well = item && read_integer(item, &index) && 0.0 <= index && index < body.link_count;
         if (item)

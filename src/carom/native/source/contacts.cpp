@@ -52,19 +52,6 @@ PyObject* tuple_of(const Contact& contact) {
     return row.tuple;
 }
 
-bool read_time_step(const Client& client, double* seconds) {
-    PyObject* value = python.PyObject_GetAttr(client.connection, client.time_step_name);
-    if (!value) {
-        python.PyErr_Clear();
-        return false;
-    }
-    const bool well = value->type == python.float_type;
-    if (well)
-        *seconds = python.PyFloat_AsDouble(value);
-    python.Py_DecRef(value);
-    return well;
-}
-
 }  // namespace
 
 // First body, second body, link of the first, of the second, connection.

@@ -82,22 +82,8 @@ bool read_array(PyObject* value, int count, double* numbers) {
     return well;
 }
 
-bool read_numbers(PyObject* value, int count, double* numbers) {
-    const bool is_tuple = value->type == python.tuple_type;
-    if (!is_tuple && value->type != python.list_type)
-        return python.ndarray_type && value->type == python.ndarray_type && read_array(value, count, numbers);
-    if ((is_tuple ? python.PyTuple_Size(value) : python.PyList_Size(value)) != count)
-        return false;
-    for (int i = 0; i < count; ++i) {
-        PyObject* item = is_tuple ? python.PyTuple_GetItem(value, i) : python.PyList_GetItem(value, i);
-        if (!read_number(item, &numbers[i]))
-            return false;
-    }
-    return true;
-}
-
 int width_of(int kind) {
-    return kind == '-' || kind == 's' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
+    return kind == '-' || kind == 's' || kind == 'v' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
 }
 
 // Reads an argument; false if it is not of the kind.
@@ -120,8 +106,11 @@ bool read(int kind, PyObject* value, double* numbers, Call* call) {
         const double squared = x * x + y * y + z * z + w * w;
         return LEAST_SQUARE < squared && squared < GREATEST_SQUARE;
     }
-    case 's':  // a sequence
-        call->sequence = value;
+    case 'v':  // numbers, or None
+        call->sequences[call->sequence_count++] = value;
+        return true;
+    case 's':  // a sequence of integers
+        call->sequences[call->sequence_count++] = value;
         return value->type == python.list_type || value->type == python.tuple_type || value->type == python.range_type;
     case 'b':  // the number of a body
     case 'c':  // that of a connection
@@ -177,6 +166,8 @@ bool read_all(
         } else {
             if (parameter.is_required)
                 return false;
+            if (parameter.kind == 's' || parameter.kind == 'v')
+                call->sequences[call->sequence_count++] = nullptr;
             for (int k = 0; k < width; ++k)
                 numbers[k] = parameter.missing;
         }
@@ -214,7 +205,7 @@ PyObject* answer(
     const QuickCall& made, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names
 ) {
     double numbers[MOST_NUMBERS], results[MOST_RESULTS];
-    Call call = {nullptr, nullptr, nullptr};
+    Call call = {};
     if (read_all(made, arguments, count, names, numbers, &call) && find(made, numbers, &call)) {
         if (made.maker) {
             PyObject* result = made.maker(numbers, &call);
@@ -246,6 +237,33 @@ struct Entries<0> {
 };
 
 }  // namespace
+
+bool read_numbers(PyObject* value, int count, double* numbers) {
+    const bool is_tuple = value->type == python.tuple_type;
+    if (!is_tuple && value->type != python.list_type)
+        return python.ndarray_type && value->type == python.ndarray_type && read_array(value, count, numbers);
+    if ((is_tuple ? python.PyTuple_Size(value) : python.PyList_Size(value)) != count)
+        return false;
+    for (int i = 0; i < count; ++i) {
+        PyObject* item = is_tuple ? python.PyTuple_GetItem(value, i) : python.PyList_GetItem(value, i);
+        if (!read_number(item, &numbers[i]))
+            return false;
+    }
+    return true;
+}
+
+bool read_time_step(const Client& client, double* seconds) {
+    PyObject* value = python.PyObject_GetAttr(client.connection, client.time_step_name);
+    if (!value) {
+        python.PyErr_Clear();
+        return false;
+    }
+    const bool well = value->type == python.float_type;
+    if (well)
+        *seconds = python.PyFloat_AsDouble(value);
+    python.Py_DecRef(value);
+    return well;
+}
 
 PyObject* tuple_of(const double* numbers, int count) {
     PyObject* tuple = python.PyTuple_New(count);

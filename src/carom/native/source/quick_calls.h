@@ -90,6 +90,18 @@ struct Joint {
     int32_t position, velocity;  // places among those of the body; -1 for all but joints of one freedom
 };
 
+// Joints of a body that were commanded together, and the kernel that commands them.
+struct MotorGroup {
+    KernelCall command;
+    int32_t *mode, *given;
+    double* time_step;
+    const int32_t* refused;  // not 0 after a command if numbers were not finite, and nothing has been done
+    // A number for each joint, as `MotorCommands` has them.
+    double *positions, *velocities, *forces, *kps, *kds;
+    const int32_t* indices;
+    int64_t count;
+};
+
 struct Body {
     double* position;  // of the base: 3, and 4 of its orientation
     double* velocity;  // angular, then linear
@@ -98,6 +110,7 @@ struct Body {
     double* wrench;    // force and torque on each in the next step
     Link* links;       // but for the base; null where nobody has asked yet
     const Joint* joints;
+    const MotorGroup* motors;  // those commanded last; null if none have been
     int64_t link_count;
     int64_t tree;
     int64_t first_link;
@@ -117,7 +130,9 @@ struct Client {
 struct Call {
     const Client* client;
     const Body* body;
-    PyObject* sequence;  // a list, a tuple or a range among the arguments
+    // Lists, tuples, ranges and arrays among the arguments that are of no certain length; null where left out.
+    PyObject* sequences[6];
+    int sequence_count;
 };
 
 // Works out a call. Numbers are the arguments in their order, those left out NaN if they have no default.
@@ -131,6 +146,12 @@ typedef int (*Kernel)(const double* numbers, double* results, const Call* call);
 typedef PyObject* (*Maker)(const double* numbers, const Call* call);
 
 PyObject* tuple_of(const double* numbers, int count);
+
+// Reads so many numbers of a list, a tuple or an array; false if it is none of these, or has others.
+bool read_numbers(PyObject* value, int count, double* numbers);
+
+// The duration of a step [s]; false if it is not known.
+bool read_time_step(const Client& client, double* seconds);
 
 // A body by its number; null if there is none, or it is not known.
 const Body* find_body(const Client& client, double number);
