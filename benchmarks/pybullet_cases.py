@@ -29,6 +29,7 @@ KUKA = str(ASSETS / "kuka_iiwa" / "model.urdf")
 TREE = str(ROOT / "tests" / "conformance" / "robots" / "random_tree.urdf")
 MOVABLE = [0, 1, 2, 3, 4, 5, 6, 9, 10]
 HOME = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02]
+POINT, TURN, NO_TURN = [0.1, 0.2, 0.3], [0.0, 0.0, 0.6, 0.8], [0.0, 0.0, 0.0, 1.0]
 
 Timed = Callable[[], Any]
 Prepared = Timed | tuple[Timed, Callable[[Any], None]]
@@ -223,6 +224,21 @@ def get_link_state(original_data: str) -> Prepared:
     return lambda: p.getLinkState(panda, 11, computeLinkVelocity=1)
 
 
+def get_link_states(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.getLinkStates(panda, MOVABLE, computeLinkVelocity=1)
+
+
+def get_base_pose(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.getBasePositionAndOrientation(panda)
+
+
+def get_base_velocity(original_data: str) -> Prepared:
+    panda = _panda()
+    return lambda: p.getBaseVelocity(panda)
+
+
 def set_motor(original_data: str) -> Prepared:
     panda = _panda()
     return lambda: p.setJointMotorControl2(panda, 3, p.POSITION_CONTROL, targetPosition=-1.9, force=87.0)
@@ -239,6 +255,69 @@ def set_motors(original_data: str) -> Prepared:
 def reset_joint(original_data: str) -> Prepared:
     panda = _panda()
     return lambda: p.resetJointState(panda, 3, -1.9)
+
+
+def reset_base_pose(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.resetBasePositionAndOrientation(box, [1.5, 0.0, 0.1], NO_TURN)
+
+
+def reset_base_velocity(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.resetBaseVelocity(box, [0.1, 0.0, 0.0], [0.0, 0.0, 0.1])
+
+
+def apply_force(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.applyExternalForce(box, -1, [0.1, 0.0, 0.0], [0.0, 0.0, 0.0], p.LINK_FRAME)
+
+
+def apply_torque(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.applyExternalTorque(box, -1, [0.1, 0.0, 0.0], p.WORLD_FRAME)
+
+
+def change_friction(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.changeDynamics(box, -1, lateralFriction=0.5)
+
+
+def change_damping(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.changeDynamics(box, -1, linearDamping=0.1, angularDamping=0.1)
+
+
+def change_mass(original_data: str) -> Prepared:
+    box = _boxes_on_a_floor()[3]
+    return lambda: p.changeDynamics(box, -1, mass=1.0)
+
+
+def multiply_transforms(original_data: str) -> Prepared:
+    return lambda: p.multiplyTransforms(POINT, TURN, POINT, TURN)
+
+
+def invert_transform(original_data: str) -> Prepared:
+    return lambda: p.invertTransform(POINT, TURN)
+
+
+def euler_and_back(original_data: str) -> Prepared:
+    return lambda: p.getEulerFromQuaternion(p.getQuaternionFromEuler(POINT))
+
+
+def matrix_from_quaternion(original_data: str) -> Prepared:
+    return lambda: p.getMatrixFromQuaternion(TURN)
+
+
+def slerp(original_data: str) -> Prepared:
+    return lambda: p.getQuaternionSlerp(TURN, NO_TURN, 0.25)
+
+
+def axis_angle_and_back(original_data: str) -> Prepared:
+    return lambda: p.getQuaternionFromAxisAngle(*p.getAxisAngleFromQuaternion(TURN))
+
+
+def difference_quaternion(original_data: str) -> Prepared:
+    return lambda: p.getDifferenceQuaternion(TURN, NO_TURN)
 
 
 def change_gravity(original_data: str) -> Prepared:
@@ -285,6 +364,22 @@ def contact_points(original_data: str) -> Prepared:
 def closest_points(original_data: str) -> Prepared:
     boxes = _boxes_on_a_floor()
     return lambda: p.getClosestPoints(boxes[3], boxes[4], 1.0)
+
+
+def closest_points_moved(original_data: str) -> Prepared:
+    boxes = _boxes_on_a_floor()
+    heights = itertools.cycle((0.1, 0.2))
+
+    def move_and_ask() -> None:
+        p.resetBasePositionAndOrientation(boxes[3], [1.5, 0.0, next(heights)], NO_TURN)
+        p.getClosestPoints(boxes[3], boxes[4], 1.0)
+
+    return move_and_ask
+
+
+def overlapping(original_data: str) -> Prepared:
+    _boxes_on_a_floor()
+    return lambda: p.getOverlappingObjects([0.0, -0.1, 0.0], [0.6, 0.1, 0.3])
 
 
 def _inverse_dynamics(body: int, positions: list[float], dofs: int) -> Timed:

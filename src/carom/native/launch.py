@@ -124,6 +124,10 @@ class TreeLaunch:
         self._place = kernel.indices["tree"]
         self._tree = 0
 
+    def addresses(self) -> list[int]:
+        """Addresses of the kernel, its two arguments and the tree; who changes this has to put it back."""
+        return self._launch.addresses("tree")
+
     def __call__(self, tree: int) -> None:
         """Run the kernel on a tree."""
         if tree != self._tree:

@@ -38,6 +38,7 @@ class Library:
     Attributes:
         path: The file.
         perform: Performs programs of launches; see `carom.engine.interpreter`.
+        symbols: Its functions and variables by name.
 
     Raises:
         NativeLibraryError: It is damaged, for another platform, or made from something else.
@@ -60,6 +61,7 @@ class Library:
             )
         self.perform.restype = None
         self.path = path
+        self.symbols: ctypes.CDLL = self._loaded
 
     def arguments(self, kernel: str) -> Arguments:
         """Name and type of each argument of a kernel."""

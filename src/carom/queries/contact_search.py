@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from carom.engine.quick_scene import QuickScene
 from carom.layouts.queries import ContactReport
 from carom.native.kernels import report_contacts_kernel
 from carom.native.launch import KernelStructs
@@ -41,9 +42,13 @@ class ContactSearch:
 
     Args:
         structs: Warp structs by the name kernels give them, `places` among them.
+        contacts: The contacts.
+        quick: What is told of the arrays of questions and answers.
     """
 
-    def __init__(self, structs: KernelStructs) -> None:
+    def __init__(self, structs: KernelStructs, contacts: ArrayTable, quick: QuickScene) -> None:
+        self._contacts = contacts
+        self._quick = quick
         asked = {"body_a": -1, "link_a": -2, "body_b": -1, "link_b": -2, "time_step": NUMPY_REAL(0.0)}
         self._search = Question(
             report_contacts_kernel, structs, "report", ArrayTable(ContactReport), asked, world=0
@@ -84,3 +89,5 @@ class ContactSearch:
         self._vectors = [
             memory(f"report_{name}") for name in ("point_a", "point_b", "normal", "direction1", "direction2")
         ]
+        contacts = self._contacts.struct()
+        self._quick.know_contacts(self._search, contacts.count_contacts.data, contacts)

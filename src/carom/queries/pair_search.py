@@ -11,11 +11,13 @@ import numpy as np
 
 from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
+from carom.engine.quick_scene import QuickScene
 from carom.layouts.queries import Searches
 from carom.native.kernels import closest_points_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.question import Question
+from carom.queries.quick_queries import tell_search
 
 _ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
 _INDEX = np.dtype(np.int32)
@@ -48,9 +50,11 @@ class PairSearch:
     Args:
         structs: Warp structs by the name kernels give them.
         contact_arrays: The arrays of shapes.
+        quick: What is told of the arrays of questions and answers.
     """
 
-    def __init__(self, structs: KernelStructs, contact_arrays: ContactArrays) -> None:
+    def __init__(self, structs: KernelStructs, contact_arrays: ContactArrays, quick: QuickScene) -> None:
+        self._quick = quick
         self._shapes = contact_arrays.shapes.table.numpy
         self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
         self._asked: ShapePairs | None = None
@@ -118,3 +122,4 @@ class PairSearch:
         self._count: memoryview[int] = arrays["search_count"][0].data
         self._pair: memoryview[int] = arrays["search_pair"][0].data
         self._found = memory("search_found")
+        tell_search(self._quick, self._search)

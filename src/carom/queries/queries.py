@@ -14,21 +14,25 @@ import numpy as np
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.engine.contact_arrays import ContactArrays
+from carom.engine.quick_scene import QuickScene
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
 from carom.model.bounds import Bounds, turned_box
-from carom.native.kernels import place_shapes_kernel, prepare_rays_kernel
+from carom.native.kernels import link_poses_kernel, place_shapes_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
+from carom.queries.quick_queries import tell_placement
 from carom.queries.ray_cast import Points, RayCast, RayHit
 
 if TYPE_CHECKING:
     from carom.queries.soft_bodies import SoftQueries
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
+# Of shapes that have not been placed.
+NEVER = -1
 # A distance that counts as none.
 _FAR = 1e30
 
@@ -45,6 +49,7 @@ class Queries:
         pairs: Room for the intermediate results of collision detection.
         state: The state of the world.
         soft_work: Room for those of soft bodies.
+        quick: What builtins in the native library know of the world.
     """
 
     def __init__(
@@ -57,6 +62,7 @@ class Queries:
         pairs: ArrayTable,
         state: ArrayTable,
         soft_work: ArrayTable,
+        quick: QuickScene,
     ) -> None:
         self._structs = structs
         structs["places"] = row_map_struct(places)
@@ -67,15 +73,22 @@ class Queries:
             from carom.queries.soft_bodies import SoftQueries
 
             self._soft = SoftQueries(structs, contact_arrays, state, soft_work, places, present_poses)
+        # Quick calls know nothing of soft bodies: where there are some, they are told nothing.
+        self._quick = quick if self._soft is None else QuickScene()
         self._positions = positions
         self._present_poses = present_poses
         self._all_shapes = contact_arrays.shapes
         self._shape_count = contact_arrays.shapes.shape_count
         self._shapes = contact_arrays.shapes.table.numpy
+        self._pair_table = pairs
         self._pairs = pairs.numpy
         self._counts = memoryview(pairs.numpy["count_pairs"][0])
         self._contact_counts = memoryview(contact_arrays.contacts.numpy["count_contacts"][0])
-        self._ready_for: tuple[int, bytes] | None = None
+        # The coordinates for which shapes have been placed last; quick calls place them, too.
+        self._placed_at = bytearray(positions.nbytes)
+        self._placement = self._quick.record.placement
+        self._placement.changes = NEVER
+        self._has_asked = False
 
     @cached_property
     def _make_ready(self) -> dict[int, Launch]:
@@ -90,11 +103,11 @@ class Queries:
 
     @cached_property
     def _search(self) -> PairSearch:
-        return PairSearch(self._structs, self._touch)
+        return PairSearch(self._structs, self._touch, self._quick)
 
     @cached_property
     def _contacts(self) -> ContactSearch:
-        return ContactSearch(self._structs)
+        return ContactSearch(self._structs, self._touch.contacts, self._quick)
 
     @cached_property
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -240,11 +253,35 @@ class Queries:
         What steps leave is overwritten, and the other way round; everything else that could move a shape ends
         these `Queries`.
         """
-        wanted = (self._all_shapes.changes, self._positions.tobytes())
-        if self._counts[READINESS] < readiness or wanted != self._ready_for:
+        changes, positions = self._all_shapes.changes, self._positions.tobytes()
+        if (
+            self._counts[READINESS] < readiness
+            or self._placement.changes != changes
+            or self._placed_at != positions
+        ):
             with self._present_poses():
                 self._make_ready[readiness]()
-            self._ready_for = wanted
+            self._placed_at[:] = positions
+            self._placement.changes = changes
+        # Not the first time: many ask once, and then change the scene.
+        if self._has_asked and not self._placement.place.function:
+            with self._present_poses() as poses:
+                self._tell(poses)
+        self._has_asked = True
+
+    def _tell(self, poses: memoryview[int]) -> None:
+        """Tell quick calls what places the shapes."""
+        tell_placement(
+            self._quick,
+            (self._make_ready[PLACED], self._structs.launch(link_poses_kernel, first_world=0)),
+            self._all_shapes,
+            self._pair_table,
+            (self._positions, poses),
+            self._placed_at,
+            self._structs["places"],
+            readiness=READINESS,
+            has_bare_links=bool(self._without_shapes),
+        )
 
 
 def _one_after_the_other(first: ContactColumns, second: ContactColumns) -> ContactColumns:

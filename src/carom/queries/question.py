@@ -21,6 +21,7 @@ class Question:
     Attributes:
         arrays: The arrays; all have one axis.
         room: How many rows they have.
+        launch: The launch over them.
 
     Args:
         kernel: The kernel.
@@ -59,13 +60,13 @@ class Question:
         if asked != self._asked:
             self._asked = asked
             for place, value in zip(self._places, asked, strict=True):
-                self._launch.replace(place, value)
+                self.launch.replace(place, value)
         (self._run_briefly if asked[0] <= _FEW else self._run)()
 
     def _prepare(self) -> None:
         (self.room,) = self.arrays.capacity.values()
         self._structs[self._name] = self.arrays.struct()
-        self._launch: Launch = self._structs.launch(self._kernel, **self._scalars)
-        self._run: Callable[[], None] = self._launch.function
-        self._run_briefly: Callable[[], None] = self._launch.brief_function
+        self.launch: Launch = self._structs.launch(self._kernel, **self._scalars)
+        self._run: Callable[[], None] = self.launch.function
+        self._run_briefly: Callable[[], None] = self.launch.brief_function
         self._asked: tuple[float, ...] = ()

@@ -184,6 +184,11 @@ class Body:
         return self._dynamics[link + 1]
 
     @property
+    def all_dynamics(self) -> list[LinkDynamics]:
+        """`dynamics` of the base and of all links, in this order: always the same list."""
+        return self._dynamics
+
+    @property
     def is_asleep(self) -> bool:
         """Whether the body did not take part in the last step, for it and all near it had been at rest."""
         return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)

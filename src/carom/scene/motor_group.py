@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from struct import Struct
@@ -22,12 +23,14 @@ from carom.layouts.motor_commands import (
 )
 from carom.native.kernels import command_motors_kernel
 from carom.native.launch import Launch
+from carom.native.quick_calls import MotorGroup as Record
 from carom.native.tables import NUMPY_REAL, ArrayTable
 
 if TYPE_CHECKING:
     from carom.world.world import World
 
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
+_NUMBERS = ("position", "velocity", "force", "kp", "kd")
 _MODES = (VELOCITY, TORQUE, POSITION)
 
 
@@ -57,13 +60,13 @@ class MotorGroup:
         count = len(dofs)
         commands = ArrayTable(MotorCommands)
         commands.reserve({"joint": count})
+        self._commands = commands
         arrays = commands.numpy
         arrays["joint_dof"][:count] = dofs
         arrays["joint_lower"][:count], arrays["joint_upper"][:count] = np.array(bounds).T
         pack = Struct(f"{count}{_TYPE_CODE}").pack_into
         self._put_positions, self._put_velocities, self._put_forces, self._put_kps, self._put_kds = (
-            partial(pack, commands.bytes_of(f"joint_{name}"), 0)
-            for name in ("position", "velocity", "force", "kp", "kd")
+            partial(pack, commands.bytes_of(f"joint_{name}"), 0) for name in _NUMBERS
         )
         self._refused: memoryview[int] = arrays["joint_refused"].data
         defaults = (NUMPY_REAL(force), NUMPY_REAL(kp), NUMPY_REAL(kd))
@@ -78,6 +81,29 @@ class MotorGroup:
         indices = command_motors_kernel.indices
         self._places = [indices[name] for name in ("mode", "given", "time_step")]
         self._asked: tuple[float, ...] = ()
+
+    def record(self, indices: Sequence[int]) -> Record:
+        """What quick calls are told of these joints, as long as this is kept.
+
+        Args:
+            indices: Their indices in the body.
+        """
+        commands = self._commands.struct()
+        made = Record(
+            indices=ctypes.addressof(self._keep(indices)),
+            count=len(indices),
+            refused=commands.joint_refused.data,
+            **{name: getattr(commands, f"joint_{name}").data for name in _NUMBERS},
+        )
+        command = made.command
+        command.function, command.bounds, command.arguments, made.mode, made.given, made.time_step = (
+            self._launch.addresses("mode", "given", "time_step")
+        )
+        return made
+
+    def _keep(self, indices: Sequence[int]) -> ctypes.Array[ctypes.c_int32]:
+        self._indices = (ctypes.c_int32 * len(indices))(*indices)
+        return self._indices
 
     def command(
         self,

@@ -15,6 +15,7 @@ from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.engine.quick_scene import QuickScene
 from carom.errors import SimulationError
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
@@ -70,6 +71,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         time: Simulated time [s].
         user_data: Texts attached to bodies.
         undo: What makes the world whole again, should a change of it be broken off.
+        quick: What builtins in the native library know of it.
         observers: What is told of every step, such as logs.
 
     Args:
@@ -86,6 +88,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self._viewed: ArrayTable | None = None
         self._replacements = 0
         self.undo: Undo = Undo()
+        self.quick: QuickScene = QuickScene()
         self._start_empty()
 
     def _start_empty(self) -> None:
@@ -338,6 +341,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     def scene_changed(self) -> None:
         """Bring everything up to date before it is used again: bodies, constraints or arrays have changed."""
+        self.quick.forget()
         self._derived = Derived()
         self._made_for: tuple[int, int] | None = None
         self.engine.changed()
@@ -459,6 +463,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.contact_arrays)
         self.contact_arrays.soft.write_anchors()
+        self.quick.forget_queries()
         self._derived.queries = None
         self._made_for = self._structure()
         self.engine.update_settings(self.parameters)
@@ -520,6 +525,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
                 self.engine.workspace.pairs,
                 self.arrays.state,
                 self.engine.workspace.soft_work,
+                self.quick,
             )
         return self._derived.queries
 
@@ -557,9 +563,18 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
+        (self._derived.pose_launch or self.be_quick())(body.rows.tree)
+
+    def be_quick(self) -> TreeLaunch:
+        """Let builtins in the native library know where things are again, after a change of the scene.
+
+        Returns:
+            What brings the link poses of a body up to date.
+        """
         if self._derived.pose_launch is None:
             self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
-        self._derived.pose_launch(body.rows.tree)
+            self.quick.know_poses(self._derived.pose_launch, self.arrays, self.contact_arrays)
+        return self._derived.pose_launch
 
     def update_soft_poses(self) -> None:
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
@@ -573,4 +588,5 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Fill `link_velocity` for the present coordinates of a body."""
         if self._derived.twist_launch is None:
             self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
+            self.quick.know_twists(self._derived.twist_launch)
         self._derived.twist_launch(body.rows.tree)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from ctypes import addressof
 from functools import cached_property
 from struct import Struct
 from typing import TYPE_CHECKING
@@ -10,15 +11,17 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Quaternion, Vector3
 from pybullet._bodies.link_access import LinkAccess
 from pybullet._joints.joint_access import JointAccess, joint_access
-from pybullet._joints.joint_groups import JointGroups
+from pybullet._joints.joint_groups import JointGroup, JointGroups
 from pybullet._joints.joint_info import JointInfo, joint_info
 from pybullet._maths.rotations import canonical
 
 if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
     from carom.algorithms.moving_tree import MovingTree
+    from carom.native.quick_calls import Body as Record
     from carom.scene.body import Body
     from pybullet._bodies.link_box import LinkBox, SoftBox
+    from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._clients.clients import Client
 
 _POSE, _SPATIAL = Struct("7d"), Struct("6d")
@@ -34,6 +37,7 @@ class BodyAccess:
         body: The body itself.
         joints: Access to its joints, by index.
         groups: Access to several of its joints, by their indices.
+        record: What the native library is shown of it; None where Python sees to everything.
     """
 
     def __init__(self, client: Client, body: Body) -> None:
@@ -47,11 +51,26 @@ class BodyAccess:
             index: joint_access(client, body, index) for index in range(body.joint_count)
         }
         self.groups = JointGroups(client, self.joints)
+        self.record: Record | None = None
 
     @cached_property
     def links(self) -> dict[int, LinkAccess]:
         """Access to the links other than the base, by index."""
-        return {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
+        links = {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
+        if self.record is not None:
+            from pybullet._bodies.quick_bodies import link_records
+
+            self._link_records = link_records(links.values())
+            self.record.links = addressof(self._link_records)
+        return links
+
+    def commanded(self, group: JointGroup) -> None:
+        """Lets the native library see to the next commands to joints that have been commanded together."""
+        if self.record is not None and group.record is not None:
+            # What the library sees is there as long as it sees it.
+            self.record.motors = None
+            self._group = group
+            self.record.motors = addressof(group.record)
 
     @cached_property
     def boxes(self) -> Mapping[int, LinkBox | SoftBox]:
@@ -121,17 +140,21 @@ class BodyTable(dict[int, BodyAccess]):
         client: The client; set once.
         forces_of_motion: What `calculateInverseDynamics` asks, by the ids of bodies it was called for: a
             plain dictionary, because Python finds an item of that in no time.
+        quick: The same bodies as the native library finds them, if it may look at them.
     """
 
-    __slots__ = ("client", "forces_of_motion")
+    __slots__ = ("client", "forces_of_motion", "quick")
 
     def __init__(self) -> None:
         super().__init__()
         self.client: Client
         self.forces_of_motion: dict[int, Ask] = {}
+        self.quick: QuickBodies | None = None
 
     def forget(self, body_id: int) -> None:
         """Drop the access to a body, which is about to be another one."""
+        if self.quick is not None:
+            self.quick.hide(body_id)
         self.pop(body_id, None)
         self.forces_of_motion.pop(body_id, None)
 
@@ -144,10 +167,14 @@ class BodyTable(dict[int, BodyAccess]):
 
     def forget_all(self) -> None:
         """Drop the access to all bodies."""
+        if self.quick is not None:
+            self.quick.hide_all()
         self.clear()
         self.forces_of_motion.clear()
 
     def __missing__(self, body_id: int) -> BodyAccess:
         access = BodyAccess(self.client, self.client.world.bodies[body_id])
         self[body_id] = access
+        if self.quick is not None:
+            self.quick.show(access)
         return access

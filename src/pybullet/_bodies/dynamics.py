@@ -234,6 +234,9 @@ def changeDynamics(
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
         body.change_dynamics(link, **changes.values)
+        # So that the native library can see to it next time.
+        client.bodies[body.id]
+        client.world.be_quick()
 
 
 @exported

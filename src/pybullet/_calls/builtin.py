@@ -8,6 +8,8 @@ Python functions are not, so with them every wrapped call would silently go to c
 CPython makes a builtin from a C function of the form `f(self, args, nargs, kwnames)`. Its own
 `PyObject_Vectorcall(callable, args, nargs, kwnames)` has that form, so a builtin whose `self` is a Python
 function and whose C code is `PyObject_Vectorcall` calls that function: a real builtin for about 10 ns.
+
+CPython reads the address of the C code at every call, so that it can be exchanged: `quick.py`.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Callable
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any, NamedTuple, TypeVar
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -41,7 +43,8 @@ _new_builtin.restype = ctypes.py_object
 _new_builtin.argtypes = (ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object)
 # Python 3.10 does not export that one, but the same for Python functions alone.
 _VECTORCALL = "PyObject_Vectorcall" if sys.version_info >= (3, 11) else "_PyFunction_Vectorcall"
-_vectorcall = ctypes.cast(getattr(ctypes.pythonapi, _VECTORCALL), ctypes.c_void_p).value
+vectorcall: int = ctypes.cast(getattr(ctypes.pythonapi, _VECTORCALL), ctypes.c_void_p).value or 0
+"""Address of the function that calls a Python function."""
 
 UsualForm = Callable[[tuple[Any, ...], dict[str, Any]], tuple[tuple[Any, ...], dict[str, Any]]]
 """Turns arguments by position and by name into others that mean the same and fit the signature."""
@@ -54,11 +57,15 @@ class Export(NamedTuple):
         function: The Python function.
         builtin: The builtin that calls it.
         usual_form: For a function that is also called in other ways than its signature shows.
+        definition: What CPython knows of the builtin.
+        code: The code of the function, which may be exchanged for another.
     """
 
-    function: Callable[..., Any]
+    function: FunctionType
     builtin: Callable[..., Any]
     usual_form: UsualForm | None
+    definition: _MethodDefinition
+    code: CodeType
 
 
 exports: dict[str, Export] = {}
@@ -82,17 +89,18 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
     """
 
     def export(function: F) -> F:
+        assert isinstance(function, FunctionType)
         function.__module__ = "pybullet"
         documentation = f"{function.__name__}{signature}\n--\n\n{_documentation(function)}"
         definition = _MethodDefinition(
             function.__name__.encode(),
-            _vectorcall,
+            vectorcall,
             _METH_FASTCALL_WITH_KEYWORDS,
             documentation.encode(),
         )
         _definitions.append(definition)
         builtin = _new_builtin(ctypes.byref(definition), function, "pybullet")
-        exports[function.__name__] = Export(function, builtin, usual_form)
+        exports[function.__name__] = Export(function, builtin, usual_form, definition, function.__code__)
         return builtin
 
     return export

@@ -3,7 +3,7 @@
 Which way a call takes depends on its `physicsClientId`, and asking that first would cost every call of every
 script, most of which know no servers. So functions ask only while there is a connection with a detour: the
 code of each Python function behind a builtin is then exchanged for code that asks, and put back with the last
-detour. No function has to know.
+detour. No function has to know. Nor does the native library, which does not try such functions meanwhile.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from types import CodeType, FunctionType
 from typing import Any, Protocol
 
 from pybullet._calls.builtin import UsualForm, exports
+from pybullet._calls.quick import pause
 
 # Functions of these modules need no world.
 _HELPERS = frozenset({"pybullet._maths.maths", "pybullet._maths.camera_maths", "pybullet._shapes.vhacd"})
@@ -98,6 +99,7 @@ def add_detour(client: int, detour: Detour) -> None:
     """Sends the calls of a connection another way from now on."""
     with _changing:
         if not _detours:
+            pause(paused=True)
             for function in functions().values():
                 function.ask()
         _detours[client] = detour
@@ -114,6 +116,7 @@ def remove_detour(client: int) -> None:
         if _detours.pop(client, None) is not None and not _detours:
             for function in functions().values():
                 function.ask_no_more()
+            pause(paused=False)
 
 
 def call(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
@@ -143,11 +146,10 @@ def call_on(client: int, function: Function, arguments: tuple[Any, ...], keyword
 
 def _worldly() -> dict[str, Function]:
     found = {}
-    for name, (function, builtin, usual_form) in exports.items():
+    for name, (function, builtin, usual_form, *_) in exports.items():
         # Functions made by others are those that are not available, wherever they are called.
         if name in _ABOUT_CONNECTIONS or function.__closure__:
             continue
-        assert isinstance(function, FunctionType)
         if function.__globals__["__name__"] in _HELPERS:
             continue
         plain = FunctionType(function.__code__, function.__globals__, name, function.__defaults__)

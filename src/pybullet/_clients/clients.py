@@ -116,6 +116,8 @@ class Client:
 
     def close(self) -> None:
         """Stops what runs in the background, and finishes what is being written."""
+        if self.bodies.quick is not None:
+            self.bodies.quick.close()
         if self.server is not None:
             self.server.close()
             self.server = None

@@ -137,6 +137,8 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     ):
         fail(_ONE_WINDOW)
     clients[slot] = _new_client(method, target)
+    if method == DIRECT:
+        _let_quick_calls_in(slot)
     if method in _SERVERS:
         try:
             _serve(slot, target)
@@ -171,6 +173,17 @@ def _new_client(method: int, target: Target) -> Client:
 
         client.window = open_window(client, target.options)
     return client
+
+
+def _let_quick_calls_in(slot: int) -> None:
+    """Lets the native library look at the bodies of a client that has no window and no server."""
+    from pybullet._bodies.quick_bodies import QuickBodies
+    from pybullet._calls.quick import install
+
+    calls = install()
+    if calls is not None:
+        client = clients[slot]
+        client.bodies.quick = QuickBodies(calls, slot, client)
 
 
 def _serve(slot: int, target: Target) -> None:

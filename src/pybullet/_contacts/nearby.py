@@ -13,7 +13,7 @@ from pybullet._contacts.contacts import ContactPoint
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
-    from carom.world.world import World
+    from pybullet._clients.clients import Client
 
 __all__ = ["getClosestPoints", "getOverlappingObjects"]
 
@@ -90,7 +90,7 @@ def getClosestPoints(
                 for a, b, on_a, on_b, normal, gap in nearest_points(sides[0], sides[1], reach)
             ]
         )
-    links_a, links_b = _rows(world, body_a, link_a), _rows(world, body_b, link_b)
+    links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
     bodies, links = world.link_columns
     return tuple(
         [
@@ -100,11 +100,11 @@ def getClosestPoints(
     )
 
 
-def _rows(world: World, body_id: int, link: int) -> range:
+def _rows(client: Client, body_id: int, link: int) -> range:
     """Rows of a link, or of all links of a body."""
-    body = world.bodies.get(body_id)
-    if body is None:
+    if body_id not in client.world.bodies:
         return range(0)
+    body = client.bodies[body_id].body
     every = range(body.first_link, body.first_link + 1 + body.joint_count)
     if link <= _ANY_LINK:
         return every

@@ -15,6 +15,7 @@ from pybullet._joints.joint_access import NO_WRENCH, AxisJoint, JointAccess, Joi
 from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
+    from carom.native.quick_calls import MotorGroup as MotorRecord
     from pybullet._clients.clients import Client
 
 # Groups of one body that are remembered.
@@ -47,6 +48,11 @@ class JointGroup:
         """
         raise ValueError("these motors are set one by one")
 
+    @cached_property
+    def record(self) -> MotorRecord | None:
+        """What the native library is shown of them; None where Python sees to every command."""
+        return None
+
 
 class AxisGroup(JointGroup):
     """Revolute and prismatic joints."""
@@ -65,6 +71,10 @@ class AxisGroup(JointGroup):
             DEFAULT_POSITION_GAIN,
             DEFAULT_VELOCITY_GAIN,
         )
+
+    @cached_property
+    def record(self) -> MotorRecord | None:
+        return self._motors.record([joint.index for joint in self._axes])
 
     def command(self, mode: int, *lists: Iterable[float] | None) -> None:
         self._motors.command(mode, self.client.time_step, *lists)

@@ -221,8 +221,10 @@ def setJointMotorControlArray(
         0.5
     """
     try:
-        group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
+        access = clients[physicsClientId].bodies[bodyUniqueId]
+        group = access.groups[tuple(jointIndices)]
         group.command(controlMode, targetPositions, targetVelocities, forces, positionGains, velocityGains)
+        access.commanded(group)
         return
     except (KeyError, TypeError, ValueError, StructError):
         pass

@@ -174,14 +174,15 @@ def _generated_code(parts: _Build) -> Path:
 
 def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
     """Objects of kernels, of hand-written C++, and of the maths functions that these call."""
-    own = sorted((parts.root / "carom" / "native" / "source").glob("*.cpp"))
+    folder = parts.root / "carom" / "native" / "source"
     digest = work / "digest.cpp"
     digest.write_text(_DIGEST_SOURCE.format(parts.digest))
-    sources = [*sorted(code.glob("*.cpp")), *own, digest]
+    own = [*sorted(folder.glob("*.cpp")), digest]
     if parts.target.suffix == ".dll":
-        sources.append(_HERE / "windows.cpp")
-    includes = [_HERE, parts.warp / "native"]
-    objects = _objects(parts, "compiling kernels", "c++", CPP_FLAGS, sources, includes, work)
+        own.append(_HERE / "windows.cpp")
+    kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
+    objects = _objects(parts, "compiling kernels", "c++", CPP_FLAGS, kernels, headers, work)
+    objects += _objects(parts, "compiling the rest", "c++", CPP_FLAGS, own, [*headers, folder], work)
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
     return objects + _objects(parts, "compiling maths", "cc", C_FLAGS, maths, folders, work)

@@ -1,0 +1,102 @@
+"""What quick calls know of a world: kernels that bring its poses up to date, and its contacts."""
+
+from __future__ import annotations
+
+from ctypes import addressof
+from sys import intern
+from typing import TYPE_CHECKING, Any
+
+from carom.native.quick_calls import DAMPING, REPORT_ARRAYS, REPORT_SCALARS, SURFACE, Launch, Scene
+
+if TYPE_CHECKING:
+    from carom.engine.contact_arrays import ContactArrays
+    from carom.model.builder import WorldArrays
+    from carom.native.launch import TreeLaunch
+    from carom.queries.question import Question
+
+
+# Names of attributes are interned.
+_NAMES = [intern(name) for name in SURFACE]
+
+
+class QuickScene:
+    """Addresses that hold until bodies, constraints or arrays of the world change.
+
+    Attributes:
+        record: The addresses; functions that are not known are null.
+    """
+
+    __slots__ = ("_kept", "record")
+
+    def __init__(self) -> None:
+        self.record = Scene()
+        # What the addresses point to.
+        self._kept: list[Any] = []
+
+    def forget(self) -> None:
+        """Forget all addresses: the world has changed."""
+        self.record.find_poses.function = None
+        self.record.find_twists.function = None
+        self.forget_queries()
+        self._kept.clear()
+
+    def forget_queries(self) -> None:
+        """Forget what answers questions about contacts and shapes: it is about to be made anew."""
+        self.record.report.function = None
+        self.record.placement.place.function = None
+        self.record.placement.changes = -1
+        self.record.nearest.search.function = None
+
+    def know_poses(self, launch: TreeLaunch, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
+        """Take what brings the link poses of a body up to date, and where contacts and surfaces are."""
+        contacts, shapes = contact_arrays.contacts.struct(), contact_arrays.shapes.table.struct()
+        model = arrays.model.struct()
+        self._kept += (launch, contacts, shapes, model)
+        self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
+        self.record.surface_names[:] = [id(name) for name in _NAMES]
+        self.record.damping[:] = [getattr(model, field).data for field in DAMPING]
+        self.record.contact_count = contacts.count_contacts.data
+        self.record.warm_starts = contacts.contact_warm_start.data
+        self.record.contact_room = contact_arrays.contacts.capacity["contact"]
+        _know(self.record.find_poses, launch)
+
+    def know_twists(self, launch: TreeLaunch) -> None:
+        """Take what brings the link velocities of a body up to date."""
+        self._kept.append(launch)
+        _know(self.record.find_twists, launch)
+
+    def keep(self, *what: Any) -> None:
+        """Keep what addresses in the record point to, until they are forgotten."""
+        self._kept += what
+
+    def know_contacts(self, question: Question, there: int, keep: Any) -> None:
+        """Take what lists contacts.
+
+        Args:
+            question: The question, whose arrays are a `ContactReport`.
+            there: Address of how many contacts there are.
+            keep: What this address points to.
+        """
+        report = question.arrays.struct()
+        launch = question.launch
+        self._kept += (launch, report, keep)
+        record = self.record.report
+        # The function last: without it nothing else is looked at.
+        function, record.bounds, record.arguments, *asked = launch.addresses(*REPORT_SCALARS)
+        for name, address in zip(REPORT_SCALARS, asked, strict=True):
+            setattr(record, f"asked_{name}", address)
+        for name in REPORT_ARRAYS:
+            setattr(record, f"found_{name}", getattr(report, f"report_{name}").data)
+        record.there, record.room = there, question.room
+        record.function = function
+
+    @property
+    def address(self) -> int:
+        """Address of the record, which is there as long as this is."""
+        return addressof(self.record)
+
+
+def _know(record: Launch, launch: TreeLaunch) -> None:
+    # The function last: without it nothing else is looked at.
+    function, record.bounds, record.arguments, record.tree = launch.addresses()
+    record.function = function

@@ -1,0 +1,330 @@
+"""Quick calls: builtins of CPython whose C code is in the native library.
+
+A builtin of `pybullet` stands for a Python function. For some of them the library has C code that tries the
+usual case itself, in a fraction of the time, and calls the Python function in all others:
+`native/source/quick_calls.cpp` says how, and has the same structs. The library names nothing of Python's; it
+is told here where CPython has the few functions that it needs, so that one library is for all versions.
+"""
+
+from __future__ import annotations
+
+import builtins
+import ctypes
+import sys
+import sysconfig
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from carom.native.library import library
+
+MOST_PARAMETERS = 26
+MOST_GROUPS = 8
+
+
+REPORT_SCALARS = ("count", "body_a", "link_a", "body_b", "link_b", "time_step")
+"""What the kernel that lists contacts is asked, as it calls it."""
+REPORT_ARRAYS = (
+    *("count", "body_a", "body_b", "link_a", "link_b", "point_a", "point_b", "normal", "distance"),
+    *("force", "force1", "force2", "direction1", "direction2"),
+)
+"""What it finds: fields of `ContactReport`, without the word for their axis."""
+
+
+SURFACE = {
+    "lateral_friction": "link_lateral_friction",
+    "spinning_friction": "link_spinning_friction",
+    "rolling_friction": "link_rolling_friction",
+    "restitution": "link_restitution",
+    "contact_stiffness": "link_stiffness",
+    "contact_damping": "link_contact_damping",
+}
+"""Fields of `LinkDynamics` that quick calls change, and those of `Shapes` that are the same."""
+DAMPING = ("tree_linear_damping", "tree_angular_damping")
+"""Fields of `Model` that they change."""
+
+
+class Launch(ctypes.Structure):
+    """A kernel that is asked about one tree."""
+
+    _fields_ = (
+        ("function", ctypes.c_void_p),
+        ("bounds", ctypes.c_void_p),
+        ("arguments", ctypes.c_void_p),
+        ("tree", ctypes.c_void_p),
+    )
+
+
+class ContactReport(ctypes.Structure):
+    """The kernel that lists contacts, what it is asked and what it finds."""
+
+    _fields_ = (
+        ("function", ctypes.c_void_p),
+        ("bounds", ctypes.c_void_p),
+        ("arguments", ctypes.c_void_p),
+        *((f"asked_{name}", ctypes.c_void_p) for name in REPORT_SCALARS),
+        ("there", ctypes.c_void_p),
+        ("room", ctypes.c_int64),
+        *((f"found_{name}", ctypes.c_void_p) for name in REPORT_ARRAYS),
+    )
+
+
+class KernelCall(ctypes.Structure):
+    """A kernel and its arguments."""
+
+    _fields_ = tuple((name, ctypes.c_void_p) for name in ("function", "bounds", "arguments"))
+
+
+class Placement(ctypes.Structure):
+    """The shapes of all links, and what places them by the present coordinates."""
+
+    _fields_ = (
+        ("place", KernelCall),
+        ("find_poses", KernelCall),
+        ("positions", ctypes.c_void_p),
+        ("placed_at", ctypes.c_void_p),
+        ("position_count", ctypes.c_int64),
+        ("poses", ctypes.c_void_p),
+        ("poses_before", ctypes.c_void_p),
+        ("pose_count", ctypes.c_int64),
+        ("readiness", ctypes.c_void_p),
+        ("shapes", ctypes.c_void_p),
+        ("changes_name", ctypes.c_void_p),
+        ("changes", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("lower", "upper", "kind", "link")),
+        ("shape_count", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("first_shape", "link_shapes", "place_body", "place_link")),
+        ("has_bare_links", ctypes.c_int64),
+    )
+
+
+class PairSearch(ctypes.Structure):
+    """The kernel that finds nearest points, what it is asked and what it finds."""
+
+    _fields_ = (
+        ("search", KernelCall),
+        *((name, ctypes.c_void_p) for name in ("count", "max_distance", "first", "second")),
+        ("room", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("found", "pairs", "points")),
+    )
+
+
+class Scene(ctypes.Structure):
+    """What follows from the bodies and arrays of a world."""
+
+    _fields_ = (
+        ("find_poses", Launch),
+        ("find_twists", Launch),
+        ("contact_count", ctypes.c_void_p),
+        ("warm_starts", ctypes.c_void_p),
+        ("contact_room", ctypes.c_int64),
+        ("surface", ctypes.c_void_p * len(SURFACE)),
+        ("surface_names", ctypes.c_void_p * len(SURFACE)),
+        ("damping", ctypes.c_void_p * len(DAMPING)),
+        ("report", ContactReport),
+        ("placement", Placement),
+        ("nearest", PairSearch),
+    )
+
+
+class Link(ctypes.Structure):
+    """A link other than a base."""
+
+    _fields_ = (
+        ("inertial_frame", ctypes.c_double * 7),
+        ("from_inertial_frame", ctypes.c_double * 7),
+        ("is_turned", ctypes.c_int64),
+    )
+
+
+class Joint(ctypes.Structure):
+    """Where the coordinates of a joint of one freedom are among those of its body; -1 for other joints."""
+
+    _fields_ = (("position", ctypes.c_int32), ("velocity", ctypes.c_int32))
+
+
+class MotorGroup(ctypes.Structure):
+    """Joints that are commanded together, and the kernel that commands them."""
+
+    _fields_ = (
+        ("command", KernelCall),
+        *((name, ctypes.c_void_p) for name in ("mode", "given", "time_step", "refused")),
+        *((name, ctypes.c_void_p) for name in ("position", "velocity", "force", "kp", "kd")),
+        ("indices", ctypes.c_void_p),
+        ("count", ctypes.c_int64),
+    )
+
+
+class Body(ctypes.Structure):
+    """Where the state of a body is; its links are null as long as nobody has asked for one."""
+
+    _fields_ = (
+        ("position", ctypes.c_void_p),
+        ("velocity", ctypes.c_void_p),
+        ("pose", ctypes.c_void_p),
+        ("twist", ctypes.c_void_p),
+        ("wrench", ctypes.c_void_p),
+        ("links", ctypes.c_void_p),
+        ("joints", ctypes.c_void_p),
+        ("motors", ctypes.c_void_p),
+        ("link_count", ctypes.c_int64),
+        ("tree", ctypes.c_int64),
+        ("first_link", ctypes.c_int64),
+        ("dynamics", ctypes.c_void_p),
+    )
+
+
+class Client(ctypes.Structure):
+    """A world, the bodies in it by number, and the lock that is held while it changes: two methods of it."""
+
+    _fields_ = (
+        ("scene", ctypes.c_void_p),
+        ("bodies", ctypes.c_void_p),
+        ("body_count", ctypes.c_int64),
+        ("acquire", ctypes.c_void_p),
+        ("release", ctypes.c_void_p),
+        ("without_waiting", ctypes.c_void_p),
+        ("connection", ctypes.c_void_p),
+        ("time_step_name", ctypes.c_void_p),
+    )
+
+
+class _Parameter(ctypes.Structure):
+    _fields_ = (
+        ("name", ctypes.c_void_p),
+        ("missing", ctypes.c_double),
+        ("kind", ctypes.c_int32),
+        ("is_required", ctypes.c_int32),
+    )
+
+
+class _QuickCall(ctypes.Structure):
+    _fields_ = (
+        ("kernel", ctypes.c_void_p),
+        ("maker", ctypes.c_void_p),
+        ("parameter_count", ctypes.c_int64),
+        ("parameters", _Parameter * MOST_PARAMETERS),
+        ("groups", ctypes.c_int32 * (MOST_GROUPS + 1)),
+        ("is_flat", ctypes.c_int32),
+    )
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a quick call.
+
+    Attributes:
+        name: Its name, interned, as names of parameters are.
+        kind: A letter: `i` integer, `r` number, `3` and `4` so many numbers, `q` quaternion that has a
+            direction, `s` list, tuple or range, `v` any number of numbers or None, `b` number of a
+            body, `c` of a connection, `-` not used.
+        missing: Its numbers where it is left out; NaN for None. None if it has to be there.
+    """
+
+    name: str
+    kind: str
+    missing: float | None
+
+
+class QuickCalls:
+    """The quick calls of this process.
+
+    Args:
+        symbols: The loaded library.
+        calls: Address of the table of calls.
+        clients: Address of that of clients.
+        python: Places of functions, objects and types of Python, by their names.
+
+    Attributes:
+        clients: Addresses of a `Client` each, by number; 0 where Python has to see to the calls.
+        is_paused: Its value is not 0 while Python has to see to all calls that name a connection.
+    """
+
+    def __init__(self, symbols: Any, calls: int, clients: int, python: dict[str, ctypes.c_void_p]) -> None:
+        self.clients: Any = (ctypes.c_void_p * symbols.carom_most_clients()).from_address(clients)
+        self.is_paused: ctypes.c_int32 = ctypes.c_int32.in_dll(symbols, "carom_quick_calls_paused")
+        self._symbols = symbols
+        self._calls = (_QuickCall * symbols.carom_most_quick_calls()).from_address(calls)
+        self._python = python
+        # What the library points to.
+        self._kept: list[Any] = []
+        self._made = 0
+
+    def add(
+        self, kernel: str, parameters: Sequence[Parameter], groups: Sequence[int] | None, *, flat: bool
+    ) -> int:
+        """The address of the C code of a builtin that tries a kernel first.
+
+        Args:
+            kernel: Its name in the library, without the prefix.
+            parameters: Those of the Python function, in order.
+            groups: Lengths of the tuples in the result, 0 for numbers among them; none for a result of None.
+                None if the kernel makes the result.
+            flat: The result is its one group.
+        """
+        made = self._calls[self._made]
+        function = ctypes.cast(self._symbols[f"carom_{kernel}"], ctypes.c_void_p)
+        if groups is None:
+            made.maker = function
+        else:
+            made.kernel = function
+            made.groups[: len(groups) + 1] = [*groups, -1]
+        made.parameter_count = len(parameters)
+        for parameter, given in zip(made.parameters, parameters, strict=False):
+            self._kept.append(given.name)
+            parameter.name = id(given.name)
+            parameter.kind = ord(given.kind)
+            parameter.is_required = given.missing is None
+            parameter.missing = given.missing or 0.0
+        made.is_flat = flat
+        entry = self._symbols.carom_quick_entry
+        entry.restype = ctypes.c_void_p
+        self._made += 1
+        return entry(self._made - 1)
+
+    def meet_numpy(self) -> None:
+        """Let the arguments be arrays, too, once NumPy has been imported."""
+        numpy = sys.modules.get("numpy")
+        for name in ("ndarray", "float64") if numpy else ():
+            self._kept.append(getattr(numpy, name))
+            self._python[name].value = id(self._kept[-1])
+
+
+def quick_calls(vectorcall: int) -> QuickCalls | None:
+    """The quick calls of this process, for who asks first; None for others, and where there are none.
+
+    They are for CPython as it usually is: elsewhere objects begin in other ways, or threads run side by side.
+    They point to objects of one interpreter, so the others of the process do without.
+
+    Args:
+        vectorcall: Address of the function that calls a Python function.
+    """
+    if (
+        sys.implementation.name != "cpython"
+        or hasattr(sys, "getobjects")
+        or sysconfig.get_config_var("Py_GIL_DISABLED")
+    ):
+        return None
+    symbols = library().symbols
+    python, calls, clients = (ctypes.c_void_p() for _ in range(3))
+    if not symbols.carom_claim_quick_calls(*map(ctypes.byref, (python, calls, clients))):
+        return None
+    functions, objects = (
+        ctypes.string_at(_address(symbols, f"carom_python_{kind}")).decode().split()
+        for kind in ("functions", "objects")
+    )
+    size = ctypes.sizeof(ctypes.c_void_p)
+    places = {
+        name: ctypes.c_void_p.from_address((python.value or 0) + place * size)
+        for place, name in enumerate((*functions, *objects))
+    }
+    for name in functions:
+        places[name].value = vectorcall if name == "PyObject_Vectorcall" else _address(ctypes.pythonapi, name)
+    for name in objects:
+        if hasattr(builtins, name):
+            places[name].value = id(getattr(builtins, name))
+    return QuickCalls(symbols, calls.value or 0, clients.value or 0, places)
+
+
+def _address(symbols: Any, name: str) -> int:
+    return ctypes.addressof(ctypes.c_char.in_dll(symbols, name))

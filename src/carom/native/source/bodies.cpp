@@ -1,0 +1,243 @@
+// Reading and writing the state of bodies: kernels of quick calls.
+
+#include "export.h"
+#include "quick_calls.h"
+#include "turns.h"
+
+#define CAROM_QUICK(name) extern "C" CAROM_EXPORT int carom_##name(const double* in, double* out, const Call* call)
+
+namespace {
+
+enum { WORLD_FRAME = 2, LINK_FRAME = 1 };
+enum { POSE = 7, SPATIAL = 6 };
+// Numbers of the state of a link, and links that are asked for at once; more are left to Python.
+enum { LINK_NUMBERS = 3 * POSE + SPATIAL, MOST_LINKS = 32 };
+
+const double ROUNDING = 1e-15;  // of the squared length of a unit quaternion
+
+bool is_given(double number) { return number == number; }
+
+bool has_link(const Body& body, double link) { return -1.0 <= link && link < body.link_count; }
+
+void run(const Launch& launch, int64_t tree) {
+    // The host keeps in mind which tree it asked for last.
+    const int32_t before = *launch.tree;
+    *launch.tree = static_cast<int32_t>(tree);
+    launch.function(launch.bounds, launch.arguments);
+    *launch.tree = before;
+}
+
+struct Pose {
+    Vector position;
+    Quaternion orientation;
+};
+
+// Of the inertial frame of a link, -1 for the base.
+Pose pose_of(const Body& body, int64_t link) {
+    if (link < 0)
+        return {vector_at(body.position), canonical(quaternion_at(body.position + 3))};
+    const double* row = body.pose + (link + 1) * POSE;
+    return {vector_at(row), quaternion_at(row + 3)};
+}
+
+void push(const Body& body, int64_t link, Vector force, Vector torque) {
+    double* row = body.wrench + (link + 1) * SPATIAL;
+    put(put(row, vector_at(row) + force), vector_at(row + 3) + torque);
+}
+
+}  // namespace
+
+// Body, connection.
+CAROM_QUICK(base_pose) {
+    const Pose pose = pose_of(*call->body, -1);
+    put(put(out, pose.position), pose.orientation);
+    return 2;
+}
+
+// Body, connection.
+CAROM_QUICK(base_velocity) {
+    const double* velocity = call->body->velocity;
+    put(put(out, vector_at(velocity + 3)), vector_at(velocity));
+    return 2;
+}
+
+// Body, link, force, position, frame, connection.
+CAROM_QUICK(apply_force) {
+    const Body& body = *call->body;
+    const double frame = in[8];
+    if (!has_link(body, in[1]) || (frame != WORLD_FRAME && frame != LINK_FRAME))
+        return 0;
+    const int64_t link = static_cast<int64_t>(in[1]);
+    const Pose pose = pose_of(body, link);
+    Vector force = vector_at(in + 2), arm = vector_at(in + 5);
+    if (frame == LINK_FRAME)
+        force = turned(pose.orientation, force), arm = turned(pose.orientation, arm);
+    else
+        arm = arm - pose.position;
+    push(body, link, force, cross(arm, force));
+    return 1;
+}
+
+// Body, link, torque, frame, connection.
+CAROM_QUICK(apply_torque) {
+    const Body& body = *call->body;
+    const double frame = in[5];
+    if (!has_link(body, in[1]) || (frame != WORLD_FRAME && frame != LINK_FRAME))
+        return 0;
+    const int64_t link = static_cast<int64_t>(in[1]);
+    Vector torque = vector_at(in + 2);
+    if (frame == LINK_FRAME)
+        torque = turned(pose_of(body, link).orientation, torque);
+    push(body, link, {0.0, 0.0, 0.0}, torque);
+    return 1;
+}
+
+// Body, position, orientation, connection.
+CAROM_QUICK(place_base) {
+    const Body& body = *call->body;
+    const Scene& scene = *call->client->scene;
+    const Lock lock(*call->client);
+    if (!lock.is_held || !scene.find_poses.function || *scene.contact_count > scene.contact_room)
+        return 0;
+    const Quaternion q = quaternion_at(in + 4);
+    const double squared = dot(q, q);
+    // A pose that was read and is written back stays the same to the last digit.
+    const double scale = __builtin_fabs(squared - 1.0) < ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
+    for (int i = 0; i < SPATIAL; ++i)
+        body.velocity[i] = 0.0;
+    put(put(body.position, vector_at(in + 1)), Quaternion{q.x * scale, q.y * scale, q.z * scale, q.w * scale});
+    for (int32_t i = 0; i < *scene.contact_count; ++i)
+        scene.warm_starts[i] = 0.0;
+    run(scene.find_poses, body.tree);
+    return 1;
+}
+
+// Body, linear velocity, angular velocity, connection.
+CAROM_QUICK(set_base_velocity) {
+    const Body& body = *call->body;
+    const Scene& scene = *call->client->scene;
+    if (!is_given(in[1]) && !is_given(in[4]))
+        return 0;
+    const Lock lock(*call->client);
+    if (!lock.is_held || !scene.find_poses.function)
+        return 0;
+    if (is_given(in[1]))
+        put(body.velocity + 3, vector_at(in + 1));
+    if (is_given(in[4]))
+        put(body.velocity, vector_at(in + 4));
+    // PyBullet's getLinkState is up to date from here on.
+    run(scene.find_poses, body.tree);
+    return 1;
+}
+
+// Body, joint, position, velocity, connection.
+CAROM_QUICK(reset_joint) {
+    const Body& body = *call->body;
+    const Scene& scene = *call->client->scene;
+    if (!(0.0 <= in[1] && in[1] < body.link_count))
+        return 0;
+    const Joint joint = body.joints[static_cast<int64_t>(in[1])];
+    const Lock lock(*call->client);
+    if (!lock.is_held || !scene.find_poses.function || joint.position < 0)
+        return 0;
+    body.position[joint.position] = in[2];
+    body.velocity[joint.velocity] = in[3];
+    run(scene.find_poses, body.tree);
+    return 1;
+}
+
+namespace {
+
+// Brings up to date what links are asked for; false if it is not known how.
+bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
+    const Body& body = *call.body;
+    const Scene& scene = *call.client->scene;
+    if (!body.links || (with_velocity && !scene.find_twists.function) || (with_poses && !scene.find_poses.function))
+        return false;
+    if (with_poses)
+        run(scene.find_poses, body.tree);
+    if (with_velocity)
+        run(scene.find_twists, body.tree);
+    return true;
+}
+
+// A tuple of three numbers, of four, of three, and so on, but for velocities, which are three numbers each.
+PyObject* tuple_of_poses(const double* numbers, int count) {
+    PyObject* tuple = python.PyTuple_New(count);
+    for (int i = 0; tuple && i < count; ++i) {
+        const int length = i % 2 && i < 6 ? 4 : 3;
+        PyObject* group = tuple_of(numbers, length);
+        if (!group) {
+            python.Py_DecRef(tuple);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(tuple, i, group);
+        numbers += length;
+    }
+    return tuple;
+}
+
+// Writes the groups of numbers that make the state of a link; returns how many there are.
+int put_link_state(double* out, const Body& body, int64_t index, bool with_velocity) {
+    const Link& link = body.links[index];
+    const Pose pose = pose_of(body, index);
+    out = put(put(out, pose.position), pose.orientation);
+    for (int i = 0; i < POSE; ++i)
+        *out++ = link.inertial_frame[i];
+    out = put(out, pose.position + turned(pose.orientation, vector_at(link.from_inertial_frame)));
+    const Quaternion turn = quaternion_at(link.from_inertial_frame + 3);
+    out = put(out, link.is_turned ? canonical(pose.orientation * turn) : pose.orientation);
+    if (!with_velocity)
+        return 6;
+    const double* twist = body.twist + (index + 1) * SPATIAL;
+    put(put(out, vector_at(twist)), vector_at(twist + 3));
+    return 8;
+}
+
+}  // namespace
+
+// Body, link, whether to find velocities, whether to find poses, connection.
+CAROM_QUICK(link_state) {
+    const Body& body = *call->body;
+    const bool with_velocity = in[2] != 0.0;
+    if (!(0.0 <= in[1] && in[1] < body.link_count) || !prepare_links(*call, with_velocity, in[3] != 0.0))
+        return 0;
+    return put_link_state(out, body, static_cast<int64_t>(in[1]), with_velocity);
+}
+
+// Body, whether to find velocities, whether to find poses, connection; a sequence of links.
+extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call* call) {
+    const Body& body = *call->body;
+    const bool with_velocity = in[1] != 0.0;
+    double numbers[MOST_LINKS][LINK_NUMBERS];
+    int64_t links[MOST_LINKS];
+    const intptr_t count = python.PySequence_Size(call->sequences[0]);
+    if (count > MOST_LINKS)
+        return nullptr;
+    for (intptr_t i = 0; i < count; ++i) {
+        PyObject* item = python.PySequence_GetItem(call->sequences[0], i);
+        double index = -1.0;
+        const bool well = item && read_integer(item, &index) && 0.0 <= index && index < body.link_count;
+        if (item)
+            python.Py_DecRef(item);
+        if (!well)
+            return nullptr;
+        links[i] = static_cast<int64_t>(index);
+    }
+    if (!prepare_links(*call, with_velocity, in[2] != 0.0))
+        return nullptr;
+    int groups = 0;
+    for (intptr_t i = 0; i < count; ++i)
+        groups = put_link_state(numbers[i], body, links[i], with_velocity);
+    // From here on the body may be gone: new tuples let Python collect garbage, which may do anything.
+    PyObject* states = python.PyTuple_New(count);
+    for (intptr_t i = 0; states && i < count; ++i) {
+        PyObject* state = tuple_of_poses(numbers[i], groups);
+        if (!state) {
+            python.Py_DecRef(states);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(states, i, state);
+    }
+    return states;
+}

@@ -1,0 +1,85 @@
+// Contacts as tuples of Python: what quick calls of contacts make.
+
+#include "export.h"
+#include "quick_calls.h"
+#include "rows.h"
+
+namespace {
+
+// More are found by Python, which lets other threads run meanwhile.
+enum { MOST_CONTACTS = 64 };
+
+struct Contact {
+    int32_t body_a, body_b, link_a, link_b;
+    Vector point_a, point_b, normal, direction1, direction2;
+    double distance, force, force1, force2;
+};
+
+Contact contact_at(const ContactReport& report, int32_t i) {
+    return {
+        report.bodies_a[i],
+        report.bodies_b[i],
+        report.links_a[i],
+        report.links_b[i],
+        vector_at(report.points_a + 3 * i),
+        vector_at(report.points_b + 3 * i),
+        vector_at(report.normals + 3 * i),
+        vector_at(report.directions1 + 3 * i),
+        vector_at(report.directions2 + 3 * i),
+        report.distances[i],
+        report.forces[i],
+        report.forces1[i],
+        report.forces2[i],
+    };
+}
+
+PyObject* tuple_of(const Contact& contact) {
+    Row row(14);
+    row.add(0L);
+    row.add(static_cast<long>(contact.body_a));
+    row.add(static_cast<long>(contact.body_b));
+    row.add(static_cast<long>(contact.link_a));
+    row.add(static_cast<long>(contact.link_b));
+    row.add(contact.point_a);
+    row.add(contact.point_b);
+    row.add(contact.normal);
+    row.add(contact.distance);
+    row.add(contact.force);
+    row.add(contact.force1);
+    row.add(contact.direction1);
+    row.add(contact.force2);
+    row.add(contact.direction2);
+    return row.tuple;
+}
+
+}  // namespace
+
+// First body, second body, link of the first, of the second, connection.
+extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const Call* call) {
+    const ContactReport& report = call->client->scene->report;
+    double seconds;
+    if (!report.function || *report.there > report.room || *report.there > MOST_CONTACTS)
+        return nullptr;
+    if (!*report.there)
+        return python.PyTuple_New(0);
+    if (!read_time_step(*call->client, &seconds))
+        return nullptr;
+    {
+        const Instead<int32_t> count(report.count, *report.there);
+        const Instead<int32_t> body_a(report.body_a, static_cast<int32_t>(in[0]));
+        const Instead<int32_t> body_b(report.body_b, static_cast<int32_t>(in[1]));
+        const Instead<int32_t> link_a(report.link_a, static_cast<int32_t>(in[2]));
+        const Instead<int32_t> link_b(report.link_b, static_cast<int32_t>(in[3]));
+        const Instead<double> time_step(report.time_step, seconds);
+        report.function(report.bounds, report.arguments);
+    }
+    const int32_t found = *report.found;
+    Contact contacts[MOST_CONTACTS];
+    for (int32_t i = 0; i < found; ++i)
+        contacts[i] = contact_at(report, i);
+    // From here on the report may be gone: new tuples let Python collect garbage, which may do anything.
+    Row rows(found);
+    for (int32_t i = 0; rows.tuple && i < found; ++i)
+        rows.add(tuple_of(contacts[i]));
+    return rows.tuple;
+}

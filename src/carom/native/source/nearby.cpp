@@ -1,0 +1,205 @@
+// What is near: kernels of quick calls about the present bounds and distances of shapes.
+
+#include "export.h"
+#include "rows.h"
+
+namespace {
+
+// More is left to Python, which lets other threads run meanwhile.
+enum { MOST_SHAPES = 256, MOST_PAIRS = 64 };
+enum { PLACED = 1, PLANE = 4, ANY_LINK = -2 };
+// A distance that counts as none.
+const double FAR = 1e30;
+
+void run(const KernelCall& call) { call.function(call.bounds, call.arguments); }
+
+// Copies numbers; returns whether a bit is another.
+bool copy(double* to, const double* from, int64_t count) {
+    uint64_t differences = 0;
+    for (int64_t i = 0; i < count; ++i) {
+        uint64_t bits[2];
+        __builtin_memcpy(&bits[0], &to[i], sizeof(double));
+        __builtin_memcpy(&bits[1], &from[i], sizeof(double));
+        differences |= bits[0] ^ bits[1];
+        to[i] = from[i];
+    }
+    return differences != 0;
+}
+
+// Places shapes by the present coordinates; false if it is not known how.
+bool place(Placement& at) {
+    if (!at.place.function || at.shape_count > MOST_SHAPES)
+        return false;
+    PyObject* value = python.PyObject_GetAttr(at.shapes, at.changes_name);
+    double changes = -1.0;
+    const bool well = value && read_integer(value, &changes);
+    if (value)
+        python.Py_DecRef(value);
+    else
+        python.PyErr_Clear();
+    if (!well)
+        return false;
+    const bool moved = copy(at.placed_at, at.positions, at.position_count);
+    if (moved || *at.readiness < PLACED || at.changes != changes) {
+        // After a step these are the poses at the start of its last substep, and getters count on that.
+        copy(at.poses_before, at.poses, at.pose_count);
+        run(at.find_poses);
+        run(at.place);
+        copy(at.poses, at.poses_before, at.pose_count);
+        at.changes = static_cast<int64_t>(changes);
+    }
+    return true;
+}
+
+struct Range {
+    int64_t begin, end;
+};
+
+// Rows of a link, or of all links of a body.
+Range rows_of(const Body& body, double link) {
+    const int64_t first = body.first_link, end = first + 1 + body.link_count;
+    if (link <= ANY_LINK)
+        return {first, end};
+    const int64_t row = first + 1 + static_cast<int64_t>(link);
+    return row < end ? Range{row, row + 1} : Range{first, first};
+}
+
+struct Pair {
+    int32_t shape_a, shape_b, link_a, link_b;
+};
+
+// All pairs of shapes of some links and of others; -1 if there are too many.
+int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
+    int count = 0;
+    for (int64_t i = a.begin; i < a.end; ++i)
+        for (int64_t k = b.begin; k < b.end; ++k)
+            for (int32_t m = 0; m < at.link_shapes[i]; ++m)
+                for (int32_t n = 0; n < at.link_shapes[k]; ++n) {
+                    if (count == MOST_PAIRS)
+                        return -1;
+                    pairs[count++] = {
+                        at.first_shape[i] + m,
+                        at.first_shape[k] + n,
+                        static_cast<int32_t>(i - a.begin),
+                        static_cast<int32_t>(k - b.begin),
+                    };
+                }
+    return count;
+}
+
+PyObject* contact(int body_a, int body_b, int link_a, int link_b, const double* found) {
+    const Vector on_b = vector_at(found), normal = vector_at(found + 3), none = {0.0, 0.0, 0.0};
+    const double distance = found[6];
+    Row row(14);
+    row.add(0L);
+    row.add(static_cast<long>(body_a));
+    row.add(static_cast<long>(body_b));
+    row.add(static_cast<long>(link_a));
+    row.add(static_cast<long>(link_b));
+    row.add(Vector{on_b.x + distance * normal.x, on_b.y + distance * normal.y, on_b.z + distance * normal.z});
+    row.add(on_b);
+    row.add(normal);
+    row.add(distance);
+    row.add(0.0);
+    row.add(0.0);
+    row.add(none);
+    row.add(0.0);
+    row.add(none);
+    return row.tuple;
+}
+
+// A link by its body's number and its own, -1 for the base.
+struct Place {
+    int32_t body, link;
+    bool operator<(const Place& other) const { return body < other.body || (body == other.body && link < other.link); }
+};
+
+bool meets(const Placement& at, int64_t shape, const double* lower, const double* upper) {
+    if (at.kind[shape] == PLANE)
+        return true;
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(at.lower[3 * shape + axis] <= upper[axis] && at.upper[3 * shape + axis] >= lower[axis]))
+            return false;
+    return true;
+}
+
+}  // namespace
+
+// Body, another, distance, link of the first, of the second, a bare shape on either side, connection.
+extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const Call* call) {
+    Scene& scene = *call->client->scene;
+    const PairSearch& nearest = scene.nearest;
+    const Body *a = call->body, *b = find_body(*call->client, in[1]);
+    Pair pairs[MOST_PAIRS];
+    if (!b || in[5] >= 0.0 || in[6] >= 0.0 || !nearest.search.function || !place(scene.placement))
+        return nullptr;
+    const Range rows_a = rows_of(*a, in[3]), rows_b = rows_of(*b, in[4]);
+    const int count = find_pairs(scene.placement, rows_a, rows_b, pairs);
+    if (count < 0 || count > nearest.room)
+        return nullptr;
+    int32_t before[2][MOST_PAIRS];
+    for (int i = 0; i < count; ++i) {
+        before[0][i] = nearest.first[i], before[1][i] = nearest.second[i];
+        nearest.first[i] = pairs[i].shape_a, nearest.second[i] = pairs[i].shape_b;
+    }
+    int found = 0, of[MOST_PAIRS];
+    double points[MOST_PAIRS][8];
+    if (count) {
+        const Instead<int32_t> asked(nearest.count, count);
+        const Instead<double> reach(nearest.max_distance, in[2] < FAR ? in[2] : FAR);
+        run(nearest.search);
+        for (found = 0; found < *nearest.found; ++found) {
+            of[found] = nearest.pairs[found];
+            for (int k = 0; k < 8; ++k)
+                points[found][k] = nearest.points[8 * found + k];
+        }
+    }
+    for (int i = 0; i < count; ++i)
+        nearest.first[i] = before[0][i], nearest.second[i] = before[1][i];
+    const int first_a = static_cast<int>(rows_a.begin - a->first_link) - 1;
+    const int first_b = static_cast<int>(rows_b.begin - b->first_link) - 1;
+    // From here on the world may be another: new tuples let Python collect garbage, which may do anything.
+    Row contacts(found);
+    for (int i = 0; contacts.tuple && i < found; ++i) {
+        const Pair& pair = pairs[of[i]];
+        contacts.add(contact(
+            static_cast<int>(in[0]), static_cast<int>(in[1]), first_a + pair.link_a, first_b + pair.link_b, points[i]
+        ));
+    }
+    return contacts.tuple;
+}
+
+// Two corners of a box, connection.
+extern "C" CAROM_EXPORT PyObject* carom_overlapping(const double* in, const Call* call) {
+    Placement& at = call->client->scene->placement;
+    if (at.has_bare_links || !place(at))
+        return nullptr;
+    Place places[MOST_SHAPES];
+    int count = 0;
+    for (int64_t shape = 0; shape < at.shape_count; ++shape) {
+        if (!meets(at, shape, in, in + 3))
+            continue;
+        const int32_t row = at.link[shape];
+        const Place found = {at.place_body[row], at.place_link[row]};
+        int before = count;
+        while (before && found < places[before - 1])
+            --before;
+        if (before && !(places[before - 1] < found))
+            continue;
+        for (int i = count++; i > before; --i)
+            places[i] = places[i - 1];
+        places[before] = found;
+    }
+    if (!count) {
+        python.Py_IncRef(python.None);
+        return python.None;
+    }
+    Row links(count);
+    for (int i = 0; links.tuple && i < count; ++i) {
+        Row link(2);
+        link.add(static_cast<long>(places[i].body));
+        link.add(static_cast<long>(places[i].link));
+        links.add(link.tuple);
+    }
+    return links.tuple;
+}

@@ -1,0 +1,69 @@
+// CPython as builtins of this library see it: `carom.native.quick_calls` fills the table.
+//
+// The library names nothing of Python's, or it would be for one version alone, and would not load where there is
+// none. It is told where the functions are that it needs, all of them of the stable ABI of 3.10 to 3.14 but for the
+// buffers of 3.10, which are laid out the same.
+#pragma once
+
+#include <stdint.h>
+
+struct PyTypeObject;
+
+struct PyObject {
+    intptr_t references;
+    PyTypeObject* type;
+};
+
+struct PyBuffer {
+    void* memory;
+    PyObject* owner;
+    intptr_t bytes, item_size;
+    int is_read_only, axes;
+    char* format;
+    intptr_t *shape, *strides, *suboffsets;
+    void* internal;
+};
+
+// Result, name and arguments of each function.
+#define CAROM_PYTHON_FUNCTIONS(F)                                                     \
+    F(PyObject*, PyTuple_New, (intptr_t))                                             \
+    F(intptr_t, PyTuple_Size, (PyObject*))                                            \
+    F(PyObject*, PyTuple_GetItem, (PyObject*, intptr_t))                              \
+    F(int, PyTuple_SetItem, (PyObject*, intptr_t, PyObject*))                         \
+    F(intptr_t, PyList_Size, (PyObject*))                                             \
+    F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                               \
+    F(intptr_t, PySequence_Size, (PyObject*))                                         \
+    F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))                           \
+    F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))                            \
+    F(int, PyObject_SetAttr, (PyObject*, PyObject*, PyObject*))                       \
+    F(PyObject*, PyFloat_FromDouble, (double))                                        \
+    F(double, PyFloat_AsDouble, (PyObject*))                                          \
+    F(PyObject*, PyLong_FromLong, (long))                                             \
+    F(double, PyLong_AsDouble, (PyObject*))                                           \
+    F(PyObject*, PyErr_Occurred, ())                                                  \
+    F(void, PyErr_Clear, ())                                                          \
+    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))                           \
+    F(void, PyBuffer_Release, (PyBuffer*))                                            \
+    F(void, Py_IncRef, (PyObject*))                                                   \
+    F(void, Py_DecRef, (PyObject*))                                                   \
+    F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))                         \
+    F(PyObject*, PyObject_Vectorcall, (PyObject*, PyObject* const*, intptr_t, PyObject*))
+
+// Objects that are there once.
+#define CAROM_PYTHON_OBJECTS(F) F(None) F(True) F(False)
+// Types, of which instances have exactly this one.
+#define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(range) F(ndarray) F(float64)
+
+struct Python {
+#define F(result, name, arguments) result(*name) arguments;
+    CAROM_PYTHON_FUNCTIONS(F)
+#undef F
+#define F(name) PyObject* name;
+    CAROM_PYTHON_OBJECTS(F)
+#undef F
+#define F(name) PyTypeObject* name##_type;
+    CAROM_PYTHON_TYPES(F)
+#undef F
+};
+
+extern Python python;

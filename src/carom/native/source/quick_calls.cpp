@@ -1,0 +1,336 @@
+// Builtins of Python that try the usual case themselves and leave everything else to a Python function.
+//
+// A quick call has a kernel, which takes numbers and gives numbers, and a description of its arguments and results.
+// If the arguments are plain numbers and sequences of them, the kernel is asked. If they are not, if anything about
+// them is odd, or if the kernel declines, the Python function behind the builtin is called with the very same
+// arguments, and does what is right or says what is wrong. No code of Python runs before that, so that nothing can
+// change under this code's hands.
+
+#include "quick_calls.h"
+
+#include "export.h"
+
+Python python;
+
+extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused;
+
+namespace {
+
+enum { MOST_CALLS = 48, MOST_PARAMETERS = 26, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8, MOST_CLIENTS = 1024 };
+enum { RECORDS = 0x1C };  // PyBUF_RECORDS_RO
+
+// What is greater is refused, or looked at more closely, by Python.
+const double GREATEST = 1e30, LEAST_SQUARE = 1e-60, GREATEST_SQUARE = 1e60;
+
+struct Parameter {
+    PyObject* name;  // interned
+    double missing;  // its value where it is left out; NaN for None
+    int32_t kind;    // a letter, see `read`
+    int32_t is_required;
+};
+
+struct QuickCall {
+    Kernel kernel;
+    Maker maker;  // in the place of a kernel
+    int64_t parameter_count;
+    Parameter parameters[MOST_PARAMETERS];
+    // Lengths of the groups of results, 0 for a number alone, and -1 after the last one.
+    int32_t groups[MOST_GROUPS + 1];
+    int32_t is_flat;  // the one group is the result
+};
+
+QuickCall calls[MOST_CALLS];
+const Client* clients[MOST_CLIENTS];
+
+bool read_number(PyObject* value, double* number) {
+    if (value->type == python.float_type || value->type == python.float64_type) {
+        *number = python.PyFloat_AsDouble(value);
+    } else if (value->type == python.int_type) {
+        *number = python.PyLong_AsDouble(value);
+        if (*number == -1.0 && python.PyErr_Occurred()) {
+            python.PyErr_Clear();
+            return false;
+        }
+    } else {
+        return false;
+    }
+    return __builtin_fabs(*number) <= GREATEST;
+}
+
+bool read_array(PyObject* value, int count, double* numbers) {
+    PyBuffer buffer;
+    if (python.PyObject_GetBuffer(value, &buffer, RECORDS)) {
+        python.PyErr_Clear();
+        return false;
+    }
+    const char* format = buffer.format;
+    const bool is_double = format && format[0] == 'd' && !format[1];
+    const bool is_single = format && format[0] == 'f' && !format[1];
+    bool well = buffer.axes == 1 && buffer.shape[0] == count && (is_double || is_single);
+    for (int i = 0; well && i < count; ++i) {
+        const char* item = static_cast<char*>(buffer.memory) + i * buffer.strides[0];
+        if (is_double)
+            __builtin_memcpy(&numbers[i], item, sizeof(double));
+        else {
+            float single;
+            __builtin_memcpy(&single, item, sizeof single);
+            numbers[i] = single;
+        }
+        well = __builtin_fabs(numbers[i]) <= GREATEST;
+    }
+    python.PyBuffer_Release(&buffer);
+    return well;
+}
+
+int width_of(int kind) {
+    return kind == '-' || kind == 's' || kind == 'v' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
+}
+
+// Reads an argument; false if it is not of the kind.
+bool read(int kind, PyObject* value, double* numbers, Call* call) {
+    switch (kind) {
+    case '-':  // not used
+        return true;
+    case 'r':  // a number
+        return read_number(value, numbers);
+    case 'i':  // an integer
+        return read_integer(value, numbers);
+    case '3':  // three numbers
+        return read_numbers(value, 3, numbers);
+    case '4':
+        return read_numbers(value, 4, numbers);
+    case 'q': {  // a quaternion that has a direction
+        if (!read_numbers(value, 4, numbers))
+            return false;
+        const double x = numbers[0], y = numbers[1], z = numbers[2], w = numbers[3];
+        const double squared = x * x + y * y + z * z + w * w;
+        return LEAST_SQUARE < squared && squared < GREATEST_SQUARE;
+    }
+    case 'v':  // numbers, or None
+        call->sequences[call->sequence_count++] = value;
+        return true;
+    case 's':  // a sequence of integers
+        call->sequences[call->sequence_count++] = value;
+        return value->type == python.list_type || value->type == python.tuple_type || value->type == python.range_type;
+    case 'b':  // the number of a body
+    case 'c':  // that of a connection
+        return read_integer(value, numbers);
+    }
+    return false;
+}
+
+// Finds what the arguments name.
+bool find(const QuickCall& made, const double* numbers, Call* call) {
+    const double* body = nullptr;
+    for (int i = 0; i < made.parameter_count; ++i) {
+        const int kind = made.parameters[i].kind;
+        if (kind == 'b')
+            body = numbers;
+        if (kind == 'c') {
+            if (carom_quick_calls_paused || !(*numbers >= 0.0 && *numbers < MOST_CLIENTS))
+                return false;
+            call->client = clients[static_cast<int>(*numbers)];
+            if (!call->client)
+                return false;
+        }
+        numbers += width_of(kind);
+    }
+    if (body) {
+        call->body = call->client ? find_body(*call->client, *body) : nullptr;
+        return call->body;
+    }
+    return true;
+}
+
+// Puts the arguments of a call where its numbers are expected.
+bool read_all(
+    const QuickCall& made, PyObject* const* arguments, intptr_t count, PyObject* names, double* numbers, Call* call
+) {
+    const intptr_t named = names ? python.PyTuple_Size(names) : 0;
+    if (count > made.parameter_count)
+        return false;
+    intptr_t used = 0;
+    for (int i = 0; i < made.parameter_count; ++i) {
+        const Parameter& parameter = made.parameters[i];
+        PyObject* value = i < count ? arguments[i] : nullptr;
+        for (intptr_t k = 0; !value && k < named; ++k)
+            if (python.PyTuple_GetItem(names, k) == parameter.name) {
+                value = arguments[count + k];
+                ++used;
+            }
+        const int width = width_of(parameter.kind);
+        const bool is_none = value == python.None && parameter.missing != parameter.missing;
+        if (value && !(is_none && !parameter.is_required)) {
+            if (!read(parameter.kind, value, numbers, call))
+                return false;
+        } else {
+            if (parameter.is_required)
+                return false;
+            if (parameter.kind == 's' || parameter.kind == 'v')
+                call->sequences[call->sequence_count++] = nullptr;
+            for (int k = 0; k < width; ++k)
+                numbers[k] = parameter.missing;
+        }
+        numbers += width;
+    }
+    // What is left over is misspelt, or given twice.
+    return used == named;
+}
+
+PyObject* group_of(const double* numbers, int length) {
+    return length ? tuple_of(numbers, length) : python.PyFloat_FromDouble(*numbers);
+}
+
+PyObject* result_of(const QuickCall& made, const double* numbers, int count) {
+    if (made.groups[0] < 0) {
+        python.Py_IncRef(python.None);
+        return python.None;
+    }
+    if (made.is_flat)
+        return group_of(numbers, made.groups[0]);
+    PyObject* tuple = python.PyTuple_New(count);
+    for (int i = 0; tuple && i < count; ++i) {
+        PyObject* group = group_of(numbers, made.groups[i]);
+        if (!group) {
+            python.Py_DecRef(tuple);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(tuple, i, group);
+        numbers += made.groups[i] ? made.groups[i] : 1;
+    }
+    return tuple;
+}
+
+PyObject* answer(
+    const QuickCall& made, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names
+) {
+    double numbers[MOST_NUMBERS], results[MOST_RESULTS];
+    Call call = {};
+    if (read_all(made, arguments, count, names, numbers, &call) && find(made, numbers, &call)) {
+        if (made.maker) {
+            PyObject* result = made.maker(numbers, &call);
+            if (result || python.PyErr_Occurred())
+                return result;
+        } else if (const int groups = made.kernel(numbers, results, &call)) {
+            return result_of(made, results, groups);
+        }
+    }
+    return python.PyObject_Vectorcall(function, arguments, count, names);
+}
+
+// A C function for each quick call: CPython tells it the Python function, and nothing else of the call.
+typedef PyObject* (*Entry)(PyObject*, PyObject* const*, intptr_t, PyObject*);
+
+template <int place>
+PyObject* entry(PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names) {
+    return answer(calls[place], function, arguments, count, names);
+}
+
+template <int count>
+struct Entries {
+    static Entry at(int place) { return place == count - 1 ? entry<count - 1> : Entries<count - 1>::at(place); }
+};
+
+template <>
+struct Entries<0> {
+    static Entry at(int) { return nullptr; }
+};
+
+}  // namespace
+
+bool read_numbers(PyObject* value, int count, double* numbers) {
+    const bool is_tuple = value->type == python.tuple_type;
+    if (!is_tuple && value->type != python.list_type)
+        return python.ndarray_type && value->type == python.ndarray_type && read_array(value, count, numbers);
+    if ((is_tuple ? python.PyTuple_Size(value) : python.PyList_Size(value)) != count)
+        return false;
+    for (int i = 0; i < count; ++i) {
+        PyObject* item = is_tuple ? python.PyTuple_GetItem(value, i) : python.PyList_GetItem(value, i);
+        if (!read_number(item, &numbers[i]))
+            return false;
+    }
+    return true;
+}
+
+bool read_time_step(const Client& client, double* seconds) {
+    PyObject* value = python.PyObject_GetAttr(client.connection, client.time_step_name);
+    if (!value) {
+        python.PyErr_Clear();
+        return false;
+    }
+    const bool well = value->type == python.float_type;
+    if (well)
+        *seconds = python.PyFloat_AsDouble(value);
+    python.Py_DecRef(value);
+    return well;
+}
+
+PyObject* tuple_of(const double* numbers, int count) {
+    PyObject* tuple = python.PyTuple_New(count);
+    for (int i = 0; tuple && i < count; ++i) {
+        PyObject* number = python.PyFloat_FromDouble(numbers[i]);
+        if (!number) {
+            python.Py_DecRef(tuple);
+            return nullptr;
+        }
+        python.PyTuple_SetItem(tuple, i, number);
+    }
+    return tuple;
+}
+
+const Body* find_body(const Client& client, double number) {
+    return number >= 0.0 && number < client.body_count ? client.bodies[static_cast<int64_t>(number)] : nullptr;
+}
+
+bool read_integer(PyObject* value, double* number) {
+    return value->type == python.int_type && read_number(value, number) && __builtin_fabs(*number) <= 0x7FFFFFFF;
+}
+
+Lock::Lock(const Client& of) : client(of) {
+    PyObject* taken = python.PyObject_CallObject(client.acquire, client.without_waiting);
+    is_held = taken == python.True;
+    if (taken)
+        python.Py_DecRef(taken);
+    else
+        python.PyErr_Clear();
+}
+
+Lock::~Lock() {
+    if (!is_held)
+        return;
+    PyObject* nothing = python.PyObject_CallObject(client.release, nullptr);
+    if (nothing)
+        python.Py_DecRef(nothing);
+    else
+        python.PyErr_Clear();
+}
+
+// Names of what the host puts into `carom_python`, in its order.
+#define F(result, name, arguments) #name " "
+extern "C" CAROM_EXPORT const char carom_python_functions[] = CAROM_PYTHON_FUNCTIONS(F);
+#undef F
+#define F(name) #name " "
+extern "C" CAROM_EXPORT const char carom_python_objects[] = CAROM_PYTHON_OBJECTS(F) CAROM_PYTHON_TYPES(F);
+#undef F
+
+// Not 0 while Python has to see to all calls that name a connection.
+extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused = 0;
+
+extern "C" CAROM_EXPORT int carom_most_quick_calls() { return MOST_CALLS; }
+extern "C" CAROM_EXPORT int carom_most_clients() { return MOST_CLIENTS; }
+
+// Where the host finds the tables of Python, of quick calls and of clients. Returns 0 if another interpreter of the
+// process has them already.
+extern "C" CAROM_EXPORT int carom_claim_quick_calls(void** of_python, QuickCall** of_calls, const Client*** of_clients) {
+    static bool is_claimed = false;
+    if (is_claimed)
+        return 0;
+    is_claimed = true;
+    *of_python = &python;
+    *of_calls = calls;
+    *of_clients = clients;
+    return 1;
+}
+
+// The C code of the builtin of a quick call.
+extern "C" CAROM_EXPORT Entry carom_quick_entry(int place) { return Entries<MOST_CALLS>::at(place); }

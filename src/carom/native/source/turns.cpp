@@ -1,0 +1,191 @@
+// Rotations and rigid transforms by numbers: kernels of quick calls, and of `pybullet._maths.maths` by ctypes.
+
+#include <stdint.h>
+
+#include "export.h"
+#include "turns.h"
+
+// By names of our own, as `flags.py` says: those of the kernels.
+extern "C" double sin(double);
+extern "C" double cos(double);
+extern "C" double asin(double);
+extern "C" double acos(double);
+extern "C" double atan2(double, double);
+extern "C" double hypot(double, double);
+
+#define CAROM_TURNS(name) extern "C" CAROM_EXPORT int carom_##name(const double* in, double* out, const void*)
+
+namespace {
+
+const double HALF_PI = 1.5707963267948966;
+// A sine of the pitch from which on roll and yaw turn about the same axis.
+const double GIMBAL_LOCK = 0.99999;
+// Ten times the spacing of single-precision numbers at 1.
+const double NO_AXIS = 10.0 * 1.1920928955078125e-07;
+// How far the squared length of a unit quaternion in single precision may be from 1.
+const double UNIT = 1e-6;
+
+struct Matrix {
+    double m[3][3];
+};
+
+Matrix matrix_of(Quaternion q) {
+    const double s = 2.0 / dot(q, q);
+    const double xs = q.x * s, ys = q.y * s, zs = q.z * s;
+    const double wx = q.w * xs, wy = q.w * ys, wz = q.w * zs;
+    const double xx = q.x * xs, xy = q.x * ys, xz = q.x * zs;
+    const double yy = q.y * ys, yz = q.y * zs, zz = q.z * zs;
+    return {{
+        {1.0 - (yy + zz), xy - wz, xz + wy},
+        {xy + wz, 1.0 - (xx + zz), yz - wx},
+        {xz - wy, yz + wx, 1.0 - (xx + yy)},
+    }};
+}
+
+double length_of(Vector v) { return hypot(hypot(v.x, v.y), v.z); }
+double to_cosine(double x) { return x > 1.0 ? 1.0 : x < -1.0 ? -1.0 : x; }
+
+// End · start⁻¹ with the nearer of the two quaternions of `end`.
+Quaternion difference(Quaternion start, Quaternion end) {
+    return (dot(start, end) > 0.0 ? end : -end) * conjugate(start);
+}
+
+}  // namespace
+
+CAROM_TURNS(quaternion_from_euler) {
+    const double sr = sin(in[0] / 2.0), cr = cos(in[0] / 2.0);
+    const double sp = sin(in[1] / 2.0), cp = cos(in[1] / 2.0);
+    const double sy = sin(in[2] / 2.0), cy = cos(in[2] / 2.0);
+    put(out, unit({
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    }));
+    return 1;
+}
+
+CAROM_TURNS(euler_from_quaternion) {
+    const double x = in[0], y = in[1], z = in[2], w = in[3];
+    const double sine = -2.0 * (x * z - w * y);
+    if (sine <= -GIMBAL_LOCK) {
+        put(out, Vector{0.0, -HALF_PI, 2.0 * atan2(x, -y)});
+        return 1;
+    }
+    if (sine >= GIMBAL_LOCK) {
+        put(out, Vector{0.0, HALF_PI, 2.0 * atan2(-x, y)});
+        return 1;
+    }
+    const double xx = x * x, yy = y * y, zz = z * z, ww = w * w;
+    const double roll = atan2(2.0 * (y * z + w * x), ww - xx - yy + zz);
+    put(out, Vector{roll, asin(sine), atan2(2.0 * (x * y + w * z), ww + xx - yy - zz)});
+    return 1;
+}
+
+CAROM_TURNS(matrix_from_quaternion) {
+    const Matrix matrix = matrix_of(quaternion_at(in));
+    for (int i = 0; i < 9; ++i)
+        out[i] = matrix.m[i / 3][i % 3];
+    return 1;
+}
+
+CAROM_TURNS(multiply_transforms) {
+    const Quaternion turn = unit(quaternion_at(in + 3));
+    const Quaternion product = turn * unit(quaternion_at(in + 10));
+    put(put(out, vector_at(in) + turned(turn, vector_at(in + 7))), canonical(product));
+    return 2;
+}
+
+CAROM_TURNS(invert_transform) {
+    const Quaternion turn = canonical(unit(conjugate(quaternion_at(in + 3))));
+    put(put(out, -turned(turn, vector_at(in))), turn);
+    return 2;
+}
+
+CAROM_TURNS(rotate_vector) {
+    const Quaternion q = quaternion_at(in);
+    const Quaternion turned = q * Quaternion{in[4], in[5], in[6], 0.0} * conjugate(q);
+    put(out, Vector{turned.x, turned.y, turned.z});
+    return 1;
+}
+
+CAROM_TURNS(quaternion_from_axis_angle) {
+    const Vector axis = vector_at(in);
+    const double half = 0.5 * in[3], length = length_of(axis);
+    if (length == 0.0) {
+        put(out, Quaternion{sin(half), 0.0, 0.0, cos(half)});
+        return 1;
+    }
+    const double s = sin(half) / length;
+    put(out, Quaternion{axis.x * s, axis.y * s, axis.z * s, cos(half)});
+    return 1;
+}
+
+CAROM_TURNS(axis_angle_from_quaternion) {
+    // This close to no rotation the answer hangs on the rounding of w to single precision.
+    const double w = static_cast<float>(in[3]);
+    const double sine_squared = 1.0 - w * w;
+    out[3] = 2.0 * acos(to_cosine(w));
+    if (sine_squared < NO_AXIS) {
+        put(out, Vector{1.0, 0.0, 0.0});
+        return 2;
+    }
+    const double s = 1.0 / __builtin_sqrt(sine_squared);
+    put(out, Vector{in[0] * s, in[1] * s, in[2] * s});
+    return 2;
+}
+
+CAROM_TURNS(quaternion_slerp) {
+    const Quaternion a = quaternion_at(in), b = quaternion_at(in + 4);
+    const double fraction = in[8], cosine = dot(a, b) / __builtin_sqrt(dot(a, a) * dot(b, b));
+    if (__builtin_fabs(cosine) >= 1.0) {
+        put(out, a);
+        return 1;
+    }
+    const double sign = cosine < 0.0 ? -1.0 : 1.0, angle = acos(sign * cosine);
+    const double from_a = sin((1.0 - fraction) * angle) / sin(angle);
+    const double from_b = sin(sign * fraction * angle) / sin(angle);
+    put(out, Quaternion{
+        a.x * from_a + b.x * from_b,
+        a.y * from_a + b.y * from_b,
+        a.z * from_a + b.z * from_b,
+        a.w * from_a + b.w * from_b,
+    });
+    return 1;
+}
+
+CAROM_TURNS(difference_quaternion) {
+    put(out, difference(quaternion_at(in), quaternion_at(in + 4)));
+    return 1;
+}
+
+CAROM_TURNS(axis_difference_quaternion) {
+    const Matrix turn = matrix_of(conjugate(quaternion_at(in)) * quaternion_at(in + 4));
+    const double (*m)[3] = turn.m;
+    const double sine = m[2][0];
+    if (sine >= 1.0)
+        put(out, Vector{atan2(m[0][1], m[1][1]), HALF_PI, 0.0});
+    else if (sine <= -1.0)
+        put(out, Vector{-atan2(m[0][1], m[1][1]), -HALF_PI, 0.0});
+    else
+        put(out, Vector{atan2(-m[2][1], m[2][2]), asin(sine), atan2(-m[1][0], m[0][0])});
+    return 1;
+}
+
+// Declines where the time is too short for a velocity to be a number.
+CAROM_TURNS(velocity_quaternion) {
+    const Quaternion turn = difference(quaternion_at(in), quaternion_at(in + 4));
+    const double duration = in[8], sine = length_of({turn.x, turn.y, turn.z}), w = turn.w;
+    if (sine == 0.0) {
+        put(out, Vector{0.0, 0.0, 0.0});
+        return 1;
+    }
+    // Of quaternions that are not of unit length PyBullet looks at w alone.
+    const bool is_unit = __builtin_fabs(sine * sine + w * w - 1.0) < UNIT;
+    const double angle = 2.0 * (is_unit ? atan2(sine, w) : acos(to_cosine(w)));
+    const double scale = angle / (sine * duration);
+    if (!__builtin_isfinite(scale))
+        return 0;
+    put(out, Vector{turn.x * scale, turn.y * scale, turn.z * scale});
+    return 1;
+}

@@ -1,0 +1,76 @@
+// Quaternions (x, y, z, w) and vectors, in the order of operations of `pybullet._maths.rotations`.
+#pragma once
+
+struct Vector {
+    double x, y, z;
+};
+
+struct Quaternion {
+    double x, y, z, w;
+};
+
+inline Vector vector_at(const double* at) { return {at[0], at[1], at[2]}; }
+inline Quaternion quaternion_at(const double* at) { return {at[0], at[1], at[2], at[3]}; }
+
+inline double* put(double* at, Vector v) {
+    at[0] = v.x, at[1] = v.y, at[2] = v.z;
+    return at + 3;
+}
+
+inline double* put(double* at, Quaternion q) {
+    at[0] = q.x, at[1] = q.y, at[2] = q.z, at[3] = q.w;
+    return at + 4;
+}
+
+inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator-(Vector v) { return {-v.x, -v.y, -v.z}; }
+inline Quaternion operator-(Quaternion q) { return {-q.x, -q.y, -q.z, -q.w}; }
+inline Quaternion conjugate(Quaternion q) { return {-q.x, -q.y, -q.z, q.w}; }
+
+inline Vector cross(Vector a, Vector b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+inline double dot(Quaternion a, Quaternion b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
+
+// The rotation b followed by a.
+inline Quaternion operator*(Quaternion a, Quaternion b) {
+    return {
+        a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+        a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
+        a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x,
+        a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+    };
+}
+
+inline Quaternion unit(Quaternion q) {
+    const double length = __builtin_sqrt(dot(q, q));
+    return {q.x / length, q.y / length, q.z / length, q.w / length};
+}
+
+// A vector turned by a quaternion of unit length.
+inline Vector turned(Quaternion q, Vector v) {
+    const double tx = 2.0 * (q.y * v.z - q.z * v.y);
+    const double ty = 2.0 * (q.z * v.x - q.x * v.z);
+    const double tz = 2.0 * (q.x * v.y - q.y * v.x);
+    return {
+        v.x + q.w * tx + q.y * tz - q.z * ty,
+        v.y + q.w * ty + q.z * tx - q.x * tz,
+        v.z + q.w * tz + q.x * ty - q.y * tx,
+    };
+}
+
+// The one of the two quaternions of a rotation that PyBullet reports: w is positive while the trace of the matrix
+// is, or else the largest of x, y and z is.
+inline Quaternion canonical(Quaternion q) {
+    double leading = q.w;
+    if (!(q.w * q.w > 0.25)) {
+        leading = q.x;
+        if (__builtin_fabs(q.y) > __builtin_fabs(leading))
+            leading = q.y;
+        if (__builtin_fabs(q.z) > __builtin_fabs(leading))
+            leading = q.z;
+    }
+    return leading < 0.0 ? -q : q;
+}

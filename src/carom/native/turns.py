@@ -1,0 +1,31 @@
+"""Rotations and rigid transforms by numbers, the same bits on every machine: `native/source/turns.cpp`."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from carom.native.library import library
+
+
+def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
+    """What a kernel gives for some numbers.
+
+    Args:
+        kernel: Its name, without the prefix.
+        numbers: As many as it takes.
+        count: How many it gives.
+
+    Returns:
+        These; None if there is no result for such numbers.
+    """
+    results = (ctypes.c_double * count)()
+    well = _function(kernel)((ctypes.c_double * len(numbers))(*numbers), results, None)
+    return tuple(results) if well else None
+
+
+@cache
+def _function(kernel: str) -> Any:
+    return library().symbols[f"carom_{kernel}"]

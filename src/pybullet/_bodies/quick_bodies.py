@@ -1,0 +1,144 @@
+"""What quick calls know of the bodies of a connection.
+
+A record of addresses stands for each body that `BodyTable` has, and goes with it: whatever moves rows of the
+state makes the table forget its bodies. The arrays that addresses are of are kept as long as the record is
+there, so that what is out of date could only be wrong, and not somebody else's memory.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection
+from ctypes import Array, addressof, c_void_p
+from typing import TYPE_CHECKING, Any
+
+from carom.native.quick_calls import Body, Client, Joint, Link
+
+if TYPE_CHECKING:
+    from carom.native.quick_calls import QuickCalls
+    from carom.scene.body import Body as Handle
+    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._bodies.link_access import LinkAccess
+    from pybullet._clients.clients import Client as Connection
+
+_DOUBLE = 8
+_POSE_ROW, _SPATIAL_ROW = 7 * _DOUBLE, 6 * _DOUBLE
+# Names of attributes are interned.
+_TIME_STEP = sys.intern("time_step")
+_FIRST_ROOM = 16
+# Bodies of greater numbers are left to Python.
+_MOST_ROOM = 1 << 20
+
+
+class QuickBodies:
+    """The bodies of a connection as quick calls find them, until it is closed.
+
+    Args:
+        calls: The quick calls.
+        number: Of the connection.
+        client: The connection.
+    """
+
+    __slots__ = ("_clients", "_kept", "_number", "_places", "_record", "_shown")
+
+    def __init__(self, calls: QuickCalls, number: int, client: Connection) -> None:
+        self._clients = calls.clients
+        self._number: int | None = number
+        self._places: Array[c_void_p] = (c_void_p * _FIRST_ROOM)()
+        # What addresses point to, by the number of the body.
+        self._shown: dict[int, Any] = {}
+        lock = client.lock
+        self._kept = (client.world.quick, lock.acquire, lock.release, (False,))
+        self._record = Client(
+            scene=client.world.quick.address,
+            bodies=addressof(self._places),
+            body_count=_FIRST_ROOM,
+            acquire=id(self._kept[1]),
+            release=id(self._kept[2]),
+            without_waiting=id(self._kept[3]),
+            connection=id(client),
+            time_step_name=id(_TIME_STEP),
+        )
+        self._clients[number] = addressof(self._record)
+
+    def close(self) -> None:
+        """Leave all calls that name the connection to Python."""
+        if self._number is not None:
+            self._clients[self._number] = None
+            self._number = None
+
+    # A script may end, or drop the module, without disconnecting.
+    __del__ = close
+
+    def show(self, access: BodyAccess) -> None:
+        """Show a body to the library, unless it is a soft one."""
+        body = access.body
+        if body.spec.soft is not None or body.id >= _MOST_ROOM:
+            return
+        state = body.world.arrays.state.struct()
+        row = body.first_link
+        joints = _joint_records(body)
+        record = Body(
+            position=state.position.data + body.first_position * _DOUBLE,
+            velocity=state.dof_velocity.data + body.first_velocity * _DOUBLE,
+            pose=state.link_pose.data + row * _POSE_ROW,
+            twist=state.link_twist.data + row * _SPATIAL_ROW,
+            wrench=state.link_wrench.data + row * _SPATIAL_ROW,
+            joints=addressof(joints),
+            link_count=body.joint_count,
+            tree=body.rows.tree,
+            first_link=row,
+            dynamics=id(body.all_dynamics),
+        )
+        access.record = record
+        if body.id >= len(self._places):
+            self._make_room(body.id + 1)
+        self._shown[body.id] = record, access, state, joints, body.all_dynamics
+        self._places[body.id] = addressof(record)
+
+    def hide(self, body_id: int) -> None:
+        """Show a body no more."""
+        if body_id in self._shown:
+            self._places[body_id] = None
+            del self._shown[body_id]
+
+    def hide_all(self) -> None:
+        """Show no body any more."""
+        self._record.body_count = 0
+        for body_id in self._shown:
+            self._places[body_id] = None
+        self._shown.clear()
+        self._record.body_count = len(self._places)
+
+    def _make_room(self, count: int) -> None:
+        places = (c_void_p * max(count, 2 * len(self._places)))()
+        places[: len(self._places)] = self._places[:]
+        # The library sees no bodies while it sees neither table.
+        self._record.body_count = 0
+        self._record.bodies = addressof(places)
+        self._places = places
+        self._record.body_count = len(places)
+
+
+def _joint_records(body: Handle) -> Array[Joint]:
+    first, first_velocity = body.first_position, body.first_velocity
+    return (Joint * body.joint_count)(
+        *[
+            (position - first, velocity - first_velocity) if freedoms == 1 else (-1, -1)
+            for position, velocity, freedoms in zip(
+                body.position_index, body.velocity_index, body.velocity_count, strict=True
+            )
+        ]
+    )
+
+
+def link_records(links: Collection[LinkAccess]) -> Array[Link]:
+    """What the library is shown of the links of a body other than its base."""
+    records = (Link * len(links))()
+    for record, link in zip(records, links, strict=True):
+        position, orientation = link.frame
+        back = link.from_inertial
+        record.inertial_frame[:] = (*position, *orientation)
+        record.from_inertial_frame[:] = (*back.position, *back.orientation)
+        record.is_turned = link.rotated
+    return records

@@ -1,0 +1,105 @@
+"""Functions that the native library tries first: those that loops call every step.
+
+Which these are, and what their arguments and results look like. A builtin whose call the library declines, or
+cannot read, calls its Python function as if there were nothing else.
+"""
+
+from __future__ import annotations
+
+from math import nan
+from threading import Lock
+from typing import TYPE_CHECKING
+
+from pybullet._calls.builtin import exports, vectorcall
+
+if TYPE_CHECKING:
+    from carom.native.quick_calls import QuickCalls
+
+_KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
+    "getQuaternionFromEuler": ("quaternion_from_euler", "3-", (4,)),
+    "getEulerFromQuaternion": ("euler_from_quaternion", "4-", (3,)),
+    "getMatrixFromQuaternion": ("matrix_from_quaternion", "q-", (9,)),
+    "multiplyTransforms": ("multiply_transforms", "3q3q-", (3, 4)),
+    "invertTransform": ("invert_transform", "3q-", (3, 4)),
+    "rotateVector": ("rotate_vector", "43-", (3,)),
+    "getQuaternionFromAxisAngle": ("quaternion_from_axis_angle", "3r-", (4,)),
+    "getAxisAngleFromQuaternion": ("axis_angle_from_quaternion", "4-", (3, 0)),
+    "getQuaternionSlerp": ("quaternion_slerp", "qqr-", (4,)),
+    "getDifferenceQuaternion": ("difference_quaternion", "44-", (4,)),
+    "getAxisDifferenceQuaternion": ("axis_difference_quaternion", "qq-", (3,)),
+    "calculateVelocityQuaternion": ("velocity_quaternion", "44r-", (3,)),
+    "getBasePositionAndOrientation": ("base_pose", "bc", (3, 4)),
+    "getBaseVelocity": ("base_velocity", "bc", (3, 3)),
+    "getLinkState": ("link_state", "biiic", (3, 4, 3, 4, 3, 4, 3, 3)),
+    "getLinkStates": ("link_states", "bsiic", None),
+    "getContactPoints": ("contact_points", "iiiic", None),
+    "getClosestPoints": ("closest_points", "biriiii----c", None),
+    "getOverlappingObjects": ("overlapping", "33c", None),
+    "applyExternalForce": ("apply_force", "bi33ic", ()),
+    "applyExternalTorque": ("apply_torque", "bi3ic", ()),
+    "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
+    "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
+    "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
+    "changeDynamics": ("change_surface", "birrrrrrrrri3rrir3rrrrrrc", ()),
+    "resetJointState": ("reset_joint", "birrc", ()),
+}
+"""Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the
+result), by the name of the function. What the letters mean is in `carom.native.quick_calls.Parameter`."""
+
+
+class _Installed:
+    """What there is of quick calls.
+
+    Attributes:
+        calls: The quick calls; None before they are installed, and where there are none.
+        tried: They have been installed, or cannot be.
+        is_paused: All calls that name a connection are left to Python.
+    """
+
+    calls: QuickCalls | None = None
+    tried = False
+    is_paused = False
+
+
+_installing = Lock()
+
+
+def install() -> QuickCalls | None:
+    """Lets the native library try these functions from now on; None where it cannot."""
+    with _installing:
+        if not _Installed.tried:
+            from carom.native.quick_calls import quick_calls
+
+            calls = quick_calls(vectorcall)
+            _Installed.tried = True
+            if calls is not None:
+                calls.is_paused.value = _Installed.is_paused
+                _Installed.calls = calls
+                for name, description in _KERNELS.items():
+                    _install(calls, name, *description)
+    if _Installed.calls is not None:
+        _Installed.calls.meet_numpy()
+    return _Installed.calls
+
+
+def pause(*, paused: bool) -> None:
+    """Leaves all calls that name a connection to Python, or no longer."""
+    with _installing:
+        _Installed.is_paused = paused
+        if _Installed.calls is not None:
+            _Installed.calls.is_paused.value = paused
+
+
+def _install(calls: QuickCalls, name: str, kernel: str, kinds: str, groups: tuple[int, ...] | None) -> None:
+    from carom.native.quick_calls import Parameter
+
+    export = exports[name]
+    # The function's own code: that which asks for detours has no parameters.
+    names = export.code.co_varnames[: export.code.co_argcount]
+    defaults = export.function.__defaults__ or ()
+    required = len(names) - len(defaults)
+    missing = [None] * required + [nan if value is None else float(value) for value in defaults]
+    parameters = [Parameter(*parts) for parts in zip(names, kinds, missing, strict=True)]
+    export.definition.code = calls.add(
+        kernel, parameters, groups, flat=groups is not None and len(groups) == 1
+    )
