@@ -122,11 +122,11 @@ def test_rays_in_the_frame_of_a_link(turned, link, position):
 
 
 def test_rays_in_the_frame_of_no_link_are_in_that_of_the_world(turned):
-    ray = [0.05, 0.1, 5], [0.05, 0.1, -5]
-    hits = p.rayTest(*ray)
+    start, end = [0.05, 0.1, 5], [0.05, 0.1, -5]
+    hits = p.rayTest(start, end)
     assert hits[0][0] == turned
     for link in (1, 7, -2):
-        assert p.rayTestBatch([ray[0]], [ray[1]], 1, turned, link) == hits
+        assert p.rayTestBatch([start], [end], 1, turned, link) == hits
 
 
 def test_rays_see_where_bodies_are_now(things):

@@ -50,8 +50,10 @@ def urdf_text(robot: Robot, folder: Path) -> str:
         folder: Where the file will be: meshes and textures are named as seen from there.
 
     Raises:
-        DescriptionError: It has a shape that URDF cannot say.
+        DescriptionError: It has a shape that URDF cannot say, or is a soft body.
     """
+    if robot.deformable is not None:
+        raise DescriptionError("soft bodies are not written as URDF", file=robot.source)
     return "\n".join(['<?xml version="1.0"?>', *_Writer(robot, folder).lines(), ""])
 
 

@@ -57,13 +57,14 @@ class ShapeKind(IntEnum):
 
 
 class Rolling(IntEnum):
-    """About which axis of its frame a shape is round."""
+    """About which axis of its frame a shape is round; or that it is a hull that is not."""
 
     NONE = 0
     ABOUT_X = 1
     ABOUT_Y = 2
     ABOUT_Z = 3
     ABOUT_ANY = 4
+    OFF_FACES = 5
 
 
 DOF_COUNT = {
@@ -135,6 +136,7 @@ HEIGHTFIELD = int(ShapeKind.HEIGHTFIELD)
 NO_ROLLING = int(Rolling.NONE)
 ROLLING_ABOUT_X = int(Rolling.ABOUT_X)
 ROLLING_ABOUT_ANY = int(Rolling.ABOUT_ANY)
+ROLLING_OFF_FACES = int(Rolling.OFF_FACES)
 
 USER_PRISMATIC = int(UserConstraintKind.PRISMATIC)
 USER_FIXED = int(UserConstraintKind.FIXED)

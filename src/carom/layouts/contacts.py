@@ -75,6 +75,7 @@ class Shapes:
     shape_vertex_count: Ints
     shape_first_face: Ints
     shape_face_count: Ints
+    shape_flat_faces: Ints  # of hulls: so many of its faces, the first, are large enough to lie on
     shape_center: Vectors3  # of the bounds in the shape frame; of hulls, triangle meshes, height fields
     shape_columns: Ints  # points in one row of a height field
     shape_first_node: Ints  # of a triangle mesh's hierarchy, see `triangle_hierarchy`

@@ -113,6 +113,7 @@ class SoftArrays:
         numpy["soft_margin"][row] = spec.margin
         numpy["soft_thickness"][row] = spec.thickness()
         numpy["soft_self_collision"][row] = spec.self_collision
+        numpy["soft_gravity_factor"][row] = spec.gravity_factor
         numpy["soft_mu"][row] = spec.mu
         numpy["soft_lam"][row] = spec.lam
         numpy["soft_damping"][row] = spec.damping

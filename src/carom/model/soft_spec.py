@@ -48,6 +48,7 @@ class SoftSpec:
         damps_all_directions: Springs damp every relative motion of their ends, not only that along them.
         margin: Distance at which nodes rest on other surfaces [m].
         self_collision: Its nodes do not go through its own faces.
+        gravity_factor: Share of the world's gravity that pulls it.
         skin: The mesh that is seen in place of the faces, if there is one.
     """
 
@@ -63,6 +64,7 @@ class SoftSpec:
     damps_all_directions: bool = False
     margin: float = 0.02
     self_collision: bool = False
+    gravity_factor: float = 1.0
     skin: Skin | None = None
 
     def edge_matrices(self) -> NDArray[np.float64]:

@@ -41,7 +41,7 @@ class DescriptionLoading(BodyAdding):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.model.from_files import urdf_body
+        from carom.soft.from_urdf import urdf_body
 
         spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
         return self._add(spec, position, orientation)
