@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
 
-from carom.native.building.cache import cache_folder
+from carom.native.building.cache import alone, cache_folder
 
 ROOT = Path(__file__).parents[1]
 LIST = Path(__file__).with_name("mutations.json")
@@ -106,9 +106,12 @@ def copy_checkout(folder: Path) -> None:
 
 def copy_cache(folder: Path) -> None:
     """Copy compiled objects and what the compiler keeps, so that mutants drive nothing out of the cache."""
-    for part in ("libraries", "objects", "zig"):
-        if (cache_folder() / part).is_dir():
-            shutil.copytree(cache_folder() / part, folder / part)
+    kept = cache_folder()
+    # While nobody builds: files come and go.
+    with alone(kept):
+        for part in ("libraries", "objects", "zig"):
+            if (kept / part).is_dir():
+                shutil.copytree(kept / part, folder / part)
 
 
 class Copy:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.collision.scene import Scene, hull
 
 import pybullet as p
 
@@ -89,3 +90,18 @@ def test_a_ray_from_the_middle_goes_out() -> None:
     p.createMultiBody(0, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1))
     assert p.rayTest([0, 0, 0], [1, 0, 0])[0][0] == -1
     p.disconnect(client)
+
+
+@pytest.mark.parametrize(
+    ("start", "towards", "hit"),
+    [(0.55, -1.0, True), (0.55, 1.0, False), (0.3, -1.0, False), (0.3, 1.0, False)],
+    ids=["in the margin, inwards", "outwards", "in the core", "outwards from there"],
+)
+def test_the_margin_of_a_hull_is_around_its_faces(start: float, towards: float, hit: bool) -> None:
+    corners = [[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    scene = Scene([hull(corners, margin=0.1)])
+    shapes, fractions, normals = scene.rays([[start, 0.1, 0.2]], [[start + 2.0 * towards, 0.1, 0.2]])
+    assert shapes.tolist() == [0 if hit else -1]
+    if hit:
+        assert fractions.tolist() == [0.0]
+        assert normals.tolist() == [[1.0, 0.0, 0.0]]

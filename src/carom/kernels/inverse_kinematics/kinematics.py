@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation
 from carom.kernels.structs import Chain, ChainSizes, Search
-from carom.kernels.types import Int32, Quaternion, Reals, Vector3, Vector4, func, real
+from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 
 
@@ -181,7 +181,7 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
 
 
 @func
-def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Vector4:
+def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
     """The quaternion at `q` after turning by the rotation vector `rate`, in its own axes."""
     angle = wp.length(rate)
     scale = real(0.5)
@@ -189,8 +189,7 @@ def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Vector4:
         scale = wp.sin(0.5 * angle) / angle
     change = Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * angle))
     now = Quaternion(coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3])
-    result = wp.normalize(now * change)
-    return Vector4(result[0], result[1], result[2], result[3])
+    return wp.normalize(now * change)
 
 
 @func

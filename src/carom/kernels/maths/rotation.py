@@ -5,11 +5,17 @@ import math
 import warp as wp
 
 from carom.kernels.maths.min_max import maximum
-from carom.kernels.types import Matrix3, Quaternion, Vector3, func, real
+from carom.kernels.types import Int32, Matrix3, Quaternion, Vector3, func, real
 
 # An orientation is not meant to turn by more than this in one step (as in Bullet).
 MAX_ANGLE_PER_STEP = real(0.25 * math.pi)
 _SMALL_RATE = real(0.001)
+
+
+@func
+def column(matrix: Matrix3, i: Int32) -> Vector3:
+    """Column `i` of a matrix."""
+    return Vector3(matrix[0, i], matrix[1, i], matrix[2, i])
 
 
 @func

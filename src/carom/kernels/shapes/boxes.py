@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.min_max import greatest_entry, least_entry, lower_corner
+from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import toward
 from carom.kernels.shapes.segments import nearest_places
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
@@ -19,12 +20,6 @@ FACE_SHARE = real(1.0e-6)
 TOUCHING_SHARE = real(1.0e-12)
 # Squared sine of the angle below which edges are parallel: faces tell all.
 PARALLEL = real(1.0e-8)
-
-
-@func
-def column(matrix: Matrix3, axis: Int32) -> Vector3:
-    """A column of a matrix."""
-    return Vector3(matrix[0, axis], matrix[1, axis], matrix[2, axis])
 
 
 @func

@@ -3,7 +3,8 @@
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
-from carom.kernels.shapes.boxes import column, main_axis
+from carom.kernels.maths.rotation import column
+from carom.kernels.shapes.boxes import main_axis
 from carom.kernels.shapes.cores import Core
 from carom.kernels.types import Int32, Vector3, Vector3Rows, Vector8Rows, func, real, shared_func
 from carom.layouts.codes import BOX

@@ -2,7 +2,8 @@
 
 import warp as wp
 
-from carom.kernels.shapes.boxes import column, main_axis
+from carom.kernels.maths.rotation import column
+from carom.kernels.shapes.boxes import main_axis
 from carom.kernels.shapes.cores import Core, toward
 from carom.kernels.types import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, TRIANGLES

@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.min_max import minimum
-from carom.kernels.soft.elasticity import column
+from carom.kernels.maths.rotation import column
 from carom.kernels.soft.pushes import push_along, row_mass, row_velocity
 from carom.kernels.soft.tangents import tangents
 from carom.kernels.structs import PairRows, Scratch, SoftModel, SoftWork, State

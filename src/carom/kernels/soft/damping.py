@@ -6,7 +6,8 @@ and b the sum of the squared forces by the masses, it never turns motion round, 
 
 import warp as wp
 
-from carom.kernels.soft.elasticity import column, edges
+from carom.kernels.maths.rotation import column
+from carom.kernels.soft.elasticity import edges
 from carom.kernels.structs import SoftModel, State
 from carom.kernels.types import Int32, func, real
 

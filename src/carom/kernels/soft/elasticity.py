@@ -11,8 +11,9 @@ gives way where it cannot follow, and never overshoots.
 
 import warp as wp
 
+from carom.kernels.maths.rotation import column
 from carom.kernels.structs import SoftModel, SoftWork, State
-from carom.kernels.types import Index4, Int32, Matrix3, Vector3, Vector3Rows, func, real
+from carom.kernels.types import Index4, Int32, Matrix3, Vector3Rows, func, real
 
 # Shorter springs have no direction [m].
 _SHORTEST = real(1.0e-12)
@@ -52,12 +53,6 @@ def edges(places: Vector3Rows, world: Int32, four: Index4) -> Matrix3:
     q = places[world, four[2]] - origin
     r = places[world, four[3]] - origin
     return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
-
-
-@func
-def column(matrix: Matrix3, i: Int32) -> Vector3:
-    """Column `i` of a matrix."""
-    return Vector3(matrix[0, i], matrix[1, i], matrix[2, i])
 
 
 @func

@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.dynamics.quarantine import report_fault
-from carom.kernels.soft.elasticity import column
+from carom.kernels.maths.rotation import column
 from carom.kernels.structs import Model, SoftModel, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Transform, Vector3, func, real
 

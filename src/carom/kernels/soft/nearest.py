@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.min_max import maximum, minimum
+from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.triangles import (
     first_cursor,
     following_cursor,
@@ -10,7 +11,6 @@ from carom.kernels.shapes.triangles import (
     triangle_corners,
     triangle_from,
 )
-from carom.kernels.soft.elasticity import column
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE

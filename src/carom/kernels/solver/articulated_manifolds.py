@@ -3,6 +3,9 @@
 Their matrices are in `PairRows.matrix_block`, one after the other, each for tree a and then tree b: the
 weighted Jacobians of the normals, a vector for each dof; those of friction, two for each; the responses
 to the normals, four vectors for each block of dofs; those to friction, eight.
+
+Two pairs of twins stay for speed: rigid bodies have functions of their own, as matrices of known sizes stay
+in registers; and normals and friction do, as compilers have to know how wide vectors are.
 """
 
 import warp as wp

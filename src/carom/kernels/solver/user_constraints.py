@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import fill_zero, write_multiple
-from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.pair_rows import place_row, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
@@ -39,12 +39,6 @@ def user_row_count(kind: Int32) -> Int32:
     if kind == USER_PRISMATIC:
         return Int32(5)
     return Int32(6)
-
-
-@func
-def column(m: Matrix3, i: Int32) -> Vector3:
-    """Column `i` of a matrix."""
-    return Vector3(m[0, i], m[1, i], m[2, i])
 
 
 @func
