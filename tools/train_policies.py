@@ -26,6 +26,7 @@ _GENERATIONS = {
     "Hopper": 30,
     "Walker2D": 10,
     "HalfCheetah": 8,
+    "Ant": 8,
     "Humanoid": 8,
 }
 _SPREAD, _LEAST_SPREAD = 1.0, 0.05
