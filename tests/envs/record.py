@@ -1,6 +1,6 @@
 """Two episodes of each environment with fixed starts and actions, as recorded with PyBullet.
 
-    .oracle/bin/python tests/envs/record.py     # needs gymnasium there, for its spaces
+    .oracle/bin/python tests/envs/record.py
 
 PyBullet's own environments are written for the gym of old, of which little is needed here.
 """
@@ -82,14 +82,14 @@ def action_on_our_data(name: str, discrete: bool, step: int) -> Any:
 
 def old_gym() -> None:
     """What PyBullet's environments import of gym, which is not kept up any more."""
-    import gymnasium
-
+    spaces: Any = types.ModuleType("gym.spaces")
+    spaces.Box = spaces.Discrete = lambda *_arguments, **_keywords: None
     modules: dict[str, Any] = {
         name: types.ModuleType(name)
         for name in ("gym", "gym.utils", "gym.utils.seeding", "gym.envs", "gym.envs.registration")
     }
     gym = modules["gym"]
-    gym.Env, gym.spaces, gym.__version__ = type("Env", (), {}), gymnasium.spaces, "0.21"
+    gym.Env, gym.spaces, gym.__version__ = type("Env", (), {}), spaces, "0.21"
     gym.utils, gym.envs = modules["gym.utils"], modules["gym.envs"]
     gym.utils.seeding, gym.envs.registration = modules["gym.utils.seeding"], modules["gym.envs.registration"]
     gym.utils.seeding.np_random = lambda seed=None: (EvenChance(), 0)
@@ -100,7 +100,7 @@ def old_gym() -> None:
         None,
     )
     registration.register = lambda *arguments, **keywords: None
-    sys.modules.update(modules | {"gym.spaces": gymnasium.spaces})
+    sys.modules.update(modules | {"gym.spaces": spaces})
 
 
 def without_a_server() -> None:

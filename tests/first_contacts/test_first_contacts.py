@@ -14,7 +14,6 @@ CASES = list(cases())
 # The ones that do not, by name; `docs/conformance/first-contacts.md` has the figures.
 ELSEWHERE = {
     "sphere on mesh, base, fall tilted, 0.1": "two triangles are found one after the other there",
-    "cylinder on sphere, offset, fall tilted, 0.02": "found a step later there, when it is 6 mm deep",
     "hull on heightfield, base, fall tilted, 0.1": "another of the triangles comes first",
 }
 

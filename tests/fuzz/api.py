@@ -35,7 +35,7 @@ ALLOWED = (p.error, TypeError, OverflowError)
 _SHOWN = 40
 _SCENE_LASTS = 1000
 _MOST_BODIES = 40
-_MOST_SUBSTEPS, _MOST_ITERATIONS = 20, 1000
+_MOST_SUBSTEPS, _MOST_ITERATIONS = 100, 1000
 
 
 class Fuzzer:
@@ -61,8 +61,7 @@ class Fuzzer:
                 self._begin()
             self._bodies[:] = [p.getBodyUniqueId(place) for place in range(p.getNumBodies())]
             self._perform(next(self._operations))
-            if number % 20 == 19:
-                _lighten()
+            _lighten()
             if number % 100 == 99:
                 check_finite()
             if number % 250 == 249:

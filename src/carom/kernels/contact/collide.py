@@ -6,7 +6,12 @@ from the contacts that there were, before anything else is done with them.
 
 import warp as wp
 
-from carom.kernels.contact.contact_margins import breaking_distance, contact_margin, region_margin
+from carom.kernels.contact.contact_margins import (
+    breaking_distance,
+    contact_margin,
+    meets_beside,
+    region_margin,
+)
 from carom.kernels.contact.gathering import AT_ONCE, find_new_point, gather
 from carom.kernels.contact.manifold import keep_previous, skip_contacts, write_new_contact
 from carom.kernels.contact.narrow_phase import collide_shapes
@@ -109,6 +114,11 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, fi
     Returns:
         What `find_new_point` returned; the number of candidates if that is `AT_ONCE`, else 0.
     """
+    if last == first and not (
+        meets_beside(shapes, pairs, world, pair[0], pair[1])
+        and meets_beside(shapes, pairs, world, pair[1], pair[0])
+    ):
+        return Int32(AT_ONCE), Int32(0)
     max_distance = contact_margin(shapes, pairs, world, pair[0], pair[1], last > first)
     sides = in_order_of_sides(shapes, pair)
     found = find_new_point(shapes, pairs, world, sides, max_distance, first, last)

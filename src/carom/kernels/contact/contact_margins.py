@@ -6,10 +6,11 @@ two shapes, and most pairs make one as early as that, so that it can slow them i
 
 import warp as wp
 
+from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
 from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import BOX, PLANE, SPHERE
+from carom.layouts.codes import BOX, PLANE, SPHERE, TRIANGLES
 
 IDENTITY_TOLERANCE = real(1.0e-12)
 
@@ -45,6 +46,41 @@ def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
     if not on_plane and (is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b)):
         return ahead
     return maximum(ahead, breaking_distance(shapes, a, b))
+
+
+@func
+def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other: Int32) -> bool:
+    """Whether a part of a compound and a shape that is none may begin to touch.
+
+    Bullet looks for the parts that a shape meets along the axes of their own link. Bounds along the world's
+    have met already.
+    """
+    if not is_part_of_compound(shapes, part) or is_part_of_compound(shapes, other):
+        return True
+    if shapes.shape_kind[other] == PLANE or shapes.shape_kind[other] >= TRIANGLES:
+        return True
+    pose = shapes.shape_pose[part]
+    frame = wp.quat_to_matrix(wp.transform_get_rotation(pose))
+    # From the axes of the world to those of the link.
+    turn = frame * wp.transpose(pairs.shape_frame[world, part])
+    other_frame = turn * pairs.shape_frame[world, other]
+    apart = turn * (
+        pairs.shape_position[world, other]
+        + pairs.shape_frame[world, other] * local_center(shapes, other)
+        - pairs.shape_position[world, part]
+        - pairs.shape_frame[world, part] * local_center(shapes, part)
+    )
+    room = magnitudes(frame) * local_extents(shapes, part)
+    if shapes.shape_kind[other] == SPHERE:
+        room += local_extents(shapes, other)
+    else:
+        room += magnitudes(other_frame) * local_extents(shapes, other)
+    ahead = pairs.shape_motion[world, part] + pairs.shape_motion[world, other]
+    return (
+        wp.abs(apart[0]) <= room[0] + ahead
+        and wp.abs(apart[1]) <= room[1] + ahead
+        and wp.abs(apart[2]) <= room[2] + ahead
+    )
 
 
 @func
