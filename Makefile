@@ -4,6 +4,7 @@
 #   make test         the test suite
 #   make quick        lint and the tests that matter most, in under a minute on two cores
 #   make check        lint, types and tests
+#   make mutate       break the code on purpose, change by change, and see that tests notice; takes an hour or more
 #   make docs         the documentation, in site/
 #   make figures      the plots of the tutorials and the pictures of the viewer, by running them; needs Chromium
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
@@ -14,13 +15,14 @@
 #   make cluster      the tests of rollouts on several machines, which need Ray
 #   make bench        speed, beside real PyBullet's and MuJoCo's in the same run
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
+#   make learning     environment steps a second, beside SubprocVecEnv over PyBullet and EnvPool
 #   make scaling      how the rate of many worlds grows with their number and the threads: a plot in docs/
 #   make watching     what it costs to be watched, in a browser; needs Chromium
 #   make clients      other people's tests and scripts on PyBullet and on Carom; needs git and GitHub
 #   make gpu-report   compile the kernels for GPUs and say what they need of one; needs none
 #   make gpu          the tests of worlds on a GPU, and how fast they are there; needs an NVIDIA GPU
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
-#   make soak         a million steps and thousands of loads and removals; memory must not grow
+#   make soak         a million steps, thousands of loads and removals, 80,000 episodes of workers; memory must not grow
 #   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
 #   make wine         step the libraries for Windows under Wine: the same bits as here
 #   make aarch64      the wheel for aarch64 under emulation: conformance; needs Debian, and its qemu-user
@@ -43,7 +45,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling watching gpu-report gpu wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -83,6 +85,19 @@ oracle: .oracle/pybullet
 	@test -n "$(PYTHON)" || { echo "No Python >= 3.10 found; name one: make PYTHON=..." >&2; exit 1; }
 	$(PYTHON) -m venv .mujoco
 	.mujoco/bin/python -m pip --quiet --disable-pip-version-check install 'mujoco>=3.2,<5'
+	@touch $@
+
+# Real PyBullet's environments as Stable-Baselines3 trains on them; they were written for the `gym` of their time.
+.learning/created:
+	@test -n "$(ORACLE_PYTHON)" || { echo "PyBullet needs Python <= 3.11; name one: make ORACLE_PYTHON=..." >&2; exit 1; }
+	$(ORACLE_PYTHON) -m venv .learning
+	.learning/bin/python -m pip --quiet --disable-pip-version-check install \
+		pybullet==3.2.7 'numpy<2' gym==0.23.1 'setuptools<81' 'stable-baselines3>=2.4,<3' 'torch>=2.2,<2.14'
+	@touch $@
+
+.envpool/created:
+	$(PYTHON) -m venv .envpool
+	.envpool/bin/python -m pip --quiet --disable-pip-version-check install 'envpool<2'
 	@touch $@
 
 # What the tests of the clients need beside the simulator. The clients themselves are not installed: they would
@@ -128,6 +143,11 @@ quick: lint
 lint: $(VENV)/dev
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
+
+# MUTATE=rays.py for those with that in their files or texts.
+mutate: $(VENV)/dev
+	$(RUN) -m carom warmup
+	PYTHONPATH=. $(RUN) -m tools.mutate $(MUTATE)
 
 types: $(VENV)/dev
 	$(RUN) -m pyright
@@ -204,6 +224,7 @@ fuzz: $(VENV)/dev
 
 soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak
+	$(RUN) -m tests.workers.episodes
 
 bench: oracle .mujoco/mujoco $(VENV)/dev
 	$(RUN) -m carom warmup
@@ -217,6 +238,9 @@ scaling: $(VENV)/dev
 growth: oracle $(VENV)/dev
 	$(RUN) benchmarks/growth.py --oracle .oracle/bin/python
 
+learning: .learning/created .envpool/created $(VENV)/dev
+	$(RUN) benchmarks/environments.py
+
 watching: $(VENV)/dev
 	PYTHONPATH=. $(RUN) benchmarks/watching.py
 
@@ -229,5 +253,5 @@ figures: $(VENV)/dev
 	PYTHONPATH=. $(RUN) tools/docs/viewer_pictures.py
 
 clean:
-	rm -rf $(VENV) .oracle .mujoco .bench .clients build dist site demo-output .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .oracle .mujoco .learning .envpool .bench .clients build dist site demo-output .pytest_cache .ruff_cache .hypothesis
 	find src tests examples benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +

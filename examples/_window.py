@@ -19,6 +19,19 @@ def slider(name, lower, upper, start):
     return (lambda: p.readUserDebugParameter(number)) if number >= 0 else (lambda: start)
 
 
+def button(name):
+    """A function that says whether a button was pressed since the last call; without a window it never is."""
+    number = p.addUserDebugParameter(name, 1, 0, 0)
+    seen = 0.0
+
+    def pressed():
+        nonlocal seen
+        before, seen = seen, p.readUserDebugParameter(number) if number >= 0 else 0.0
+        return seen > before
+
+    return pressed
+
+
 def steps(duration, window):
     """Counts steps until the time is over or the user ends it by ESC; with a window, in real time."""
     began, count = time.perf_counter(), 0

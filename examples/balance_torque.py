@@ -7,7 +7,7 @@ torque the arm stays where it is; with more it rises, with less it falls. The bu
 import math
 from pathlib import Path
 
-from _window import connect, slider, steps, wants_window
+from _window import button, connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
@@ -47,8 +47,8 @@ def main(duration=math.inf, window=True, degrees=65, torque=None):
     exact = needed_by_arm(arm, angle)
     chosen = slider("torque of the arm [N m]", 0, 20, exact if torque is None else torque)
     share = slider("share of the Panda's torques", 0, 2, 1)
-    again = p.addUserDebugParameter("put them back", 1, 0, 0)
-    clicks, texts, record = 0, [-1, -1], {"angle": [], "elbow": [], "needed": exact}
+    again = button("put them back")
+    texts, record = [-1, -1], {"angle": [], "elbow": [], "needed": exact}
     for step in steps(duration, window):
         p.setJointMotorControl2(arm, SHOULDER, p.TORQUE_CONTROL, force=chosen())
         joints, torques = needed_by_panda(panda)
@@ -66,8 +66,7 @@ def main(duration=math.inf, window=True, degrees=65, torque=None):
                 texts[i] = p.addUserDebugText(
                     lines[i], [0.1, 0, 0], [0.1, 0.2, 0.6], 1.3, 0, None, body, link, **more
                 )
-        if again >= 0 and p.readUserDebugParameter(again) > clicks:
-            clicks = p.readUserDebugParameter(again)
+        if again():
             p.resetJointState(arm, SHOULDER, angle)
             for joint, position in enumerate(POSE):
                 p.resetJointState(panda, joint, position)

@@ -1,8 +1,12 @@
-"""Frames and quaternions: where the tip of a gripper is in the world, in three ways that agree."""
+"""Frames and quaternions: where the tip of a gripper is in the world, in three ways that agree.
+
+In the window a slider bends the arm; the frame at the tip has a red x, a green y and a blue z axis.
+"""
 
 import math
 
 import numpy as np
+from _window import connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
@@ -10,8 +14,30 @@ import pybullet_data
 HAND = 8
 
 
-def main():
-    p.connect(p.DIRECT)
+def show_frame(position, orientation, numbers):
+    """Draws the three axes of a frame, 20 cm long, in place of those with these numbers."""
+    axes = np.reshape(p.getMatrixFromQuaternion(orientation), (3, 3)).T
+    return [
+        p.addUserDebugLine(
+            position, position + 0.2 * axis, colour, 4, **({"replaceItemUniqueId": old} if numbers else {})
+        )
+        for axis, colour, old in zip(axes, np.eye(3), numbers or [-1] * 3, strict=True)
+    ]
+
+
+def play(panda, tip):
+    """The slider bends the shoulder until ESC."""
+    shoulder, lines = slider("shoulder [rad]", -1.5, 1.5, -0.5), []
+    for _ in steps(math.inf, True):
+        p.resetJointState(panda, 1, shoulder())
+        position, orientation = p.getLinkState(panda, HAND, computeForwardKinematics=1)[4:6]
+        lines = show_frame(
+            p.multiplyTransforms(position, orientation, tip, [0, 0, 0, 1])[0], orientation, lines
+        )
+
+
+def main(window=False):
+    connect(window)
     p.setAdditionalSearchPath(pybullet_data.getDataPath())
     turn = p.getQuaternionFromEuler([0, 0, math.radians(90)])
     panda = p.loadURDF("franka_panda/panda.urdf", [1, 0, 0], turn, useFixedBase=True)
@@ -37,9 +63,11 @@ def main():
     print("tip in the world:", np.round(composed, 4))
     print("tip from the base:", np.round(seen, 4))
     print("hand: roll, pitch, yaw in degrees", euler)
+    if window:
+        play(panda, tip)
     p.disconnect()
     return {"composed": composed, "by matrix": by_matrix, "back": back}
 
 
 if __name__ == "__main__":
-    main()
+    main(window=wants_window())

@@ -1,11 +1,13 @@
-"""A Franka Panda picks up a cube and holds it in the air."""
+"""A Franka Panda picks up a cube and holds it in the air; in the window a slider says how high."""
 
+import math
+
+from _window import TIME_STEP, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
 
-TIME_STEP = 1 / 240
 ARM = range(7)
 FINGERS = (9, 10)
 GRASP_TARGET = 11
@@ -50,14 +52,16 @@ def command(panda, height, opening):
         p.setJointMotorControl2(panda, finger, p.POSITION_CONTROL, opening, force=20)
 
 
-def main(duration=1.0):
+def main(duration=1.0, window=False):
     """Run through the phases, `duration` seconds each; heights, the fingers' opening and their force."""
-    p.connect(p.DIRECT)
+    connect(window)
     panda, cube = load()
+    lifted = slider("height when lifted [m]", 0.1, 0.6, LIFTED)
     record = {"time": [], "cube": [], "hand": [], "opening": [], "press": []}
     for name, (height, opening) in PHASES.items():
-        for _ in range(round(duration / TIME_STEP)):
-            command(panda, height, opening)
+        # In the window the cube is held until ESC.
+        for _ in steps(math.inf if window and name == "hold" else duration, window):
+            command(panda, lifted() if height == LIFTED else height, opening)
             p.stepSimulation()
             fingers = [p.getJointState(panda, finger)[0] for finger in FINGERS]
             record["time"].append((len(record["time"]) + 1) * TIME_STEP)
@@ -66,6 +70,8 @@ def main(duration=1.0):
             record["opening"].append(sum(fingers))
             contacts = p.getContactPoints(panda, cube, FINGERS[0])
             record["press"].append(sum(contact[9] for contact in contacts))
+        if not p.isConnected():
+            return record
         print(f"{name:14}: cube at {record['cube'][-1]:.3f} m, fingers press {record['press'][-1]:.1f} N")
     record["image"] = picture([0.35, 0, 0.35], 1.1, yaw=50)
     p.disconnect()
@@ -73,4 +79,4 @@ def main(duration=1.0):
 
 
 if __name__ == "__main__":
-    main()
+    main(window=wants_window())

@@ -1,22 +1,24 @@
 """Which torque holds an arm up against gravity? At angle θ it is m·g·r·sin θ; here it is tried out.
 
 A constant torque is applied in every step, the joint's damping takes the swing out, and the arm
-comes to rest where gravity and the torque balance.
+comes to rest where gravity and the torque balance. The slider says at which angle that is to be.
 """
 
 import math
 from pathlib import Path
+
+from _window import TIME_STEP, connect, slider, steps, wants_window
 
 import pybullet as p
 
 ARM = str(Path(__file__).parent / "robots" / "one_joint_arm.urdf")
 SHOULDER = 0
 GRAVITY = 9.81
-TIME_STEP = 1 / 240
 
 
-def main(duration=10.0, angle=0.5):
-    p.connect(p.DIRECT)
+def main(duration=10.0, angle=0.5, window=False):
+    connect(window)
+    p.resetDebugVisualizerCamera(3, 30, -20, [0, 0, 1])
     p.setGravity(0, 0, -GRAVITY)
     arm = p.loadURDF(ARM, useFixedBase=True)
     p.setJointMotorControl2(arm, SHOULDER, p.VELOCITY_CONTROL, force=0)
@@ -25,10 +27,12 @@ def main(duration=10.0, angle=0.5):
     mass = p.getDynamicsInfo(arm, SHOULDER)[0]
     centre_of_mass = p.getDynamicsInfo(arm, SHOULDER)[3]
     radius = math.hypot(centre_of_mass[0], centre_of_mass[2])
-    torque = mass * GRAVITY * radius * math.sin(angle)
+    wanted = slider("angle [rad]", -1.5, 1.5, angle)
 
     record = {"time": [], "angle": [], "balance": []}
-    for step in range(round(duration / TIME_STEP)):
+    for step in steps(duration, window):
+        angle = wanted()
+        torque = mass * GRAVITY * radius * math.sin(angle)
         p.setJointMotorControl2(arm, SHOULDER, p.TORQUE_CONTROL, force=torque)
         p.stepSimulation()
         record["time"].append((step + 1) * TIME_STEP)
@@ -42,4 +46,4 @@ def main(duration=10.0, angle=0.5):
 
 
 if __name__ == "__main__":
-    main()
+    main(window=wants_window(), duration=math.inf if wants_window() else 10)

@@ -5,14 +5,16 @@ All three send one command for all joints in every step with setJointMotorContro
 - effort: the torque that inverse dynamics gives for the acceleration of the path plus a correction;
 - velocity: the speed of the path plus a correction of the position error;
 - position: the position on the path, for the joint motors to reach.
+
+In the window the three take turns until ESC, and the slider says how long each takes.
 """
 
 import numpy as np
+from _window import TIME_STEP, connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
 
-TIME_STEP = 1 / 240
 HOME = np.array([0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.8, 0.02, 0.02])
 REACH = np.array([1.1, 0.5, -0.6, -1.1, 0.7, 2.6, -0.5, 0.04, 0.04])
 MAX_FORCES = np.array([87, 87, 87, 87, 12, 12, 12, 20, 20])
@@ -77,38 +79,49 @@ PHASES = {
 }
 
 
-def run_phase(robot, joints, name, duration):
+def run_phase(robot, joints, name, duration, window=False):
     """Drive all joints along the phase's path; the positions on the path and as they were."""
     start, goal, command = PHASES[name]
     # Motors push only where they are asked to: off for effort, commanded in every step for the rest.
     p.setJointMotorControlArray(robot, joints, p.VELOCITY_CONTROL, forces=[0] * len(joints))
-    steps = round(duration / TIME_STEP)
-    wanted, measured = np.zeros((2, steps, len(joints)))
-    for step in range(steps):
+    wanted, measured = [], []
+    for step in steps(duration, window):
         path = smooth_path(start, goal, duration, (step + 1) * TIME_STEP)
         states = p.getJointStates(robot, joints)
         state = np.array([[position, velocity] for position, velocity, *_ in states]).T
         command(robot, joints, state, path)
         p.stepSimulation()
-        wanted[step] = path[0]
-        measured[step] = [position for position, *_ in p.getJointStates(robot, joints)]
-    return wanted, measured
+        wanted.append(path[0])
+        measured.append([position for position, *_ in p.getJointStates(robot, joints)])
+    return np.array(wanted), np.array(measured)
 
 
-def main(duration=2.0):
-    """Run the three phases, `duration` seconds each."""
-    p.connect(p.DIRECT)
+def main(duration=2.0, window=False):
+    """Run the three phases, `duration` seconds each; in the window again and again."""
+    connect(window)
     robot, joints = load_panda()
-    record = {}
-    for name in PHASES:
-        wanted, measured = run_phase(robot, joints, name, duration)
-        times = np.arange(1, len(wanted) + 1) * TIME_STEP
-        record[name] = {"time": times, "wanted": wanted, "measured": measured}
-        error = np.abs(wanted - measured)[:, :7]
-        print(f"{name:8}: at most {error.max():.4f} rad off the path, {error[-1].max():.5f} rad at its end")
+    length = slider("seconds for each way", 1, 10, duration)
+    record = run_phases(robot, joints, length, window)
+    while window and p.isConnected():
+        go_home(robot, joints)
+        run_phases(robot, joints, length, window)
     p.disconnect()
     return record
 
 
+def run_phases(robot, joints, length, window):
+    """Run the three phases one after the other, and say how well the arm has kept to its path."""
+    record = {}
+    for name in PHASES:
+        wanted, measured = run_phase(robot, joints, name, length(), window)
+        if not p.isConnected():
+            break
+        times = np.arange(1, len(wanted) + 1) * TIME_STEP
+        record[name] = {"time": times, "wanted": wanted, "measured": measured}
+        error = np.abs(wanted - measured)[:, :7]
+        print(f"{name:8}: at most {error.max():.4f} rad off the path, {error[-1].max():.5f} rad at its end")
+    return record
+
+
 if __name__ == "__main__":
-    main()
+    main(window=wants_window())

@@ -1,4 +1,11 @@
-"""What is this robot made of? Reads R2D2's joints, masses and link poses."""
+"""What is this robot made of? Reads R2D2's joints, masses and link poses.
+
+In the window R2D2 falls on the floor, and the slider chooses a link: its name stands beside it.
+"""
+
+import math
+
+from _window import connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
@@ -12,8 +19,8 @@ JOINT_TYPES = {
 }
 
 
-def main(duration=0.1):
-    p.connect(p.DIRECT)
+def main(duration=0.1, window=False):
+    connect(window)
     p.setAdditionalSearchPath(pybullet_data.getDataPath())
     p.setGravity(0, 0, -9.81)
     robot = p.loadURDF("r2d2.urdf", basePosition=[0, 0, 1])
@@ -27,7 +34,7 @@ def main(duration=0.1):
         limits = f"{info[8]:.2f} .. {info[9]:.2f}" if info[8] <= info[9] else "none"
         print(f"{info[1].decode():30} {JOINT_TYPES[info[2]]:10} {axis:22} {limits:18} {info[16]:6}")
 
-    for _ in range(round(duration * 240)):
+    for _ in steps(duration, False):
         p.stepSimulation()
 
     print(f"\n{'link':30} {'mass':>7} {'friction':>8} {'height':>8} {'falls at':>9}")
@@ -38,9 +45,29 @@ def main(duration=0.1):
         link_name = p.getJointInfo(robot, link)[12].decode()
         heights.append(state[4][2])
         print(f"{link_name:30} {dynamics[0]:7.3f} {dynamics[1]:8.2f} {state[4][2]:8.3f} {state[6][2]:9.3f}")
+    if window:
+        look_at_links(robot)
     p.disconnect()
     return {"height": heights}
 
 
+def look_at_links(robot):
+    """Lets the robot fall, and writes the name of the link that the slider chooses beside it, until ESC."""
+    p.loadURDF("plane.urdf")
+    chosen = slider("link", 0, p.getNumJoints(robot) - 1, 0)
+    label, named = -1, -1
+    for _ in steps(math.inf, True):
+        p.stepSimulation()
+        link = round(chosen())
+        if link != named:
+            if label >= 0:
+                p.removeUserDebugItem(label)
+            name = p.getJointInfo(robot, link)[12].decode()
+            label = p.addUserDebugText(
+                name, [0, 0, 0.1], [0.1, 0.2, 0.6], 1.5, parentObjectUniqueId=robot, parentLinkIndex=link
+            )
+            named = link
+
+
 if __name__ == "__main__":
-    main()
+    main(window=wants_window())

@@ -1,11 +1,13 @@
-"""Ten cubes stand on each other until a ball hits them."""
+"""Ten cubes stand on each other until a ball hits them; in the window a button throws it."""
 
+import math
+
+from _window import TIME_STEP, button, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
 
-TIME_STEP = 1 / 240
 EDGE = 0.1
 CUBES = 10
 
@@ -20,27 +22,34 @@ def load():
     ]
 
 
-def throw_ball():
+def throw_ball(speed=5):
     """A heavy ball on its way to the middle of the tower."""
     ball = p.loadURDF("sphere2red.urdf", [-1.2, 0, 0.6], globalScaling=0.2)
     p.changeDynamics(ball, -1, mass=5)
-    p.resetBaseVelocity(ball, [5, 0, 1])
+    p.resetBaseVelocity(ball, [speed, 0, 1])
 
 
-def run(cubes, record, duration):
-    """Step for a time and note the height of every cube."""
-    for _ in range(round(duration / TIME_STEP)):
+def run(cubes, record, duration, window=False):
+    """Step for a time and note the height of every cube; in the window balls are thrown."""
+    speed, throw = slider("speed of the ball [m/s]", 1, 10, 5), button("throw a ball")
+    for _ in steps(duration, window):
+        if throw():
+            throw_ball(speed())
         p.stepSimulation()
         heights = [p.getBasePositionAndOrientation(cube)[0][2] for cube in cubes]
         record["time"].append((len(record["time"]) + 1) * TIME_STEP)
         record["heights"].append(heights)
 
 
-def main(duration=2.0):
+def main(duration=2.0, window=False):
     """The tower stands for a while and falls for a while; heights and a picture of each."""
-    p.connect(p.DIRECT)
+    connect(window)
     cubes = load()
     record = {"time": [], "heights": []}
+    if window:
+        run(cubes, record, math.inf, window=True)
+        p.disconnect()
+        return record
     run(cubes, record, duration)
     record["image"] = picture([0, 0, 0.5], 1.7)
     print(f"top of the tower after {duration} s: {record['heights'][-1][-1] + EDGE / 2:.4f} m")
@@ -53,4 +62,4 @@ def main(duration=2.0):
 
 
 if __name__ == "__main__":
-    main()
+    main(window=wants_window())

@@ -1,11 +1,13 @@
-"""A walking robot stands, takes a push, and sits down."""
+"""A walking robot stands, takes a push, and sits down; in the window you push it, and let it sit."""
 
+import math
+
+from _window import TIME_STEP, button, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
 
-TIME_STEP = 1 / 240
 STAND = {"hip": 0.0, "upper": 0.75, "lower": -1.5}
 SIT = {"hip": 0.0, "upper": 1.2, "lower": -2.4}
 PUSH = 60
@@ -34,13 +36,30 @@ def command(robot, joints, pose):
         )
 
 
-def main(duration=3.0):
+def play(robot, joints):
+    """The slider lets the robot sit down, and the button pushes it, until ESC."""
+    sitting, push = slider("0 stand, 1 sit", 0, 1, 0), button("push")
+    left = 0
+    for _ in steps(math.inf, True):
+        share = sitting()
+        command(robot, joints, {part: (1 - share) * STAND[part] + share * SIT[part] for part in STAND})
+        left = 24 if push() else left - 1
+        if left > 0:
+            p.applyExternalForce(robot, -1, [0, PUSH, 0], [0, 0, 0], p.LINK_FRAME)
+        p.stepSimulation()
+
+
+def main(duration=3.0, window=False):
     """A third of the time each: standing, pushed from the side, sitting down; height and way aside."""
-    p.connect(p.DIRECT)
+    connect(window)
     robot, joints = load()
+    if window:
+        play(robot, joints)
+        p.disconnect()
+        return {}
     record = {"time": [], "height": [], "way aside": []}
     third = round(duration / TIME_STEP / 3)
-    for step in range(3 * third):
+    for step in steps(3 * third * TIME_STEP, window):
         command(robot, joints, STAND if step < 2 * third else SIT)
         if third <= step < third + 24:
             p.applyExternalForce(robot, -1, [0, PUSH, 0], [0, 0, 0], p.LINK_FRAME)
@@ -59,4 +78,4 @@ def main(duration=3.0):
 
 
 if __name__ == "__main__":
-    main()
+    main(window=wants_window())

@@ -88,6 +88,22 @@ def test_a_misspelt_argument_is_guessed_when_a_script_fails(call: str, meant: st
     assert output.rstrip().endswith(f"Did you mean '{meant}'?")
 
 
+def test_a_misspelt_argument_is_guessed_in_notebooks():
+    pytest.importorskip("IPython", reason="no notebooks here")
+    # As the kernel of a notebook runs its cells.
+    said = script(
+        "import sys\n"
+        "from IPython.core.interactiveshell import InteractiveShell\n"
+        "shell = InteractiveShell.instance()\n"
+        "shell.run_cell('import pybullet as p')\n"
+        "shell.run_cell('p.loadURDF(1, usFixedBase=1)')\n"
+        "shell.run_cell('1 + None')\n"
+        "sys.exit(1)"
+    )
+    assert "Did you mean 'useFixedBase'?" in said
+    assert said.count("Did you mean") == 1
+
+
 def test_other_errors_are_printed_as_ever():
     assert script("import pybullet; 1 / 0").rstrip().endswith("ZeroDivisionError: division by zero")
     assert suggestion(TypeError("other() got an unexpected keyword argument 'x'")) is None
@@ -129,5 +145,7 @@ def test_worlds_and_the_command_line_find_shipped_files_by_name(tmp_path: Path, 
     assert world.load_mjcf("mjcf/ant.xml")
     with pytest.raises(DescriptionError, match=r"did you mean cube_small.urdf\?"):
         world.load_urdf("cube_smal.urdf")
-    assert carom.cli.command_line.main(["convert", "r2d2.urdf", "out.urdf"]) == 0
-    assert (tmp_path / "out.urdf").is_file()
+    for name in ("r2d2.urdf", "kiva_shelf/model.sdf", "mjcf/ant.xml"):
+        assert carom.cli.command_line.main(["convert", name, "out.urdf"]) == 0
+        assert (tmp_path / "out.urdf").is_file()
+        (tmp_path / "out.urdf").unlink()

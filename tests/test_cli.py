@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -34,6 +36,15 @@ def row(text: str, name: str) -> str:
     """The cells of the only line that has the name in its second column, one space between them."""
     (line,) = (line for line in text.splitlines() if line.split()[1:2] == [name])
     return " ".join(line.split())
+
+
+def test_nothing_is_said_when_the_reader_has_had_enough():
+    command = [sys.executable, "-m", "carom", "info", "cartpole.urdf"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as info:
+        assert info.stdout is not None
+        assert info.stderr is not None
+        info.stdout.close()
+        assert info.stderr.read() == ""
 
 
 def test_info_prints_what_connects_the_links(robot_file, capsys):

@@ -18,6 +18,7 @@ from carom.model.body_spec import BodySpec, LinkSpec
 from carom.render.appearance import appearance_of
 from carom.scene.snapshot import Snapshot
 from carom.world_files.container import Blocks, packed
+from carom.world_files.saved_state import split_impulses
 
 DATA = Path(pybullet_data.getDataPath())
 
@@ -72,6 +73,24 @@ def assert_same(a: Snapshot, b: Snapshot) -> None:
             np.testing.assert_array_equal(one[name], other[name], err_msg=name)
     np.testing.assert_array_equal(a.user_impulses, b.user_impulses)
     assert (a.time, a.unspent_time) == (b.time, b.unspent_time)
+
+
+def test_blocks_begin_at_multiples_of_eight_bytes() -> None:
+    blocks = Blocks()
+    offsets = [blocks.add(bytes([size]) * size) for size in (1, 8, 3, 0, 13, 2)]
+    assert offsets == [0, 8, 16, 24, 24, 40]
+    assert all(blocks.joined()[at] == size for at, size in zip(offsets[1:3], (8, 3), strict=True))
+
+
+def test_impulses_of_older_files_are_split_from_the_counter_of_warm_starting() -> None:
+    impulses = np.arange(8.0).reshape(2, 4)
+    contacts = {"contact_impulse": impulses}
+    split_impulses(contacts)
+    np.testing.assert_array_equal(contacts["contact_impulse"], impulses[:, :3])
+    np.testing.assert_array_equal(contacts["contact_warm_start"], impulses[:, 3])
+    again = dict(contacts)
+    split_impulses(again)
+    assert all(again[name] is contacts[name] for name in contacts)
 
 
 @pytest.mark.parametrize("make", [machines, lambda: cube_of_boxes(5)], ids=["machines", "125 boxes"])

@@ -36,7 +36,8 @@ def suggestion(problem: BaseException) -> str | None:
 
 
 def install() -> None:
-    """Adds suggestions to what Python prints when a script fails; doing so again changes nothing."""
+    """Adds suggestions to what Python or a notebook prints of errors; doing so again changes nothing."""
+    _install_in_notebook()
     if getattr(sys.excepthook, "suggests", False):
         return
     before: Hook = sys.excepthook
@@ -48,6 +49,26 @@ def install() -> None:
 
     hook.suggests = True  # pyright: ignore[reportFunctionMemberAccess]
     sys.excepthook = hook
+
+
+def _install_in_notebook() -> None:
+    ipython: Any = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    if shell is None or shell.custom_exceptions:
+        return
+
+    def show(
+        shell: Any,
+        kind: type[BaseException],
+        problem: BaseException,
+        traceback: TracebackType | None,
+        tb_offset: int | None = None,
+    ) -> None:
+        shell.showtraceback((kind, problem, traceback), tb_offset=tb_offset)
+        if said := suggestion(problem):
+            print(said, file=sys.stderr)
+
+    shell.set_custom_exc((TypeError,), show)
 
 
 def _function_called(name: str) -> Callable[..., Any] | None:

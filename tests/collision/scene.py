@@ -144,6 +144,8 @@ class Scene:
         arrays["shape_margin"][row] = shape.margin
         arrays["shape_breaking"][row] = shape.breaking
         arrays["shape_rolling"][row] = shape.rolling
+        if shape.kind == ShapeKind.HULL and shape.polyhedron is not None:
+            arrays["shape_flat_faces"][row] = len(shape.polyhedron.planes)
         arrays["link_shape_count"][row] = 1
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1

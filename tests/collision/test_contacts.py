@@ -131,14 +131,26 @@ def test_capsules_side_by_side_touch_along_what_they_share():
 def test_impulses_follow_a_sliding_contact():
     scene = Scene([plane(), box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
     scene.collide()
-    impulses = np.arange(16.0).reshape(4, 4)
+    impulses = np.arange(12.0).reshape(4, 3)
     scene.contacts("impulse")[:] = impulses
+    scene.contacts("warm_start")[:] = impulses[:, 0]
     before = scene.contacts("point_b").copy()
     scene.place(1, (0.005, 0.001, 0.5))
     scene.collide()
     for point, impulse in zip(scene.contacts("point_b"), scene.contacts("impulse"), strict=True):
         match = np.argmin(np.linalg.norm(before - point, axis=1))
         assert_allclose(impulse, impulses[match])
+    assert_allclose(scene.contacts("warm_start"), scene.contacts("impulse")[:, 0])
+
+
+@pytest.mark.parametrize(("far", "kept"), [(0.01, 1.0), (0.05, 0.0)])
+def test_impulses_stay_behind_where_a_contact_is_elsewhere_on_both_bodies(far, kept):
+    scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.5))])
+    scene.collide()
+    scene.contacts("impulse")[:] = 1.0
+    scene.place(1, (far, 0, 0.5), turned(far / 0.5, (0, 1, 0)))
+    scene.collide()
+    assert_allclose(scene.contacts("impulse"), [[kept] * 3])
 
 
 def test_a_new_contact_starts_from_nothing():
@@ -150,7 +162,7 @@ def test_a_new_contact_starts_from_nothing():
     assert len(scene.contacts("impulse")) == 0
     scene.place(1, (0, 0, 0.5))
     scene.collide()
-    assert_allclose(scene.contacts("impulse"), [[0.0] * 4] * 4)
+    assert_allclose(scene.contacts("impulse"), [[0.0] * 3] * 4)
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,7 @@ def test_a_world_without_room_is_the_same_as_a_roomy_one(substeps: int, settling
     roomy = small.copy()
     roomy.contact_arrays.contacts.reserve({"contact": 1000})
     roomy.engine.workspace.pairs.reserve({"pair": 1000})
-    roomy.engine.workspace.pair_rows.reserve({"row": 5000, "jacobian": 10000, "run": 5000})
+    roomy.engine.workspace.pair_rows.reserve({"row": 5000, "jacobian": 10000, "matrix": 5000})
     roomy.scene_changed()
     growths = small.engine.growths
     for _ in range(40):

@@ -170,6 +170,13 @@ def test_ellipsoids_are_hulls_and_weigh_what_they_should(tmp_path: Path) -> None
     assert_allclose(link.inertial.mass, 1000.0 * 4.0 / 3.0 * pi * 0.1 * 0.2 * 0.3, rtol=1e-6)
 
 
+def test_a_full_inertia_has_its_products_after_its_moments(tmp_path: Path) -> None:
+    world = '<body><inertial mass="1" fullinertia="1 2 3 .1 .2 .3"/></body>'
+    compiler = '<compiler inertiafromgeom="false"/>'
+    tensor = only(read(tmp_path, world, before=compiler)).robot.links[0].inertial.tensor
+    assert_allclose(tensor, (1, 0.1, 0.2, 2, 0.3, 3), rtol=1e-6)
+
+
 def test_a_shape_given_by_its_ends_lies_between_them(tmp_path: Path) -> None:
     link = only(
         read(tmp_path, '<body><geom type="capsule" size=".1" fromto="1 0 0 1 0 -2"/></body>')

@@ -268,7 +268,8 @@ BROKEN = [
         '<robot name="r">',
         "links form a loop: 'b', 'c'",
     ),
-    (["<deformable/>", A], 2, "<deformable>", "not supported"),
+    (["<deformable/>", A], 2, "<deformable>", "attribute 'name' is missing"),
+    (['<deformable name="a"/>', A], 2, '<deformable name="a">', "<visual> is missing"),
 ]
 
 

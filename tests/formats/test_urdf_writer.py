@@ -25,7 +25,8 @@ from carom.formats.urdf import read_urdf
 from carom.formats.urdf_writer import roll_pitch_yaw, urdf_text
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
-from carom.model.from_files import mjcf_bodies, urdf_body
+from carom.model.from_files import mjcf_bodies
+from carom.soft.from_urdf import urdf_body
 
 URDFS = sorted(DATA.glob("*.urdf"))
 ROBOTS = [

@@ -35,6 +35,20 @@ def test_other_cells_and_data_are_left_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("# vtk", "#vtk"),
+        ("CELLS 1 5", "CELLS 1 1"),
+        ("CELL_TYPES 1\n10\n", "CELL_TYPES 10"),
+        ("CELL_TYPES 1\n10", ""),
+    ],
+)
+def test_slips_of_files_that_bullet_reads(tmp_path: Path, right: str, wrong: str) -> None:
+    assert right in WHOLE
+    assert read_vtk(written(tmp_path, WHOLE.replace(right, wrong))).tetras.tolist() == [[0, 1, 2, 3]]
+
+
+@pytest.mark.parametrize(
     ("text", "problem"),
     [
         ("", r"mesh\.vtk:1: it does not begin with"),
@@ -45,8 +59,9 @@ def test_other_cells_and_data_are_left_out(tmp_path: Path) -> None:
         (WHOLE.replace("POINTS 4", "POINTS 99999999999"), r"mesh\.vtk:5: POINTS needs a number from 0"),
         (WHOLE.replace("0 1 0\n", "0 x 0\n"), r"mesh\.vtk:7: 'x' is no coordinate"),
         (WHOLE.replace("0 0 1\n", "0 0 nan\n"), "a point is not finite"),
-        (WHOLE.replace("CELLS 1 5", "CELLS 2 5"), r"mesh\.vtk:11: 2 cells do not take 5 numbers"),
-        (WHOLE.replace("4 0 1 2 3", "9 0 1 2 3"), r"mesh\.vtk:11: a cell has more corners"),
+        (WHOLE.replace("CELLS 1 5", "CELLS 2 5"), r"mesh\.vtk:13: 'CELL_TYPES' is no length of a cell"),
+        (WHOLE.replace("4 0 1 2 3", "9 0 1 2 3"), r"mesh\.vtk:13: 'CELL_TYPES' is no index"),
+        (WHOLE.replace("4 0 1 2 3", "0 0 1 2 3"), r"mesh\.vtk:11: a cell has from 1 to 10000 corners, not 0"),
         (WHOLE.replace("4 0 1 2 3", "4 0 1 2 4"), r"a cell names a point outside 0\.\.3"),
         (WHOLE.replace("4 0 1 2 3", "4 0 1 2 1.5"), r"mesh\.vtk:11: '1\.5' is no index"),
         (WHOLE.replace("CELL_TYPES 1\n10", "CELL_TYPES 1\n5"), "there are no tetrahedra"),

@@ -20,13 +20,16 @@ from random import Random
 from time import process_time
 from typing import Any
 
+import numpy as np
 from tests.fuzz.api import LONGEST, own_folder
 from tests.fuzz.damage import damaged
 from tests.fuzz.invariants import Broken, check_finite
 from tests.fuzz.memory import check_memory
+from tests.soft.scenes import obj_text, vtk_text
 
 import pybullet as p
 import pybullet_data
+from carom.soft.shapes import ball, box, grid
 from carom.world_files import container
 
 _DATA = Path(pybullet_data.getDataPath())
@@ -79,6 +82,30 @@ def _mesh(name: str) -> Any:
     return p.createMultiBody(1, p.createCollisionShape(p.GEOM_MESH, fileName=name))
 
 
+def _soft(name: str) -> Any:
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+    p.setGravity(0, 0, -10)
+    return p.loadSoftBody(
+        name, mass=1, useMassSpring=1, useBendingSprings=1, useNeoHookean=1, NeoHookeanMu=100,
+        NeoHookeanLambda=100, springElasticStiffness=40, useSelfCollision=1,
+    )  # fmt: skip
+
+
+def _solids() -> list[bytes]:
+    """Meshes of tetrahedra: one, cubes and a ball."""
+    one = np.eye(4, 3, -1), np.arange(4, dtype=np.int32)[None]
+    return [
+        vtk_text(*mesh).encode()
+        for mesh in (one, box((1, 1, 1), (2, 2, 2)), box((1, 2, 3), (1, 1, 1)), ball(1, 4))
+    ]
+
+
+def _cloths() -> list[bytes]:
+    """Rectangles, and small meshes that are not made for it."""
+    made = [obj_text(*grid((1, 1), (side, side))).encode() for side in (1, 3, 8)]
+    return made + [content for content in _files("*.obj") if len(content) < 10_000][:5]
+
+
 SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "urdf": lambda: _files("*.urdf"),
     "sdf": lambda: _files("*.sdf"),
@@ -86,6 +113,8 @@ SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "obj": lambda: _files("*.obj"),
     "stl": lambda: _files("*.stl"),
     "dae": lambda: _files("*.dae"),
+    "soft.obj": _cloths,
+    "vtk": _solids,
     "png": lambda: _images("PNG"),
     "jpg": lambda: _images("JPEG"),
     "bullet": _worlds,
@@ -97,6 +126,8 @@ LOADERS: dict[str, Load] = {
     "obj": _mesh,
     "stl": _mesh,
     "dae": _mesh,
+    "soft.obj": _soft,
+    "vtk": _soft,
     "png": p.loadTexture,
     "jpg": p.loadTexture,
     "bullet": p.loadBullet,
@@ -132,7 +163,7 @@ def fuzz(kind: str, cases: int, seed: int) -> Counter[str]:
                 file.write_bytes(harm(content, random))
                 try:
                     outcomes[_load(kind, str(file))] += 1
-                except Broken:
+                except Exception:
                     print(f"kind {kind}, seed {seed}, case {number}: {file.read_bytes()!r}", file=sys.stderr)
                     raise
                 file.unlink()

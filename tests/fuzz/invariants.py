@@ -12,6 +12,8 @@ import pybullet as p
 from pybullet._clients.clients import clients
 
 _STEPS = 3
+# A field of `getDynamicsInfo`, and what it says of soft bodies.
+_BODY_TYPE, _SOFT = 10, 3
 
 
 class Broken(AssertionError):
@@ -76,6 +78,8 @@ def _motion() -> Iterator[tuple[str, Any]]:
     for body in _bodies():
         yield f"pose of body {body}", p.getBasePositionAndOrientation(body)
         yield f"velocity of body {body}", p.getBaseVelocity(body)
+        if p.getDynamicsInfo(body, -1)[_BODY_TYPE] == _SOFT:
+            yield f"nodes of body {body}", p.getMeshData(body, flags=p.MESH_DATA_SIMULATION_MESH)
         for joint in range(p.getNumJoints(body)):
             yield f"state of joint {joint} of body {body}", p.getJointStateMultiDof(body, joint)
             yield f"state of link {joint} of body {body}", p.getLinkState(body, joint, 1, 1)

@@ -85,6 +85,13 @@ def test_a_motor_is_left_alone_by_arguments_that_are_refused(arm: int) -> None:
     assert _motors(arm) == motors
 
 
+def test_a_joint_stays_where_it_is_if_its_velocity_is_refused(arm: int) -> None:
+    before = p.getJointState(arm, 0)
+    with pytest.raises(TypeError, match="targetVelocity"):
+        p.resetJointState(arm, 0, 0.7, targetVelocity=np.array([1.0]))  # type: ignore[arg-type]
+    assert p.getJointState(arm, 0) == before
+
+
 def test_a_log_may_be_written_to_a_device(arm: int) -> None:
     p.setPhysicsEngineParameter(numSubSteps=3)
     p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, "/dev/null")
@@ -129,6 +136,32 @@ def test_saved_worlds_with_immense_numbers(client: int, tmp_path: Path) -> None:
     file.write_bytes(header + payload)
     p.resetSimulation()
     with pytest.raises(p.error, match=r"1e\+308"):
+        p.loadBullet(str(file))
+    assert p.getNumBodies() == 0
+
+
+@pytest.mark.parametrize("robot", ["cube_small.urdf", "spherical_joint_limit.urdf"])
+@pytest.mark.parametrize("damage", [1e228, 0.0])
+def test_saved_worlds_whose_bodies_are_nowhere(
+    client: int, tmp_path: Path, robot: str, damage: float
+) -> None:
+    p.loadURDF(robot, [0, 0, 0.6])
+    file = tmp_path / "world.bullet"
+    p.saveBullet(str(file))
+    document, blocks = container.unpacked(file.read_bytes(), file)
+    blocks = bytearray(blocks)
+    place = document["state"]["state"]["position"]["at"]
+    # The last quaternion of the body.
+    count = document["state"]["state"]["position"]["shape"][0]
+    blocks[place + 8 * (count - 4) : place + 8 * count] = struct.pack("<4d", *[damage] * 4)
+    text = json.dumps(document).encode()
+    payload = struct.pack("<Q", len(text)) + text + bytes(blocks)
+    header = struct.pack("<8sIIQ32s", container.MAGIC, 1, 0, len(payload), sha256(payload).digest())
+    file.write_bytes(header + payload)
+    with pytest.raises(p.error, match=r"very large|quaternion"):
+        p.restoreState(fileName=str(file))
+    p.resetSimulation()
+    with pytest.raises(p.error, match=r"very large|quaternion"):
         p.loadBullet(str(file))
     assert p.getNumBodies() == 0
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from carom.geometry.hull import convex_hull
-from carom.geometry.rolling import round_about
+from carom.geometry.rolling import flat_faces_first, round_about
 
 
 def prism(sides: int, radius: float = 0.1, length: float = 0.05) -> np.ndarray:
@@ -57,3 +57,26 @@ def test_balls_roll_about_any_axis() -> None:
 )
 def test_other_things_do_not_roll(points: np.ndarray) -> None:
     assert round_about(convex_hull(points)) == (False, False, False)
+
+
+def test_faces_to_lie_on_come_first() -> None:
+    # The lower half of a ball, cut off flat.
+    points = 0.1 * ball(300)
+    solid = convex_hull(np.column_stack([points[:, :2], np.minimum(points[:, 2], 0.0)]))
+    arranged, count = flat_faces_first(solid)
+    assert count == 1
+    assert arranged.planes[0, :3] == pytest.approx((0, 0, 1))
+    corners = arranged.corners[: arranged.corner_count[0]]
+    assert arranged.vertices[corners, 2] == pytest.approx(0.0)
+    assert sorted(arranged.planes.tolist()) == sorted(solid.planes.tolist())
+    for plane, first, number in zip(
+        arranged.planes, arranged.first_corner, arranged.corner_count, strict=True
+    ):
+        around = arranged.vertices[arranged.corners[first : first + number]]
+        assert around @ plane[:3] == pytest.approx(plane[3], abs=1e-6)
+
+
+def test_cubes_lie_on_all_their_faces_and_balls_on_none() -> None:
+    cube = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    assert flat_faces_first(convex_hull(np.array(cube, dtype=float)))[1] == 6
+    assert flat_faces_first(convex_hull(ball(100)))[1] == 0

@@ -18,6 +18,8 @@ DIGESTS = {
     "tied": "2a3a54cf08b535dd",
     "questions": "54d8874ff3d1bde4",
     "images": "931f66db4e346426",
+    "robots": "a58187468ec669c6",
+    "meshes": "8d94107d9cf47c17",
 }
 """Of the bits of all numbers in `long_runs`; they change when what the kernels compute does."""
 

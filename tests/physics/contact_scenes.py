@@ -84,5 +84,5 @@ def motion(body: Body) -> np.ndarray:
 def impulses(world: World) -> np.ndarray:
     """Normal and two friction impulses of each contact [N s], shape (contacts, 3)."""
     return world.contact_arrays.contacts.numpy["contact_impulse"][
-        0, : world.contact_arrays.contact_count, :3
+        0, : world.contact_arrays.contact_count
     ].copy()

@@ -86,6 +86,15 @@ def test_later_hits_are_numbered_along_the_ray(things):
     assert p.rayTest(*ray, reportHitNumber=2) == (MISS,)
 
 
+@pytest.mark.parametrize(("epsilon", "second"), [(0.1, 0.67), (0.3, 1.0)])
+def test_later_hits_on_a_link_have_to_be_some_way_behind_the_ones_before(client, epsilon, second):
+    shapes = {"shapeTypes": [p.GEOM_SPHERE] * 2, "radii": [0.3] * 2}
+    pair = p.createCollisionShapeArray(**shapes, collisionFramePositions=[[0, 0, 1], [2, 0, 1]])
+    p.createMultiBody(0, pair)
+    (hit,) = p.rayTestBatch([[-5, 0, 1]], [[5, 0, 1]], reportHitNumber=1, fractionEpsilon=epsilon)
+    assert hit[2] == pytest.approx(second, abs=1e-9)
+
+
 @pytest.mark.parametrize("make", [np.array, list, tuple])
 def test_a_batch_is_its_rays_one_by_one(things, make):
     rng = np.random.default_rng(0)
@@ -109,6 +118,14 @@ def test_rays_in_the_frame_of_a_link(turned, link, position):
     floor = p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[50, 50, 0.01]))
     (hit,) = p.rayTestBatch([[0.3, 0.5, 0]], [[0.3, 0.5, -10]], 1, turned, link)
     close(hit, floor, 0.229, (*position, 0.01), (0, 0, 1))
+
+
+def test_rays_in_the_frame_of_no_link_are_in_that_of_the_world(turned):
+    start, end = [0.05, 0.1, 5], [0.05, 0.1, -5]
+    hits = p.rayTest(start, end)
+    assert hits[0][0] == turned
+    for link in (1, 7, -2):
+        assert p.rayTestBatch([start], [end], 1, turned, link) == hits
 
 
 def test_rays_see_where_bodies_are_now(things):

@@ -59,6 +59,26 @@ def test_the_same_bits_whether_others_sleep_or_not() -> None:
     assert places[0] == places[1]
 
 
+def test_bodies_fall_asleep_when_they_have_been_slow_for_two_seconds() -> None:
+    p.setGravity(0, 0, 0)
+    body = ball()
+    p.resetBaseVelocity(body, [0.1, 0, 0])
+    # 480 steps are two seconds; it has to be longer than that, and the next step acts upon it.
+    steps(481)
+    assert not is_asleep(body)
+    steps(1)
+    assert is_asleep(body)
+
+
+@pytest.mark.parametrize(("gap", "asleep"), [(0.03, False), (0.05, True)])
+def test_bodies_near_one_that_is_active_stay_awake(gap: float, asleep: bool) -> None:
+    p.setGravity(0, 0, 0)
+    body = ball()
+    ball(x=2 * RADIUS + gap, may_sleep=False)
+    steps(500)
+    assert is_asleep(body) == asleep
+
+
 def test_contacts_of_sleepers_stay_with_their_forces() -> None:
     ground, body = floor(), ball()
     steps(470)

@@ -251,3 +251,27 @@ def test_a_scene_is_written_as_a_script(cloth: int, tmp_path: Path) -> None:
     for _ in range(20):
         p.stepSimulation()
     assert nodes(bodies["bodies"][cloth])[0] == pytest.approx(before[0])
+
+
+def test_what_bullets_examples_load() -> None:
+    """Bodies, names and parameters are those of bullet3's `deformable_*.py`."""
+    p.setGravity(0, 0, -10)
+    p.loadURDF("plane.urdf", [0, 0, -2])
+    solid: dict[str, Any] = {"useNeoHookean": 1, "useSelfCollision": 1, "frictionCoeff": 0.5}
+    ball = p.loadSoftBody(
+        "ball.obj", [0, 0, -1.2], simFileName="ball.vtk", scale=0.5, mass=4, NeoHookeanMu=400,
+        NeoHookeanLambda=600, NeoHookeanDamping=0.001, collisionMargin=0.001, **solid,
+    )  # fmt: skip
+    ring = p.loadSoftBody(
+        "torus/torus_textured.obj", [2, 0, -1.2], simFileName="torus.vtk", mass=3, NeoHookeanMu=180,
+        NeoHookeanLambda=600, NeoHookeanDamping=0.01, collisionMargin=0.006, **solid,
+    )  # fmt: skip
+    other = p.loadURDF("torus_deform.urdf", [2, 0.6, -1.2], flags=p.URDF_USE_SELF_COLLISION)
+    p.setPhysicsEngineParameter(sparseSdfVoxelSize=0.25)
+    assert p.getMeshData(ball)[0] == 3 * 648
+    for _ in range(96):
+        p.stepSimulation()
+    for body in (ball, ring, other):
+        places = nodes(body)
+        assert -2.0 <= places[:, 2].min() < -1.97
+        assert np.ptp(places, axis=0).max() < 2.2

@@ -5,14 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from original_facts import DATA
 from tools.assets.build import binary_files, mesh_files, scene_files, urdf_files
+from tools.assets.tetras import SOLIDS
 
 import pybullet_data
 from carom.description import Mesh
+from carom.formats.mesh.vtk import read_vtk
 from carom.formats.urdf import read_urdf
 
+# Half the extent [m] and the volume [m³] of the originals in bullet3.
+MEASURED = {
+    "ball.vtk": ((0.983, 0.982, 1.0), 3.941),
+    "reduced_cube/cube_mesh.vtk": ((0.5, 0.5, 0.5), 1.0),
+    "torus.vtk": ((0.75, 0.2475, 0.75), 0.5689),
+}
 URDFS = sorted(str(path.relative_to(DATA)) for path in DATA.rglob("*.urdf"))
 
 
@@ -24,6 +33,18 @@ def test_data_path_is_the_package_folder() -> None:
 
 def test_the_folder_is_small() -> None:
     assert sum(path.stat().st_size for path in DATA.rglob("*") if path.is_file()) < 3_000_000
+
+
+@pytest.mark.parametrize("file", sorted(SOLIDS))
+def test_solids_are_whole_and_as_large_as_bullets(file: str) -> None:
+    mesh = read_vtk(DATA / file)
+    corners = mesh.points[mesh.tetras]
+    volumes = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6.0
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    extent, volume = MEASURED[file]
+    assert volumes.min() > 0.05 * volumes.mean()
+    assert high == pytest.approx(extent, abs=0.02) and low == pytest.approx(-high, abs=0.01)
+    assert volumes.sum() == pytest.approx(volume, rel=0.06)
 
 
 def test_every_file_is_made_by_the_tools() -> None:

@@ -14,6 +14,7 @@ from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_shapes
 from carom.scene.body import Body
 from carom.scene.soft_body import SoftBody
+from carom.soft.shapes import box, grid
 
 GRAVITY = 10.0
 
@@ -67,26 +68,30 @@ def spring_energy(soft: SoftBody) -> float:
     return float(0.5 * spec.spring_terms[:, 1] @ (length - spec.spring_terms[:, 0]) ** 2)
 
 
+def obj_text(vertices: np.ndarray, triangles: np.ndarray) -> str:
+    """An OBJ file."""
+    lines = [f"v {x} {y} {z}" for x, y, z in vertices.tolist()]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles.tolist()]
+    return "\n".join(lines) + "\n"
+
+
+def vtk_text(points: np.ndarray, tetras: np.ndarray) -> str:
+    """A VTK file."""
+    lines = ["# vtk DataFile Version 2.0", "tetrahedra", "ASCII", "DATASET UNSTRUCTURED_GRID"]
+    lines += [f"POINTS {len(points)} double", *(f"{x} {y} {z}" for x, y, z in points.tolist())]
+    lines += [f"CELLS {len(tetras)} {5 * len(tetras)}"]
+    lines += [f"4 {a} {b} {c} {d}" for a, b, c, d in tetras.tolist()]
+    lines += [f"CELL_TYPES {len(tetras)}", *["10"] * len(tetras)]
+    return "\n".join(lines) + "\n"
+
+
 def write_grid(path: Path, side: int, size: float = 1.0) -> Path:
     """An OBJ file with a square of so many nodes along each side."""
-    from carom.soft.shapes import grid
-
-    nodes, triangles = grid((size, size), (side - 1, side - 1))
-    lines = [f"v {x} {y} {z}" for x, y, z in nodes.tolist()]
-    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles.tolist()]
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text(obj_text(*grid((size, size), (side - 1, side - 1))))
     return path
 
 
 def write_cube(path: Path, cells: int, size: float = 0.4) -> Path:
     """A VTK file with a cube of so many cells along each edge."""
-    from carom.soft.shapes import box
-
-    nodes, tetras = box((size, size, size), (cells, cells, cells))
-    lines = ["# vtk DataFile Version 2.0", "a cube", "ASCII", "DATASET UNSTRUCTURED_GRID"]
-    lines += [f"POINTS {len(nodes)} double", *(f"{x} {y} {z}" for x, y, z in nodes.tolist())]
-    lines += [f"CELLS {len(tetras)} {5 * len(tetras)}"]
-    lines += [f"4 {a} {b} {c} {d}" for a, b, c, d in tetras.tolist()]
-    lines += [f"CELL_TYPES {len(tetras)}", *["10"] * len(tetras)]
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text(vtk_text(*box((size, size, size), (cells, cells, cells))))
     return path

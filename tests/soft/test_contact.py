@@ -60,7 +60,8 @@ def test_no_node_ends_up_inside(kind: str) -> None:
         where.step(4)
         probes = [((x, y, z + 1e-6), (x, y, z - 1e-6)) for x, y, z in soft.nodes.tolist()]
         hits = where.queries().cast_rays([a for a, _ in probes], [b for _, b in probes])
-        assert {hit[0] for hit in hits} == {-1}
+        # The faces of the body itself are there, but no surface of the shape.
+        assert body.id not in {hit[0] for hit in hits}
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2, 1.0])

@@ -180,3 +180,22 @@ def test_worlds_without_soft_bodies_launch_what_they_did() -> None:
     program = step_program(where.engine.structs(), Plan(touching=True, sleeping=False, coupled=True))
     assert [launch.kernel for launch in program.motion] == list(MOTION)
     assert (len(program.begin), len(program.end), len(program.abandon)) == (1, 1, 1)
+
+
+def test_moving_nodes_writes_no_anchors(monkeypatch: pytest.MonkeyPatch) -> None:
+    where = world()
+    cloth = where.load_cloth(cells=(3, 3))
+    anchor = cloth.anchor(0)
+    where.step()
+    written: list[None] = []
+    soft = where.contact_arrays.soft
+    monkeypatch.setattr(soft, "write_anchors", lambda: written.append(None))
+    cloth.set_nodes(cloth.nodes + 1.0)
+    cloth.update()
+    assert not written
+    monkeypatch.undo()
+    center = where.position[cloth.first_position :][:3].copy()
+    cloth.release(anchor)
+    # The node that was held did not count.
+    assert where.position[cloth.first_position :][:3] == pytest.approx(cloth.nodes.mean(axis=0))
+    assert center == pytest.approx(cloth.nodes[1:].mean(axis=0))

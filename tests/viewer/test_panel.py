@@ -28,9 +28,9 @@ def show(page: Page, *names: str) -> None:
         page.page.locator(f"input[name={name}]").check()
 
 
-def line_count(page: Page) -> int:
-    page.page.wait_for_timeout(300)
-    return page.page.evaluate("app.overlays.lines.count")
+def until_lines(page: Page, least: float, most: float | None = None) -> None:
+    """Waits until as many lines are drawn."""
+    page.until(f"{least} <= app.overlays.lines.count && app.overlays.lines.count <= {most or least}")
 
 
 def test_the_first_view_shows_the_robot(page: Page, arm: int):
@@ -109,14 +109,14 @@ def test_contacts_forces_and_cones_are_drawn(page: Page):
     p.loadURDF(f"{DATA}/cube_small.urdf", [0, 0, 0.026])
     for _ in range(120):
         p.stepSimulation()
-    assert line_count(page) == 0
+    until_lines(page, 0)
     show(page, "contacts")
     page.until("app.readings.contacts.length === 4")
     # Each point is a star of three lines and its normal.
-    assert line_count(page) == 4 * 4
+    until_lines(page, 4 * 4)
     page.page.locator("input[name=contacts]").uncheck()
     show(page, "forces")
-    assert line_count(page) == 4 * 5
+    until_lines(page, 4 * 5)
     page.page.get_by_text("force: 1 m =").wait_for()
     scale = page.page.evaluate("app.overlays.scales.force")
     total = page.page.evaluate("app.readings.contacts.reduce((sum, c) => sum + c.pressure, 0)")
@@ -124,7 +124,7 @@ def test_contacts_forces_and_cones_are_drawn(page: Page):
     assert total == pytest.approx(weight, rel=0.02)
     assert scale > 0
     show(page, "cones")
-    assert line_count(page) == 4 * 5 + 4 * 20
+    until_lines(page, 4 * 5 + 4 * 20)
 
 
 def test_joints_and_masses_are_drawn(page: Page, arm: int):
@@ -132,9 +132,7 @@ def test_joints_and_masses_are_drawn(page: Page, arm: int):
     p.stepSimulation()
     for name, lines in (("axes", 9 * 6), ("masses", 12 * 3), ("inertias", 12 * 12)):
         show(page, name)
-        page.page.wait_for_timeout(600)
-        drawn = line_count(page)
-        assert 0.5 * lines <= drawn <= 1.2 * lines
+        until_lines(page, 0.5 * lines, 1.2 * lines)
         page.page.locator(f"input[name={name}]").uncheck()
     show(page, "positions")
     page.until("document.querySelectorAll('#labels .reading:not([hidden])').length === 9")

@@ -28,6 +28,7 @@ from tools.assets.png import png_bytes
 from tools.assets.sdf_text import sdf_text
 from tools.assets.stl_bytes import stl_bytes
 from tools.assets.surface import mesh_of
+from tools.assets.tetras import SOFT_ROBOTS, SOLIDS
 from tools.assets.textures import Colours
 from tools.assets.urdf_text import urdf_text
 
@@ -40,7 +41,8 @@ def _housing(field: Field, low: Vector3, high: Vector3, cell: float) -> ObjMesh:
 
 def urdf_files() -> dict[str, str]:
     """The text of every URDF file, by its path in the data folder."""
-    return {path: urdf_text(robot()) for path, robot in ROBOTS.items()}
+    made = {path: urdf_text(robot()) for path, robot in ROBOTS.items()}
+    return made | {path: text() for path, text in SOFT_ROBOTS.items()}
 
 
 def scene_files() -> dict[str, str]:
@@ -52,7 +54,7 @@ def scene_files() -> dict[str, str]:
 def mesh_files() -> dict[str, str]:
     """The text of every mesh, material and table of heights."""
     made = {path: material_text(name, texture) for path, (name, texture) in MATERIALS.items()}
-    made |= {path: mesh().text() for path, mesh in MESHES.items()}
+    made |= {path: mesh().text() for path, mesh in (MESHES | SOLIDS).items()}
     made |= {path: dae_text(mesh(), name) for path, (name, mesh) in COLLADA_MESHES.items()}
     made |= {path: table() for path, table in HEIGHT_TABLES.items()}
     for folder, (fields, cell) in HOUSINGS.items():

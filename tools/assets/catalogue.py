@@ -253,6 +253,7 @@ LARGE_TRAY = partial(
 )
 
 MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
+    "ball.obj": partial(simple_meshes.globe, 1.0, 36, 10),
     "bunny.obj": soft_shapes.bunny_mesh,
     "duck_vhacd.obj": toys.duck_hulls,
     "samurai_monastry.obj": grounds.courtyard,

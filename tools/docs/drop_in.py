@@ -69,11 +69,7 @@ cube = p.loadURDF("cube_small.urdf", [0.5, 0, 0.025])
 """
 
 LIMITED = {
-    "loadURDF": "the elements `<deformable>` and `<reduced_deformable>` are refused",
-    "getContactPoints": "touches of soft bodies are not among them",
-    "getClosestPoints": "soft bodies are not among them",
-    "rayTest": "soft bodies are passed through, as in PyBullet",
-    "rayTestBatch": "soft bodies are passed through, as in PyBullet",
+    "getContactPoints": "those of soft bodies with each other are not among them",
     "configureDebugVisualizer": "the flags of virtual reality are recorded and have no effect",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1, and "
     "`allowedCcdPenetration` and `enableSAT` have no effect",
@@ -89,7 +85,6 @@ WITHOUT_EFFECT = {
     ),
     **{name: _NOBODY_TAKES_IT for name in vars(codes) if name.startswith("IK_HAS_")},
     **{name: _NO_DEVICES for name in vars(codes) if name.startswith(("VR_", "COV_ENABLE_VR_"))},
-    "RESET_USE_REDUCED_DEFORMABLE_WORLD": "no effect yet: there are no reduced deformable bodies",
     "RESET_USE_DISCRETE_DYNAMICS_WORLD": "no effect: worlds of rigid bodies are all alike",
     "RESET_USE_SIMPLE_BROADPHASE": "no effect: pairs are found in one way",
     "URDF_GLOBAL_VELOCITIES_MB": "no effect: bodies move the same with it in PyBullet, but for rounding",

@@ -16,6 +16,7 @@ from carom.algorithms.nodes import Node
 from carom.description.pose import Vector3
 from carom.description.transform import matrix_vector, rotation_matrix, transposed
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
+from carom.native.products import dots, product
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -53,7 +54,7 @@ class ExtendedModel:
         turn = np.eye(self._tree.dofs)
         turn[:3, :3] = turn[3:6, 3:6] = _rotation(position)
         matrix = np.zeros((self.size, self.size))
-        matrix[np.ix_(self._places, self._places)] = turn @ moving @ turn.T
+        matrix[np.ix_(self._places, self._places)] = product(product(turn, moving), turn.T)
         return matrix
 
     def bias_forces(self, position: np.ndarray, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
@@ -64,7 +65,7 @@ class ExtendedModel:
         still = np.zeros(self._tree.joint_dofs)
         rates = rate[self._places[BASE_VELOCITIES:]]
         forces = np.array(self._tree.forces(position[BASE_POSITIONS:], rates, still))
-        forces[:3], forces[3:6] = rotation @ forces[:3], rotation @ forces[3:6]
+        forces[:3], forces[3:6] = dots(rotation, forces[:3]), dots(rotation, forces[3:6])
         result = np.zeros(self.size)
         result[self._places] = forces
         return result

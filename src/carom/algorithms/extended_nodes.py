@@ -8,7 +8,7 @@ x axis of their inertial frame, and a base without shapes is left out when a fix
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +22,8 @@ from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, LinkSpec
 from carom.model.bounds import Bounds, shape_bounds
+from carom.native.products import product
+from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -122,7 +124,7 @@ def _rigid_body(
     turn = _rotation_by_angles(conjugate(frame.turn))
     com = np.array(frame.com)
     offset = skew(com)
-    about_joint = turn @ np.diag(moments) @ turn.T + dynamics.mass * offset @ offset.T
+    about_joint = product(product(turn, np.diag(moments)), turn.T) + product(dynamics.mass * offset, offset.T)
     return dynamics.mass, dynamics.mass * com, about_joint
 
 

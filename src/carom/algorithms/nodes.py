@@ -12,6 +12,7 @@ from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
+from carom.native.products import dots, length, product
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -70,12 +71,12 @@ def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
         rotation, origin = _parts(frame)
         ends.append(End(1 + carrier, rotation, origin))
         dynamics = body.dynamics(link)
-        com = origin + rotation @ _com_from_joint(body, link)
+        com = origin + dots(rotation, _com_from_joint(body, link))
         offset = skew(com)
         masses[1 + carrier] += dynamics.mass
         moments[1 + carrier] += dynamics.mass * com
-        turned = rotation @ np.diag(dynamics.inertia) @ rotation.T
-        inertias[1 + carrier] += turned + dynamics.mass * offset @ offset.T
+        turned = product(product(rotation, np.diag(dynamics.inertia)), rotation.T)
+        inertias[1 + carrier] += turned + product(dynamics.mass * offset, offset.T)
     at_base = (np.eye(3), np.zeros(3), masses[0], moments[0], inertias[0])
     nodes = [Node(BASE, JointCode.FIXED, *at_base, np.zeros((0, 2, 3)))]
     for index, link in enumerate(moving, start=1):
@@ -102,7 +103,7 @@ def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
         return joint_axes(kind)
     model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
     if kind != JointCode.PLANAR:
-        return joint_axes(kind) * np.linalg.norm(model["link_axis"][row])
+        return joint_axes(kind) * length(model["link_axis"][row])
     none = np.zeros(3)
     slides = (model["link_planar_axis1"][row], model["link_planar_axis2"][row])
     return np.array([(model["link_axis"][row], none), *((none, slide) for slide in slides)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Iterable, Sequence
@@ -14,10 +15,9 @@ from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import CaromError
 from carom.formats.search import AssetSearch
-from carom.formats.urdf import read_urdf
 from carom.layouts.flags import LoadFlags
-from carom.model.assemble import assemble
 from carom.model.body_spec import BASE, BodySpec
+from carom.soft.from_urdf import urdf_body
 from carom.version import __version__
 
 OK, FAILED = 0, 1
@@ -36,6 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         options.command(options)
+    except BrokenPipeError:
+        # Whoever reads the output has had enough, as `head` has; Python is not to write the rest at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (CaromError, OSError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
         return FAILED
@@ -61,7 +64,9 @@ def _parser() -> argparse.ArgumentParser:
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
     view.add_argument(
-        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; a URDF file may be one of pybullet_data"
+        "file",
+        type=Path,
+        help="URDF, SDF or MJCF (.xml) file; one that pybullet_data ships is found by its name",
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(
@@ -126,8 +131,11 @@ def _info(options: argparse.Namespace) -> None:
     if options.merge_fixed_links:
         flags |= LoadFlags.MERGE_FIXED_LINKS
     search = AssetSearch(Path(pybullet_data.getDataPath()))
-    robot = read_urdf(options.file, scale=options.scale, search=search)
-    print(describe(assemble(robot, flags=flags, fixed_base=options.fixed_base)))
+    print(
+        describe(
+            urdf_body(options.file, search, scale=options.scale, flags=flags, fixed_base=options.fixed_base)
+        )
+    )
 
 
 def _view(options: argparse.Namespace) -> None:
@@ -136,7 +144,8 @@ def _view(options: argparse.Namespace) -> None:
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
-    print(f"{options.file.name} is shown at {view.viewer.address}; Ctrl-C ends it.", flush=True)
+    # Terminals take what follows an address without a space for a part of it.
+    print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
     if tunnel := tunnel_command(view.viewer.address):
         print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
     try:

@@ -11,8 +11,8 @@ from carom.formats.any_file import read_robots
 from carom.formats.search import AssetSearch
 from carom.layouts.codes import SLIDING_JOINTS
 from carom.layouts.flags import LoadFlags
-from carom.model.assemble import assemble
 from carom.scene.body import Body
+from carom.soft.from_urdf import robot_body
 from carom.viewer.items import Slider
 from carom.viewer.viewer import Viewer
 from carom.world.world import World
@@ -47,7 +47,7 @@ class RobotView:
         self._world = World()
         bodies = [
             self._world.load(
-                assemble(placed.robot, flags=_LOOKS, fixed_base=True),
+                robot_body(placed.robot, flags=_LOOKS, fixed_base=True),
                 placed.pose.position,
                 placed.pose.orientation,
             )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.layouts.codes import JointCode
 
 
 class JointType(Enum):
@@ -27,6 +28,16 @@ WITHOUT_LIMIT = (JointType.CONTINUOUS,)
 NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
 # Its positions are lengths, which scale with the robot.
 SLIDES = (JointType.PRISMATIC,)
+# What the engine takes it for.
+JOINT_CODE = {
+    JointType.REVOLUTE: JointCode.REVOLUTE,
+    JointType.CONTINUOUS: JointCode.REVOLUTE,
+    JointType.PRISMATIC: JointCode.PRISMATIC,
+    JointType.SPHERICAL: JointCode.SPHERICAL,
+    JointType.PLANAR: JointCode.PLANAR,
+    JointType.FIXED: JointCode.FIXED,
+    JointType.FLOATING: JointCode.FIXED,
+}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from carom.description.deformable import Deformable
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
 
@@ -19,6 +20,8 @@ class Robot:
         root: Index of the link that is nobody's child.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
+        deformable: What it is in place of links and joints, if it is soft; one link of that name stands for
+            it.
     """
 
     name: str
@@ -28,3 +31,4 @@ class Robot:
     materials: tuple[Material, ...] = ()
     source: Path | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+    deformable: Deformable | None = None

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import asin, atan2, cos, pi, sin, sqrt
+from math import pi, sqrt
 
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
+from carom.native.trigonometry import asin, atan2, cos, sin
 
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 """Row-major rotation matrix."""
@@ -124,6 +125,11 @@ def matrix_vector(m: Matrix3, v: Vector3) -> Vector3:
 def dot(a: Vector3, b: Vector3) -> float:
     """Scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def subtracted(a: Vector3, b: Vector3) -> Vector3:
+    """A - b."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def rotate(quaternion: Quaternion, v: Vector3) -> Vector3:

@@ -58,11 +58,11 @@ class ContactArrays:
             worlds: In which worlds; None where there is one.
         """
         if worlds is not None:
-            self.contacts.numpy["contact_impulse"][worlds, :, 3] = 0.0
+            self.contacts.numpy["contact_warm_start"][worlds] = 0.0
             return
         count = self.contact_count
         if count > 0:
-            self.contacts.numpy["contact_impulse"][0, :count, 3] = 0.0
+            self.contacts.numpy["contact_warm_start"][0, :count] = 0.0
 
     def reserve(self) -> None:
         """Bring arrays that go with others to the length of those."""

@@ -48,8 +48,10 @@ class Workspace:
                 "tree": arrays.model.capacity["tree"],
                 "contact": contacts,
                 "unit": contacts,
-                "run": contacts,
+                "order": contacts,
+                "matrix": contacts,
                 "manifold": contacts // 2,
+                "side": 2 * (contacts // 2),
                 "constraint": arrays.model.capacity["constraint"],
                 "visit": self.scratch.capacity["row"] + ROWS_PER_PAIR * users,
                 "user": users,
@@ -78,7 +80,7 @@ class Workspace:
         self.pairs.reserve({"pair": pairs})
         if rows:
             capacity = self.pair_rows.capacity
-            self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in ("row", "jacobian", "run")})
+            self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in ("row", "jacobian", "matrix")})
 
     def bind(self, shared: Mapping[str, Any]) -> KernelStructs:
         """Structs over the present arrays, and over those that all workspaces share."""

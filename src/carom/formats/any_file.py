@@ -19,16 +19,16 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
-        search: Where a URDF file that is not there as named, and meshes, are looked for.
+        search: Where a file that is not there as named, and meshes, are looked for.
 
     Raises:
         DescriptionError: The file cannot be used, or its kind is not known.
     """
     match source.suffix.lower():
         case ".sdf" | ".world":
-            return read_sdf(source)
+            return read_sdf(source, search=search)
         case suffix if suffix in MJCF_SUFFIXES:
-            return read_mjcf(source, colours=True)
+            return read_mjcf(source, colours=True, search=search)
         case ".urdf":
             return [PlacedRobot(read_urdf(source, search=search))]
         case suffix:

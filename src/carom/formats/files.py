@@ -6,10 +6,9 @@ import os
 import time
 from collections import OrderedDict
 from collections.abc import Hashable
-from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from carom.errors import DescriptionError
 
@@ -23,8 +22,7 @@ FRESH_NS = 60_000_000_000
 """Whoever wrote a file more recently than this may be about to remove it."""
 
 
-@dataclass(frozen=True, slots=True)
-class FileStamp:
+class FileStamp(NamedTuple):
     """What changes when a file changes.
 
     Attributes:

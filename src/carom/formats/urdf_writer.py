@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from math import atan2, copysign, hypot, pi
+from math import copysign, hypot, pi
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
@@ -32,6 +32,7 @@ from carom.description import (
 from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
+from carom.native.trigonometry import atan2
 
 # Decimals that angles may have before they are written with all of them.
 _DIGITS = 16
@@ -49,8 +50,10 @@ def urdf_text(robot: Robot, folder: Path) -> str:
         folder: Where the file will be: meshes and textures are named as seen from there.
 
     Raises:
-        DescriptionError: It has a shape that URDF cannot say.
+        DescriptionError: It has a shape that URDF cannot say, or is a soft body.
     """
+    if robot.deformable is not None:
+        raise DescriptionError("soft bodies are not written as URDF", file=robot.source)
     return "\n".join(['<?xml version="1.0"?>', *_Writer(robot, folder).lines(), ""])
 
 

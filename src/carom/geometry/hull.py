@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from carom.geometry.merge_faces import merged_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
+from carom.native.products import dots, length, product
 
 Points = NDArray[np.float64]
 Triangle = tuple[int, int, int]
@@ -112,14 +113,14 @@ def _first_corners(points: Points, thin: float) -> list[int]:
     if distances[second] <= thin or distances[second] == 0.0:
         return [first]
     along = away[second] / distances[second]
-    aside = away - np.outer(away @ along, along)
+    aside = away - np.outer(dots(away, along), along)
     distances = np.linalg.norm(aside, axis=1)
     third = int(distances.argmax())
     if distances[third] <= thin:
         return [first, second]
     normal = np.cross(along, aside[third])
-    normal /= np.linalg.norm(normal)
-    heights = away @ normal
+    normal /= length(normal)
+    heights = dots(away, normal)
     fourth = int(np.abs(heights).argmax())
     if abs(heights[fourth]) <= thin:
         return [first, second, third]
@@ -130,11 +131,22 @@ def _thickened(points: Points, corners: list[int], size: float) -> Points:
     """The points moved both ways along every direction in which they have no extent."""
     half = min(THICKEST_SLAB, _SLAB * size) if size > 0.0 else THICKEST_SLAB
     spanned = points[corners[1:]] - points[corners[0]]
-    # The rows beyond the rank of the spanned directions are at right angles to all of them.
-    directions = np.linalg.svd(np.vstack([spanned, np.zeros((3, 3))]))[2]
-    for direction in directions[len(spanned) :]:
+    for direction in _directions_beside(spanned):
         points = np.concatenate([points - half * direction, points + half * direction])
     return points
+
+
+def _directions_beside(spanned: Points) -> list[Points]:
+    """Unit vectors at right angles to each other and to up to two vectors, which are not parallel."""
+    if len(spanned) == 0:
+        return list(np.eye(3))
+    if len(spanned) == 2:
+        normal = np.cross(*spanned)
+        return [normal / length(normal)]
+    (along,) = spanned / length(spanned[0])
+    aside = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+    aside /= length(aside)
+    return [aside, np.cross(along, aside)]
 
 
 @dataclass(slots=True, eq=False)
@@ -169,7 +181,7 @@ class _Quickhull:
         self._pending: list[tuple[float, int]] = []
         a, b, c, d = corners
         p = points[corners]
-        if np.dot(np.cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0:
+        if dots(np.cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0:
             b, c = c, b
         triangles = [(a, b, c), (a, c, d), (c, b, d), (b, a, d)]
         numbers = self._add(triangles, np.arange(len(points)))
@@ -249,8 +261,8 @@ class _Quickhull:
         normals = _crossed(b - a, c - a)
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
-        offsets = np.einsum("ij,ij->i", normals, corners.mean(axis=1))
-        heights = self.points[candidates] @ normals.T - offsets
+        offsets = dots(normals, corners.mean(axis=1))
+        heights = product(self.points[candidates], normals.T) - offsets
         owners = heights.argmax(axis=1)
         highest = heights[np.arange(len(candidates)), owners]
         is_outside = highest > self.rounding
@@ -270,7 +282,7 @@ class _Quickhull:
         if not len(face.outside):
             return
         *normal, offset = face.plane
-        heights = self.points[face.outside] @ np.array(normal) - offset
+        heights = dots(self.points[face.outside], np.array(normal)) - offset
         best = int(heights.argmax())
         face.farthest, face.height = int(face.outside[best]), float(heights[best])
         heapq.heappush(self._pending, (-face.height, number))

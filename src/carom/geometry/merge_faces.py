@@ -7,6 +7,8 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.products import dots
+
 COPLANAR = 1e-5
 """Distance from a plane, relative to the size of the whole, up to which a vertex counts as in it."""
 
@@ -81,8 +83,8 @@ def _patch(
                 continue
             # The two corners on the edge are in the plane already.
             (apex,) = set(triangles[other]).difference(edge)
-            is_parallel = areas[other] <= thin * thin or normals[other] @ normal > _PARALLEL
-            if is_parallel and abs((vertices[apex] - origin) @ normal) <= thin:
+            is_parallel = areas[other] <= thin * thin or dots(normals[other], normal) > _PARALLEL
+            if is_parallel and abs(dots(vertices[apex] - origin, normal)) <= thin:
                 free[other] = False
                 group.append(other)
     return group

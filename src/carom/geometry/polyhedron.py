@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.products import dots
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polyhedron:
@@ -37,8 +39,24 @@ class Polyhedron:
     def moved(self, offset: NDArray[np.float64]) -> Polyhedron:
         """The same shape, every vertex moved by `offset`."""
         planes = self.planes.copy()
-        planes[:, 3] += planes[:, :3] @ offset
+        planes[:, 3] += dots(planes[:, :3], offset)
         return Polyhedron(self.vertices + offset, planes, self.first_corner, self.corner_count, self.corners)
+
+    def with_vertices(self, vertices: NDArray[np.float64]) -> Polyhedron:
+        """The same faces around other vertices, (n, 3), which are hardly elsewhere."""
+        return polyhedron(vertices, self.first_corner, self.corner_count, self.corners)
+
+    def face_areas(self) -> NDArray[np.float64]:
+        """The area of each face, shape (m,) [m²]."""
+        normals = _doubled_areas(self.vertices, self.corners, self.first_corner, self.corner_count)
+        return 0.5 * np.linalg.norm(normals, axis=1)
+
+    def with_faces_in_order(self, order: NDArray[np.integer]) -> Polyhedron:
+        """The same solid, its faces in the order of these rows."""
+        counts = self.corner_count[order]
+        firsts = (np.cumsum(counts) - counts).astype(np.int32)
+        places = np.repeat(self.first_corner[order] - firsts, counts) + np.arange(counts.sum())
+        return Polyhedron(self.vertices, self.planes[order], firsts, counts, self.corners[places])
 
 
 def polyhedron(
@@ -117,21 +135,31 @@ def _planes(
         return np.empty((0, 4))
     if (counts == 3).all():
         return _triangle_planes(vertices[corners.reshape(-1, 3)])
+    normals = _doubled_areas(vertices, corners, firsts, counts)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    heights = dots(vertices[corners], np.repeat(normals, counts, axis=0))
+    return np.column_stack([normals, np.maximum.reduceat(heights, firsts)])
+
+
+def _doubled_areas(
+    vertices: NDArray[np.float64],
+    corners: NDArray[np.int32],
+    firsts: NDArray[np.int32],
+    counts: NDArray[np.int32],
+) -> NDArray[np.float64]:
+    """Newell's sums: normals of polygons, (m, 3), as long as twice their areas."""
     following = np.arange(1, len(corners) + 1)
     following[firsts + counts - 1] = firsts
     # Sums of products of large coordinates would lose the digits of small faces.
     anchor = np.repeat(vertices[corners[firsts]], counts, axis=0)
     here = vertices[corners] - anchor
     there = vertices[corners[following]] - anchor
-    normals = np.add.reduceat(np.cross(here, there), firsts, axis=0)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    heights = np.einsum("ij,ij->i", vertices[corners], np.repeat(normals, counts, axis=0))
-    return np.column_stack([normals, np.maximum.reduceat(heights, firsts)])
+    return np.add.reduceat(np.cross(here, there), firsts, axis=0)
 
 
 def _triangle_planes(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Planes of triangles, from corners (m, 3, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    heights = np.einsum("ijk,ik->ij", corners, normals)
+    heights = dots(corners, normals[:, None])
     return np.column_stack([normals, heights.max(axis=1)])

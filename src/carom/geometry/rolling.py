@@ -1,4 +1,4 @@
-"""About which axes a convex polyhedron rolls as a wheel or a ball does."""
+"""About which axes a convex polyhedron rolls as a wheel or a ball does, and on which faces it can lie."""
 
 from __future__ import annotations
 
@@ -12,6 +12,20 @@ FEWEST_SIDES = 8
 
 ROUND = 0.05
 """Share of the radius, and of the angle between corners, by which these may be out of place."""
+
+FLAT = 1.0 / 16.0
+"""Share of the surface from which on a face is one to lie on: those of a cube are, a ball's are not."""
+
+
+def flat_faces_first(solid: Polyhedron) -> tuple[Polyhedron, int]:
+    """The solid with the faces on which it can lie before the others, and how many these are."""
+    areas = solid.face_areas()
+    is_flat = areas >= FLAT * areas.sum()
+    count = int(is_flat.sum())
+    # As a rule either all are flat, or none.
+    return (
+        solid if is_flat[:count].all() else solid.with_faces_in_order(np.argsort(~is_flat, kind="stable"))
+    ), count
 
 
 def round_about(solid: Polyhedron) -> tuple[bool, bool, bool]:

@@ -26,7 +26,7 @@ from carom.native.tables import ArrayTable
 MOST_WORKERS = 32768
 """Threads that look for contacts: more than a GPU runs at a time. Each needs 23 kB."""
 # Room for pairs of shapes, rows over two trees and their blocks to begin with; it doubles where it is short.
-_FIRST_ROOM = {"pair": 16, "row": 64, "jacobian": 256, "run": 64}
+_FIRST_ROOM = {"pair": 16, "row": 64, "jacobian": 256, "matrix": 64}
 # What the search in one pair takes, which workers have and worlds do not.
 _OF_WORKERS = ("candidate", "polygon", "polytope")
 

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
         ContactTerms,
         ManifoldBlock,
         ManifoldBlocks,
+        ManifoldSide,
+        ManifoldSides,
         PairRows,
         Pairs,
         Shapes,
@@ -38,8 +40,10 @@ else:
     Contacts = warp_type(contacts.Contacts)
     UserConstraints = warp_type(contacts.UserConstraints)
     ManifoldBlock = warp_type(contacts.ManifoldBlock)
+    ManifoldSide = warp_type(contacts.ManifoldSide)
     ContactTerms = warp_type(contacts.ContactTerms)
     ManifoldBlocks = warp_type(contacts.ManifoldBlocks)
+    ManifoldSides = warp_type(contacts.ManifoldSides)
     TermsRows = warp_type(contacts.TermsRows)
     PairRows = warp_type(contacts.PairRows)
     Scene = warp_type(images.Scene)

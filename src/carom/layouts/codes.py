@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from carom.description import JointType
-from carom.description.joint import SLIDES
-
 
 class JointCode(IntEnum):
     """Kinds of joint as the engine sees them; the values are PyBullet's."""
@@ -60,24 +57,16 @@ class ShapeKind(IntEnum):
 
 
 class Rolling(IntEnum):
-    """About which axis of its frame a shape is round."""
+    """About which axis of its frame a shape is round; or that it is a hull that is not."""
 
     NONE = 0
     ABOUT_X = 1
     ABOUT_Y = 2
     ABOUT_Z = 3
     ABOUT_ANY = 4
+    OFF_FACES = 5
 
 
-JOINT_CODE = {
-    JointType.REVOLUTE: JointCode.REVOLUTE,
-    JointType.CONTINUOUS: JointCode.REVOLUTE,
-    JointType.PRISMATIC: JointCode.PRISMATIC,
-    JointType.SPHERICAL: JointCode.SPHERICAL,
-    JointType.PLANAR: JointCode.PLANAR,
-    JointType.FIXED: JointCode.FIXED,
-    JointType.FLOATING: JointCode.FIXED,
-}
 DOF_COUNT = {
     JointCode.REVOLUTE: 1,
     JointCode.PRISMATIC: 1,
@@ -87,7 +76,7 @@ DOF_COUNT = {
 }
 POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
 # Joints whose positions are lengths, not angles.
-SLIDING_JOINTS = tuple(JOINT_CODE[kind] for kind in SLIDES)
+SLIDING_JOINTS = (JointCode.PRISMATIC,)
 # The motor and the limit that a joint can have.
 MOTOR_KIND: dict[int, ConstraintKind] = {
     JointCode.REVOLUTE: ConstraintKind.MOTOR,
@@ -147,6 +136,7 @@ HEIGHTFIELD = int(ShapeKind.HEIGHTFIELD)
 NO_ROLLING = int(Rolling.NONE)
 ROLLING_ABOUT_X = int(Rolling.ABOUT_X)
 ROLLING_ABOUT_ANY = int(Rolling.ABOUT_ANY)
+ROLLING_OFF_FACES = int(Rolling.OFF_FACES)
 
 USER_PRISMATIC = int(UserConstraintKind.PRISMATIC)
 USER_FIXED = int(UserConstraintKind.FIXED)

@@ -1,7 +1,7 @@
 """What collision detection and contact response work on: `Shapes`, `Pairs`, `Contacts`.
 
-As in `layouts.model`, a field's axis is the first word of its name. A *manifold* is a run of at most four
-contacts of the same two shapes; runs are sorted by the lower, then by the higher row of the two.
+As in `layouts.model`, a field's axis is the first word of its name. A *manifold* is at most four contacts
+of the same two shapes, one after the other; they are sorted by the lower, then by the higher row of the two.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -75,6 +75,7 @@ class Shapes:
     shape_vertex_count: Ints
     shape_first_face: Ints
     shape_face_count: Ints
+    shape_flat_faces: Ints  # of hulls: so many of its faces, the first, are large enough to lie on
     shape_center: Vectors3  # of the bounds in the shape frame; of hulls, triangle meshes, height fields
     shape_columns: Ints  # points in one row of a height field
     shape_first_node: Ints  # of a triangle mesh's hierarchy, see `triangle_hierarchy`
@@ -157,7 +158,8 @@ class Pairs:
     previous_point_b: Vector3Rows
     previous_anchor_a: Vector3Rows
     previous_anchor_b: Vector3Rows
-    previous_impulse: Vector4Rows
+    previous_impulse: Vector3Rows
+    previous_warm_start: RealRows
     previous_taken: IntRows  # 1 once a contact has been matched with it
 
     # Its columns are PAIRS and so on.
@@ -179,8 +181,8 @@ class Contacts:
     contact_direction1: Vector3Rows  # friction directions
     contact_direction2: Vector3Rows
     contact_distance: RealRows  # negative: penetration
-    # Of the last substep: normal, along directions 1 and 2; then what `warm_starting.next_warm_start` says.
-    contact_impulse: Vector4Rows
+    contact_impulse: Vector3Rows  # of the last substep: normal, along directions 1 and 2
+    contact_warm_start: RealRows  # what `warm_starting.next_warm_start` said after it
     count_contacts: IntRows  # its column is THERE
 
 
@@ -211,13 +213,12 @@ class ManifoldBlock:
     """Up to four contacts of the same two trees, relaxed together; see `kernels.solver.rigid_manifolds`.
 
     Normal rows are those of the contacts; of the friction rows the contacts have two in turn. A row of a
-    response is what an impulse does to the velocities of the dofs of a tree, one of a gain by how much it
-    lowers the impulses wanted along the other rows. Weighted Jacobians have a row for each dof: by how much
-    its velocity lowers these impulses.
+    Delassus matrix, J M⁻¹ Jᵀ times effective masses, says by how much an impulse lowers the impulses wanted
+    along the other rows.
     """
 
     place: Index4  # as `row_place`
-    run: Int32  # where in `run_block` the matrices of articulated trees are, or -1
+    matrices: Int32  # where in `matrix_block` the matrices of articulated trees are, or -1
     members: Index4  # its contacts, -1 for none
     count: Int32
     friction: Vector4  # coefficients
@@ -227,11 +228,7 @@ class ManifoldBlock:
     normal_search: Vector4
     friction_before: Vector8
     friction_search: Vector8
-    normal_weighted_a: Matrix84
-    normal_weighted_b: Matrix84
-    normal_response_a: Matrix48
-    normal_response_b: Matrix48
-    normal_gain: Matrix4
+    normal_delassus: Matrix4
     normal_share: Vector4
     normal_softness: Vector4
     normal_inverse_mass: Vector4
@@ -240,15 +237,25 @@ class ManifoldBlock:
     # compute them four at a time.
     normal_wanted: Vector4
 
-    friction_weighted_a: Matrix8
-    friction_weighted_b: Matrix8
-    friction_response_a: Matrix8
-    friction_response_b: Matrix8
-    friction_gain: Matrix8
+    friction_delassus: Matrix8
     friction_share: Vector8
     friction_inverse_mass: Vector8
     friction_impulse: Vector8
     friction_wanted: Vector8
+
+
+@struct
+class ManifoldSide:
+    """One of the two rigid bodies of a manifold block, as the rows of the block see it.
+
+    A row of a response is what an impulse does to the velocities of the dofs. Weighted Jacobians have a row
+    for each dof: by how much its velocity lowers the impulses wanted.
+    """
+
+    normal_weighted: Matrix84
+    normal_response: Matrix48
+    friction_weighted: Matrix8
+    friction_response: Matrix8
 
 
 @struct
@@ -270,16 +277,18 @@ class ContactTerms:
     erp: real
     start: Vector3  # impulses to start from
     ignored: Int32  # 1: too far apart to be solved
-    gain: real  # velocity along the normal that forces gave it in this substep, where it can rebound
+    from_forces: real  # velocity along the normal that forces gave it in this substep, where it can rebound
     carried: Vector3  # velocity of a's point against b's that comes from fixed bases which move
     carried_spin: Vector3  # likewise the angular velocity
 
 
 if TYPE_CHECKING:
     ManifoldBlocks = Any
+    ManifoldSides = Any
     TermsRows = Any
 else:
     ManifoldBlocks = ArrayType(ManifoldBlock, 2)
+    ManifoldSides = ArrayType(ManifoldSide, 2)
     TermsRows = ArrayType(ContactTerms, 2)
 
 
@@ -304,8 +313,8 @@ class PairRows:
     )
     constraint_next: IntRows
     contact_next: IntRows
-    run_first: IntRows  # first contact of each manifold, in the order in which they are relaxed
-    run_island: IntRows  # what they are sorted by: the last tree of its island
+    order_first: IntRows  # first contact of each manifold, in the order in which they are relaxed
+    order_island: IntRows  # what they are sorted by: the last tree of its island
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )
@@ -313,8 +322,9 @@ class PairRows:
 
     terms: TermsRows  # of the contacts of the manifold whose rows are being written
     manifold_block: ManifoldBlocks
-    run_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
-    entry_run: RealRows
+    side: ManifoldSides  # of each manifold block its body a, then its body b
+    matrix_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
+    entry_matrix: RealRows
 
     user_first_row: IntRows
     visit_row: IntRows  # rows of motors, limits and user constraints in their order: -1 - row of the latter
@@ -324,5 +334,5 @@ class PairRows:
 ROW_ENTRY_VIEWS = {
     "entry_row": "jacobian_row",
     "entry_response": "jacobian_response",
-    "entry_run": "run_block",
+    "entry_matrix": "matrix_block",
 }

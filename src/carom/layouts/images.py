@@ -1,7 +1,7 @@
 """The arrays the kernels of the renderer share.
 
 Names begin with what an entry belongs to: a `part` is a piece of one shape of a link, with one colour and
-one texture; a `chunk` is a run of parts handled by one launch; a `facet` is a triangle that may be seen,
+one texture; a `chunk` is parts in a row, handled by one launch; a `facet` is a triangle that may be seen,
 ready to be filled. Pixel coordinates have their origin at the centre of the top left pixel, y downwards.
 """
 

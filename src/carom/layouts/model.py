@@ -182,6 +182,7 @@ class State:
     node_position: Vector3Rows  # of soft bodies, see `layouts.soft`
     node_velocity: Vector3Rows
     node_force: Vector3Rows
+    node_push: Vector3Rows  # what shapes pushed it with in the last substep [N]
     status_entry: IntRows  # what became of the last step: see `layouts.status`
 
 

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 from carom.layouts.contacts import TermsRows
 from carom.layouts.types import (
     ArrayType,
-    Index4,
     Index4Rows,
     Int32,
     IntRows,
@@ -33,8 +32,13 @@ Window = Type("int32", (8,), "vector")
 class IslandProgress:
     """How far the search for the impulses of an island has come."""
 
-    made: Index4  # what `solver.island_rows` returned
-    units: Index4  # what `units.write_units` returned
+    rows: Int32  # what `solver.island_rows` returned
+    pair_row: Int32
+    block: Int32
+    visits: Int32
+    units: Int32  # what `units.write_units` returned
+    manifold_blocks: Int32
+    torsion: Int32
     resting: Int32  # 1: its contacts start from their last impulses
     outcome: Int32  # see `warm_starting.NOT_RESTING`
     stage: Int32  # see `UNWRITTEN`

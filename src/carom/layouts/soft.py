@@ -57,6 +57,7 @@ class SoftBodyModel:
     damping: real  # viscosity of tetrahedra as a share of `mu` and `lam` [s]
     frequency: real  # bound of the angular frequencies at which it can vibrate [rad/s]
     shear_frequency: real  # the same of its tetrahedra if they resisted to shear only [rad/s]
+    gravity_factor: real  # share of the world's gravity that pulls it
 
 
 @struct
@@ -139,13 +140,16 @@ class SoftWork:
     near_side: RealRows  # 1: the node is where the normal of the face points; -1: behind
     near_distance: RealRows  # when it was found
     touch_row: IntRows  # the first of its rows over a tree, -1 if nothing moves the link
+    touch_shape: IntRows
     touch_point: Vector3Rows
     touch_velocity: Vector3Rows  # of the point at the start of the substep
     touch_normal: Vector3Rows  # towards the node
     touch_offset: RealRows  # distance of the node from the plane at which it rests [m]
     touch_friction: RealRows
+    touch_impulse: Vector3Rows  # on the node, in this substep [N s]
     anchor_row: IntRows  # likewise
     anchor_point: Vector3Rows
     anchor_velocity: Vector3Rows
+    anchor_impulse: Vector3Rows
     dof_start: RealRows  # velocity at the start of the substep
     tree_ready: IntRows  # 1: its inverse mass matrix is there

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from carom.description import Joint, JointType, Link, Robot
-from carom.description.joint import NEEDS_LIMIT
+from carom.description.joint import JOINT_CODE, NEEDS_LIMIT
 from carom.description.pose import Pose, Vector3
-from carom.layouts.codes import JOINT_CODE, LIMIT_KIND, ConstraintKind
+from carom.layouts.codes import LIMIT_KIND, ConstraintKind
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import reduce
 from math import trunc
+from typing import NamedTuple
 
 import numpy as np
 
@@ -55,8 +55,7 @@ def turned_box(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Bounds:
+class Bounds(NamedTuple):
     """An axis-aligned box.
 
     Attributes:

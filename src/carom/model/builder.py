@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from carom.description.joint import JOINT_CODE
 from carom.description.pose import Pose, Vector3
-from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix
+from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix, subtracted
 from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
     DOF_COUNT,
-    JOINT_CODE,
     MOTOR_DAMPING,
     MOTOR_KD,
     MOTOR_KP,
@@ -28,6 +28,7 @@ from carom.layouts.codes import (
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.native.products import length, product
 from carom.native.tables import ArrayTable
 
 # Bullet's default, a float32 in its source.
@@ -128,7 +129,9 @@ class WorldArrays:
         if spec.soft is not None:
             nodes = slice(rows.first["node"], rows.first["node"] + count["node"])
             turn = np.array(rotation_matrix(base_pose.orientation))
-            self.state.numpy["node_position"][:, nodes] = spec.soft.nodes @ turn.T + base_pose.position
+            self.state.numpy["node_position"][:, nodes] = (
+                product(spec.soft.nodes, turn.T) + base_pose.position
+            )
         for axis, number in count.items():
             self.used[axis] += number
         return rows
@@ -224,24 +227,24 @@ class WorldArrays:
         model = self.model.numpy
         to_parent_inertial = conjugate(parent.inertial_frame.orientation)
         to_inertial = conjugate(link.inertial_frame.orientation)
-        from_parent_com = _difference(link.joint_frame.position, parent.inertial_frame.position)
+        from_parent_com = subtracted(link.joint_frame.position, parent.inertial_frame.position)
         axis = rotate(to_inertial, link.joint_axis)
         # An axis that is not of unit length scales the joint's rate, not the angle it turns by.
-        length = link.joint_axis_length
+        rate = link.joint_axis_length
         model["link_joint_rotation"][row] = multiplied(
             multiplied(to_parent_inertial, link.joint_frame.orientation), link.inertial_frame.orientation
         )
         model["link_pivot_in_parent"][row] = rotate(to_parent_inertial, from_parent_com)
         model["link_com_from_pivot"][row] = rotate(to_inertial, link.inertial_frame.position)
         model["link_unit_axis"][row] = axis
-        model["link_axis"][row] = (axis[0] * length, axis[1] * length, axis[2] * length)
+        model["link_axis"][row] = (axis[0] * rate, axis[1] * rate, axis[2] * rate)
         if code == JointCode.PLANAR:
             # Bullet's planar joint acts at the centre of mass.
             model["link_com_from_pivot"][row] = 0.0
-            normal = np.asarray(axis) / np.linalg.norm(axis)
+            normal = np.asarray(axis) / length(np.asarray(axis))
             aside = np.array([0.0, 1.0, 0.0]) if normal[0] > 0.999 else np.array([1.0, 0.0, 0.0])
             axis1 = np.cross(normal, aside)
-            axis1 /= np.linalg.norm(axis1)
+            axis1 /= length(axis1)
             model["link_unit_axis"][row] = normal
             model["link_axis"][row] = normal
             model["link_planar_axis1"][row] = axis1
@@ -310,7 +313,3 @@ class WorldArrays:
     def structs(self) -> dict[str, Any]:
         """Warp structs over the present arrays, by the name kernels give them."""
         return {"model": self.model.struct(), "state": self.state.struct()}
-
-
-def _difference(a: Vector3, b: Vector3) -> Vector3:
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])

@@ -23,14 +23,6 @@ PlacedBody = tuple[BodySpec, Pose]
 """A body, and the world pose of the link frame of its base."""
 
 
-def urdf_body(path: Path, search: AssetSearch, *, scale: float, flags: int, fixed_base: bool) -> BodySpec:
-    """The body of a URDF file; raises `DescriptionError`."""
-    from carom.formats.urdf import read_urdf
-
-    robot = read_urdf(path, scale=scale, search=search)
-    return assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
-
-
 def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedBody]:
     """The bodies of an SDF file, in its order; raises `DescriptionError`."""
     from carom.formats.sdf import read_sdf

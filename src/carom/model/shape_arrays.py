@@ -201,6 +201,7 @@ class ShapeArrays:
             numpy["shape_size"][row] = piece.size
             numpy["shape_pose"][row] = placed.pose
             numpy["shape_rolling"][row] = piece.rolling
+            numpy["shape_flat_faces"][row] = piece.flat_faces
             numpy["shape_margin"][row] = piece.margin
             numpy["shape_center"][row] = piece.center
             numpy["shape_columns"][row] = piece.columns
@@ -364,6 +365,7 @@ class ShapeArrays:
             numpy["shape_pose"][row] = placed.pose
             numpy["shape_size"][row] = placed.piece.size
             numpy["shape_rolling"][row] = placed.piece.rolling
+            numpy["shape_flat_faces"][row] = placed.piece.flat_faces
             numpy["shape_center"][row] = placed.piece.center
             numpy["shape_margin"][row] = placed.piece.margin
             numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[link])

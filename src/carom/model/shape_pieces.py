@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, pi, sin
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,22 +30,24 @@ from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import SMALLEST, convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.geometry.rolling import round_about
+from carom.geometry.rolling import flat_faces_first, round_about
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.layouts.codes import Rolling, ShapeKind
 from carom.layouts.contacts import MARGIN
+from carom.native.trigonometry import cos, sin
 
-MOST_HULL_VERTICES = 128
+MOST_HULL_VERTICES = 512
 """Hulls of finer meshes are simplified to so many vertices."""
 
-HULL_TOLERANCE = 1e-3
-"""Points that lie outside a hull by less than this fraction of its size are left out."""
+HULL_TOLERANCE = 1e-4
+"""Points that lie outside a hull by less than this fraction of its size, half a step of the grid, are left
+out."""
 
 CYLINDER_SIDES = 32
 """Sides of a cylinder that is a hull."""
 
 GRID = 10216
-"""Steps of the grid over the width of a cylinder on which its corners lie when it is a hull."""
+"""Steps of the grid over the width of a hull on which its corners lie."""
 
 _CACHED = 256
 
@@ -67,6 +69,7 @@ class ShapePiece:
         columns: Points in one row of a height field.
         hierarchy: Boxes over the faces of a triangle mesh.
         rolling: About which axis of the shape frame it is round.
+        flat_faces: Of a hull: so many of its faces, the first, are large enough to lie on.
     """
 
     kind: ShapeKind
@@ -77,6 +80,7 @@ class ShapePiece:
     columns: int = 0
     hierarchy: TriangleHierarchy | None = None
     rolling: Rolling = Rolling.NONE
+    flat_faces: int = 0
 
 
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
@@ -135,9 +139,12 @@ def _polyhedral(
     low, high = polyhedron.bounds()
     half_x, half_y, half_z = (0.5 * (high - low)).tolist()
     x, y, z = (0.5 * (high + low)).tolist()
-    rolling = _rolling_of(polyhedron) if kind == ShapeKind.HULL else Rolling.NONE
+    rolling, flat_faces = Rolling.NONE, 0
+    if kind == ShapeKind.HULL:
+        rolling = _rolling_of(polyhedron)
+        polyhedron, flat_faces = flat_faces_first(polyhedron)
     return ShapePiece(
-        kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy, rolling
+        kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy, rolling, flat_faces
     )
 
 
@@ -152,7 +159,7 @@ def _rolling_of(hull: Polyhedron) -> Rolling:
         case (False, False, True):
             return Rolling.ABOUT_Z
         case _:
-            return Rolling.NONE
+            return Rolling.OFF_FACES
 
 
 def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
@@ -161,6 +168,10 @@ def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
     except ValueError as problem:
         # Points whose sizes differ by more than the digits of a number.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
+    low, high = points.min(axis=0), points.max(axis=0)
+    if (high - low).min() > SMALLEST:
+        # What is coplanar off the grid may not be on it, so faces are found before.
+        hull = hull.with_vertices(_on_grid(hull.vertices, low, high))
     return _polyhedral(ShapeKind.HULL, hull, MARGIN)
 
 
@@ -171,7 +182,7 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     points = np.array([(x, y, z) for z in (-0.5 * length, 0.5 * length) for x, y in rim])
     if min(radius, length) < SMALLEST:
         return _hull_piece(points)
-    points = _on_grid(points)
+    points = _on_grid(points, points.min(axis=0), points.max(axis=0))
     # Simplifying would take corners out of the rims.
     sides = range(CYLINDER_SIDES)
     bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
@@ -180,14 +191,17 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, [bottom, top, *quads]), MARGIN)
 
 
-def _on_grid(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points (n, 3) around the origin, drawn in to the grid that PyBullet makes hulls on.
+def _on_grid(
+    points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Points (n, 3) with these bounds, drawn in to the grid that PyBullet makes hulls on.
 
     Wheels roll from corner to corner; with each 1e-4 of the radius off, they would drift from PyBullet's.
     The steps of the arithmetic are its, too, since an extreme point may lie on the grid or just below.
     """
-    step = (points.max(axis=0) - points.min(axis=0)) * (1.0 / GRID)
-    return np.trunc(points * (1.0 / step)) * step
+    step = (high - low) * (1.0 / GRID)
+    middle = (low + high) * 0.5
+    return np.trunc((points - middle) * (1.0 / step)) * step + middle
 
 
 @lru_cache(_CACHED)

@@ -12,6 +12,7 @@ from carom.description.pose import Vector3
 from carom.layouts.soft import ANCHORS, BODIES, SoftModel
 from carom.model.builder import TreeRows
 from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
+from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
@@ -112,6 +113,7 @@ class SoftArrays:
         numpy["soft_margin"][row] = spec.margin
         numpy["soft_thickness"][row] = spec.thickness()
         numpy["soft_self_collision"][row] = spec.self_collision
+        numpy["soft_gravity_factor"][row] = spec.gravity_factor
         numpy["soft_mu"][row] = spec.mu
         numpy["soft_lam"][row] = spec.lam
         numpy["soft_damping"][row] = spec.damping
@@ -129,8 +131,8 @@ class SoftArrays:
         if len(spec.tetras):
             edges = spec.edge_matrices()
             numpy["tetra_nodes"][rows["tetra"]] = spec.tetras + first["node"]
-            numpy["tetra_inverse"][rows["tetra"]] = np.linalg.inv(edges)
-            numpy["tetra_volume"][rows["tetra"]] = np.linalg.det(edges) / 6.0
+            numpy["tetra_inverse"][rows["tetra"]] = inverses(edges)
+            numpy["tetra_volume"][rows["tetra"]] = determinants(edges) / 6.0
         numpy["face_nodes"][rows["face"], :3] = spec.faces + first["node"]
 
     def write_anchors(self) -> None:

@@ -48,6 +48,7 @@ class SoftSpec:
         damps_all_directions: Springs damp every relative motion of their ends, not only that along them.
         margin: Distance at which nodes rest on other surfaces [m].
         self_collision: Its nodes do not go through its own faces.
+        gravity_factor: Share of the world's gravity that pulls it.
         skin: The mesh that is seen in place of the faces, if there is one.
     """
 
@@ -63,6 +64,7 @@ class SoftSpec:
     damps_all_directions: bool = False
     margin: float = 0.02
     self_collision: bool = False
+    gravity_factor: float = 1.0
     skin: Skin | None = None
 
     def edge_matrices(self) -> NDArray[np.float64]:
@@ -106,12 +108,14 @@ class SoftSpec:
         """(n,) stiffness of the tetrahedra around each node [N/m], by their modulus [Pa]."""
         import numpy as np
 
+        from carom.native.products import determinants, inverses
+
         stiffness = np.zeros(len(self.nodes))
         if len(self.tetras):
             edges = self.edge_matrices()
-            gradients = np.linalg.inv(edges)
+            gradients = inverses(edges)
             gradients = np.concatenate([-gradients.sum(axis=1, keepdims=True), gradients], axis=1)
-            volume = np.linalg.det(edges) / 6.0
+            volume = determinants(edges) / 6.0
             at_corner = modulus * volume[:, None] * (gradients**2).sum(axis=2)
             for corner in range(4):
                 np.add.at(stiffness, self.tetras[:, corner], at_corner[:, corner])

@@ -7,8 +7,13 @@ it has to be known at every start: it is worked out from the files' contents alo
 from __future__ import annotations
 
 import os
-from hashlib import blake2b
 from pathlib import Path
+
+try:
+    # `hashlib` would bring OpenSSL along, which takes as long to load as all the rest of this.
+    from _blake2 import blake2b
+except ImportError:
+    from hashlib import blake2b
 
 _DIGEST_BYTES = 16
 # Kernels and what they share with Python; C and C++; what decides how these are compiled.

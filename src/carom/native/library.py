@@ -74,7 +74,7 @@ class Library:
         return function
 
     def maths(self, name: str) -> Any:
-        """The C function that replaces a number, whose address it takes, by its sine and the like."""
+        """The C function that replaces the number at an address by its sine and the like."""
         function = getattr(self._loaded, f"carom_{name}_of")
         function.restype = None
         return function

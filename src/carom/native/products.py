@@ -1,4 +1,4 @@
-"""Sums of products that are the same bits on every machine.
+"""Sums of products, and what is made of them, that are the same bits on every machine.
 
 Products of matrices by `@` are left to a library that adds in the order that suits the processor.
 """
@@ -27,6 +27,34 @@ def product(a: Floats, b: Floats) -> Floats:
     for k in range(1, a.shape[-1]):
         total += a[..., :, k, None] * b[..., k, None, :]
     return total
+
+
+def dots(a: Floats, b: Floats) -> Floats:
+    """Scalar products of vectors, with terms added in the order in which they stand.
+
+    Args:
+        a: Shape (..., n).
+        b: Shape (..., n); the axes before the last are broadcast against those of `a`.
+
+    Returns:
+        Shape (...).
+    """
+    total = a[..., 0] * b[..., 0]
+    for k in range(1, a.shape[-1]):
+        total = total + a[..., k] * b[..., k]
+    return total
+
+
+def determinants(matrices: Floats) -> Floats:
+    """Determinants of matrices of shape (..., 3, 3)."""
+    return dots(matrices[..., 0, :], np.cross(matrices[..., 1, :], matrices[..., 2, :]))
+
+
+def inverses(matrices: Floats) -> Floats:
+    """Inverses of matrices of shape (..., 3, 3), none of them singular, by their cofactors."""
+    a, b, c = (matrices[..., row, :] for row in range(3))
+    cofactors = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
+    return cofactors / determinants(matrices)[..., None, None]
 
 
 def length(vector: Floats) -> float:

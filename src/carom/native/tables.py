@@ -11,9 +11,8 @@ worlds share that: kernels see it at a stride of zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -33,8 +32,7 @@ def numbers_of(numbers: np.ndarray) -> memoryview[float]:
     return cast("memoryview[float]", numbers.data)
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
+class Field(NamedTuple):
     """One array of a table.
 
     Attributes:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import platform
 import sys
-from dataclasses import dataclass
+from typing import NamedTuple
 
 
 class NoTarget(Exception):
     """Nothing is built for this platform."""
 
 
-@dataclass(frozen=True)
-class Target:
+class Target(NamedTuple):
     """A platform.
 
     Attributes:

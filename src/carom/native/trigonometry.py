@@ -1,7 +1,8 @@
-"""Sine, cosine and tangent that are the same bits on every machine: those of the kernels.
+"""Trigonometry that is the same bits on every machine: that of the kernels.
 
-Those of `math` are those of the platform's C library, and differ in the last bit. Roots and `math.hypot` need
-nothing of that kind: they consist of operations that are rounded correctly.
+The functions of `math` are those of the platform's C library, and differ in the last bit. Roots and
+`math.hypot` need nothing of that kind: they consist of operations that are rounded correctly. Where `math`
+raises, as for the arcsine of 2, the result here is not a number.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import ctypes
 from functools import cache
 from typing import Any
+
+_Two = ctypes.c_double * 2
 
 
 def sin(angle: float) -> float:
@@ -26,8 +29,25 @@ def tan(angle: float) -> float:
     return _applied("tan", angle)
 
 
-def _applied(name: str, angle: float) -> float:
-    number = ctypes.c_double(angle)
+def asin(sine: float) -> float:
+    """The angle of a sine, from -π/2 to π/2 [rad]."""
+    return _applied("asin", sine)
+
+
+def acos(cosine: float) -> float:
+    """The angle of a cosine, from 0 to π [rad]."""
+    return _applied("acos", cosine)
+
+
+def atan2(y: float, x: float) -> float:
+    """The angle from the x axis to the point (x, y), from -π to π [rad]."""
+    numbers = _Two(y, x)
+    _function("atan2")(ctypes.byref(numbers))
+    return numbers[0]
+
+
+def _applied(name: str, value: float) -> float:
+    number = ctypes.c_double(value)
     _function(name)(ctypes.byref(number))
     return number.value
 

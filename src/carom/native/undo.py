@@ -35,21 +35,19 @@ class Undo:
     ) -> None:
         if error is None:
             self.settle()
-            return
-        for _ in range(_PATIENCE):
-            try:
-                self.settle()
-                return
-            except BaseException:
-                # The first exception is on its way already.
-                continue
+        else:
+            self._settle_patiently()
 
     def at_once(self, change: Callable[[], None]) -> None:
         """Make a change that can be made again, to its end even if it is broken off."""
-        with self:
-            self.note(change)
+        # A context would do it as well, but scripts change parameters at every step.
+        try:
+            self._steps.append(change)
             change()
-            self.done()
+            self._steps.clear()
+        except BaseException:
+            self._settle_patiently()
+            raise
 
     def note(self, step: Callable[[], None]) -> None:
         """Take this step, unless the change is done."""
@@ -60,6 +58,15 @@ class Undo:
         while self._steps:
             self._steps[-1]()
             self._steps.pop()
+
+    def _settle_patiently(self) -> None:
+        """Take the steps that are left while an exception is on its way already."""
+        for _ in range(_PATIENCE):
+            try:
+                self.settle()
+                return
+            except BaseException:
+                continue
 
     def done(self) -> None:
         """The change has been made: forget the steps."""

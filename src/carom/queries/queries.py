@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
+from itertools import chain, islice
 from struct import Struct
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +27,9 @@ from carom.queries.pair_search import NearestPoints, PairSearch
 from carom.queries.quick_queries import tell_placement
 from carom.queries.ray_cast import Points, RayCast, RayHit
 
+if TYPE_CHECKING:
+    from carom.queries.soft_bodies import SoftQueries
+
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
 # Of shapes that have not been placed.
 NEVER = -1
@@ -42,6 +47,8 @@ class Queries:
         present_poses: `World.present_poses`.
         contact_arrays: The arrays of shapes.
         pairs: Room for the intermediate results of collision detection.
+        state: The state of the world.
+        soft_work: Room for those of soft bodies.
         quick: What builtins in the native library know of the world.
     """
 
@@ -53,13 +60,21 @@ class Queries:
         present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         contact_arrays: ContactArrays,
         pairs: ArrayTable,
+        state: ArrayTable,
+        soft_work: ArrayTable,
         quick: QuickScene,
     ) -> None:
         self._structs = structs
         structs["places"] = row_map_struct(places)
         self._link_count = len(places)
         self._touch = contact_arrays
-        self._quick = quick
+        self._soft: SoftQueries | None = None
+        if contact_arrays.soft.bodies:
+            from carom.queries.soft_bodies import SoftQueries
+
+            self._soft = SoftQueries(structs, contact_arrays, state, soft_work, places, present_poses)
+        # Quick calls know no soft bodies: those of worlds with some are told of nothing.
+        self._quick = quick if self._soft is None else QuickScene()
         self._positions = positions
         self._present_poses = present_poses
         self._all_shapes = contact_arrays.shapes
@@ -71,7 +86,7 @@ class Queries:
         self._contact_counts = memoryview(contact_arrays.contacts.numpy["count_contacts"][0])
         # The coordinates for which shapes have been placed last; quick calls place them, too.
         self._placed_at = bytearray(positions.nbytes)
-        self._placement = quick.record.placement
+        self._placement = self._quick.record.placement
         self._placement.changes = NEVER
         self._has_asked = False
 
@@ -104,9 +119,14 @@ class Queries:
 
     @cached_property
     def _without_shapes(self) -> list[tuple[int, Bounds]]:
-        """The links without shapes: their rows, and their bounds about their inertial frames."""
+        """The links without shapes that are not soft: their rows, and their bounds about their frames."""
         counts = self._shapes["link_shape_count"][: self._link_count].tolist()
-        return [(row, self._all_shapes.bounds(row)) for row, count in enumerate(counts) if not count]
+        soft = {body.rows.first["link"] for body in self._touch.soft.bodies}
+        return [
+            (row, self._all_shapes.bounds(row))
+            for row, count in enumerate(counts)
+            if not count and row not in soft
+        ]
 
     def cast_rays(
         self,
@@ -127,12 +147,37 @@ class Queries:
             separation: Later hits on a link less than this fraction of the ray after one do not count.
         """
         self._prepare(IN_HIERARCHY)
+        if self._soft is not None:
+            return self._cast_at_all(self._soft, starts, ends, mask, hit_number, separation)
         return self._cast(starts, ends, mask, hit_number, separation)
+
+    def _cast_at_all(
+        self,
+        soft: SoftQueries,
+        starts: Points,
+        ends: Points,
+        mask: int,
+        hit_number: int,
+        separation: float,
+    ) -> tuple[RayHit, ...]:
+        """As `cast_rays`, with soft bodies among what is hit."""
+        from carom.queries.soft_bodies import nth_hit
+
+        # The n-th hit of all is among the first n on shapes and those on soft bodies.
+        rigid = [self._cast(starts, ends, mask, number, separation) for number in range(hit_number + 1)]
+        on_soft = soft.cast(starts, ends, mask)
+        return tuple(
+            nth_hit([hits[ray] for hits in rigid], on_soft[ray], hit_number, separation)
+            for ray in range(len(starts))
+        )
 
     def cast_ray(
         self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> RayHit:
         """What one ray hits; the arguments are those of `cast_rays` for it."""
+        if self._soft is not None:
+            hits = self.cast_rays((start,), (end,), mask=mask, hit_number=hit_number, separation=separation)
+            return hits[0]
         self._prepare(IN_HIERARCHY)
         return self._cast.one(start, end, mask, hit_number, separation)
 
@@ -171,7 +216,11 @@ class Queries:
             The contacts, to be read at once.
         """
         count = self._contact_counts[THERE]
-        return self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
+        rigid = self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
+        if self._soft is None:
+            return rigid
+        soft = self._soft.contacts(body_a, link_a, body_b, link_b)
+        return _one_after_the_other(rigid, soft)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
         """Rows of the links whose bounds meet a box; those of links without shapes are a point, or nearly.
@@ -186,6 +235,8 @@ class Queries:
             lowest, highest, endless, links = self._extents
             meets = ((lowest <= upper) & (highest >= lower)).all(axis=1) | endless
             found.update(links[meets].tolist())
+        if self._soft is not None:
+            found.update(self._soft.overlapping(lower, upper))
         if self._without_shapes:
             with self._present_poses() as poses:
                 for row, bounds in self._without_shapes:
@@ -231,6 +282,18 @@ class Queries:
             readiness=READINESS,
             has_bare_links=bool(self._without_shapes),
         )
+
+
+def _one_after_the_other(first: ContactColumns, second: ContactColumns) -> ContactColumns:
+    if not second.found:
+        return first
+    if not first.found:
+        return second
+    columns = (
+        chain(islice(column, first.found), other)
+        for column, other in zip(first.columns, second.columns, strict=True)
+    )
+    return ContactColumns(first.found + second.found, tuple(columns))
 
 
 def _meet(center: float, half: float, lower: float, upper: float) -> bool:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.description.joint import JOINT_CODE
 from carom.description.pose import Pose
 from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
     DOF_COUNT,
-    JOINT_CODE,
     POSITION_COUNT,
     Activity,
 )

@@ -15,6 +15,7 @@ from carom.description.transform import compose
 from carom.model.body_spec import BodySpec
 from carom.native.undo import Undo
 from carom.scene.body import Body
+from carom.scene.dynamics_changes import change_base_freedom, set_base_freedom
 from carom.scene.soft_body import SoftBody
 from carom.scene.undoing import begin
 from carom.scene.user_constraints import UserConstraint
@@ -135,19 +136,7 @@ def free_base(world: World, body: Body, *, free: bool) -> None:
     """Let the base of a body move, or hold it where it is."""
     with begin(world) as undo:
         undo.note(world.constraints.way_back())
-        undo.note(partial(_set_base_freedom, world, body, free=not body.fixed_base))
+        undo.note(partial(set_base_freedom, world, body, free=not body.fixed_base))
         change_base_freedom(world, body, free=free)
         world.scene_changed()
         undo.done()
-
-
-def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """The same within another change."""
-    _set_base_freedom(world, body, free=free)
-    world.constraints.base_freedom_changed(body)
-
-
-def _set_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    world.arrays.set_base_freedom(body.rows, free=free)
-    body.fixed_base = not free
-    body.derived.clear()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from carom.layouts.flags import ActivationChange, LoadFlags
@@ -10,8 +11,12 @@ from carom.model.body_spec import BASE
 from carom.model.inertia import inertia_from_shapes
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from carom.description.pose import Vector3
     from carom.scene.body import Body
+    from carom.scene.link_dynamics import LinkDynamics
+    from carom.world.world import World
 
 
 OF_BODY = {
@@ -22,6 +27,7 @@ OF_BODY = {
 _SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
+_VECTORS = ("inertia", "anisotropic_friction")
 _NOT_OF_SURFACE = {
     *OF_BODY,
     _SLEEP_THRESHOLD,
@@ -34,39 +40,96 @@ _NOT_OF_SURFACE = {
 
 
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
-    """Change a link, the joint that carries it, or what holds for all links of a body."""
-    dynamics, world = body.dynamics(link), body.world
-    surface = [name for name in changes if name not in _NOT_OF_SURFACE]
+    """Change a link, the joint that carries it, or what holds for a whole body: all of it or nothing."""
+    undo = body.world.undo
+    undo.settle()
+    undo.at_once(dynamics_change(body, link, changes))
+
+
+def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
+    """Make ready to change the dynamics of a link.
+
+    Returns:
+        What does it. Broken off, it can be called again, and then comes to the same end.
+
+    Raises:
+        AttributeError: There is no such field.
+        TypeError, ValueError: A value is not what belongs there.
+    """
+    dynamics = body.dynamics(link)
+    for name, value in changes.items():
+        _check(dynamics, name, value)
+    if changes.keys().isdisjoint(_NOT_OF_SURFACE):
+        return _surface_change(body, link, changes)
+    steps = _other_changes(body, link, changes)
+    surface = {name: value for name, value in changes.items() if name not in _NOT_OF_SURFACE}
     if surface:
-        for name in surface:
-            setattr(dynamics, name, changes[name])
-        looks_ahead = world.contact_arrays.shapes.looks_ahead
-        world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics, surface)
-        if looks_ahead != world.contact_arrays.shapes.looks_ahead:
-            world.scene_changed()
-        if len(surface) == len(changes):
-            return
+        steps.append(_surface_change(body, link, surface))
+
+    def change() -> None:
+        for step in steps:
+            step()
+
+    return change
+
+
+def _surface_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
+    """What changes how a link touches."""
+    shapes = body.world.contact_arrays.shapes
+    will_look_ahead = not shapes.looks_ahead and changes.get("ccd_swept_sphere_radius", 0.0) > 0.0
+    return partial(_change_surface, body, link, changes, will_look_ahead)
+
+
+def _change_surface(body: Body, link: int, changes: Mapping[str, Any], will_look_ahead: bool) -> None:
+    dynamics = body.dynamics(link)
+    for name, value in changes.items():
+        setattr(dynamics, name, value)
+    body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics, changes)
+    if will_look_ahead:
+        body.world.scene_changed()
+
+
+def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
+    """Refuse what could not be written, before anything is."""
+    if name in _VECTORS:
+        x, y, z = value
+        _ = float(x), float(y), float(z)
+    elif type(value) is not float:
+        float(value)
+    if name not in _NOT_OF_SURFACE:
+        getattr(dynamics, name)
+
+
+def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Callable[[], None]]:
+    """What changes anything but the surface of a link; each can be called again."""
+    steps: list[Callable[[], None]] = []
+    model, tree = body.world.arrays.model.numpy, body.rows.tree
     for name, field in OF_BODY.items():
         if name in changes:
-            world.arrays.model.numpy[field][:, body.rows.tree] = changes[name]
+            steps.append(partial(model[field][:, tree].fill, changes[name]))
     if _SLEEP_THRESHOLD in changes:
-        world.arrays.model.numpy["tree_sleep_threshold"][body.rows.tree] = changes[_SLEEP_THRESHOLD]
+        steps.append(partial(_put, model["tree_sleep_threshold"], tree, changes[_SLEEP_THRESHOLD]))
     if _ACTIVATION in changes:
-        _change_activation(body, ActivationChange(changes[_ACTIVATION]))
+        steps.append(_activation_change(body, ActivationChange(changes[_ACTIVATION])))
     if "mass" in changes:
-        _set_mass(body, link, changes["mass"], changes.get("inertia"))
+        steps.append(_mass_change(body, link, changes["mass"], changes.get("inertia")))
     elif "inertia" in changes:
-        _set_inertia(body, link, changes["inertia"])
+        steps.append(partial(_set_inertia, body, link, changes["inertia"]))
     if link != BASE:
-        _change_joint(body, link, changes)
+        steps += _joint_changes(body, link, changes)
     else:
-        for name in changes.keys() & _OF_JOINT:
-            setattr(dynamics, name, changes[name])
+        dynamics = body.dynamics(link)
+        steps += [partial(setattr, dynamics, name, changes[name]) for name in changes.keys() & _OF_JOINT]
     if "joint_limit_force" in changes:
-        _set_limit_force(body, link, changes["joint_limit_force"])
+        steps.append(partial(_set_limit_force, body, link, changes["joint_limit_force"]))
+    return steps
 
 
-def _change_activation(body: Body, change: ActivationChange) -> None:
+def _put(array: np.ndarray, row: int, value: float) -> None:
+    array[row] = value
+
+
+def _activation_change(body: Body, change: ActivationChange) -> Callable[[], None]:
     """Put a body to sleep, wake it up, or change whether it may do so by itself.
 
     As in Bullet it takes effect at the end of the next step, and a body that must not wake up keeps
@@ -74,29 +137,32 @@ def _change_activation(body: Body, change: ActivationChange) -> None:
     """
     model, state = body.world.arrays.model.numpy, body.world.arrays.state.numpy
     tree = body.rows.tree
-    if change & ActivationChange.WAKE_UP:
-        state["tree_wants_sleep"][0, tree], state["tree_idle_time"][0, tree] = False, 0.0
-    if change & ActivationChange.SLEEP:
-        state["tree_wants_sleep"][0, tree] = True
-    if model["tree_can_wake"][tree]:
-        if change & ActivationChange.ENABLE_SLEEPING:
-            model["tree_can_sleep"][tree] = True
-        if change & ActivationChange.DISABLE_SLEEPING:
-            model["tree_can_sleep"][tree] = False
-    if change & ActivationChange.ENABLE_WAKEUP:
-        model["tree_can_wake"][tree] = True
-    if change & ActivationChange.DISABLE_WAKEUP:
-        model["tree_can_wake"][tree] = False
-    body.world.scene_changed()
+    can_sleep, can_wake = bool(model["tree_can_sleep"][tree]), bool(model["tree_can_wake"][tree])
+    if can_wake:
+        can_sleep = can_sleep or bool(change & ActivationChange.ENABLE_SLEEPING)
+        can_sleep = can_sleep and not change & ActivationChange.DISABLE_SLEEPING
+    can_wake = can_wake or bool(change & ActivationChange.ENABLE_WAKEUP)
+    can_wake = can_wake and not change & ActivationChange.DISABLE_WAKEUP
+
+    def set_activation() -> None:
+        if change & ActivationChange.WAKE_UP:
+            state["tree_wants_sleep"][0, tree], state["tree_idle_time"][0, tree] = False, 0.0
+        if change & ActivationChange.SLEEP:
+            state["tree_wants_sleep"][0, tree] = True
+        model["tree_can_sleep"][tree], model["tree_can_wake"][tree] = can_sleep, can_wake
+        body.world.scene_changed()
+
+    return set_activation
 
 
-def _change_joint(body: Body, joint: int, changes: Mapping[str, Any]) -> None:
+def _joint_changes(body: Body, joint: int, changes: Mapping[str, Any]) -> Iterator[Callable[[], None]]:
     dynamics = body.dynamics(joint)
     if "joint_damping" in changes:
-        _set_joint_damping(body, joint, changes["joint_damping"])
+        yield partial(_set_joint_damping, body, joint, changes["joint_damping"])
     if "joint_lower_limit" in changes or "joint_upper_limit" in changes:
         lower = changes.get("joint_lower_limit", dynamics.joint_lower_limit)
-        _set_limits(body, joint, lower, changes.get("joint_upper_limit", dynamics.joint_upper_limit))
+        upper = changes.get("joint_upper_limit", dynamics.joint_upper_limit)
+        yield partial(_set_limits, body, joint, lower, upper)
 
 
 def write_link(body: Body, link: int) -> None:
@@ -108,15 +174,34 @@ def write_link(body: Body, link: int) -> None:
     body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
-def _set_mass(body: Body, link: int, mass: float, inertia: Vector3 | None) -> None:
+def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) -> Callable[[], None]:
     """Set the mass and the inertia, by default that of the collision shapes; a massless base is fixed."""
-    dynamics = body.dynamics(link)
-    dynamics.mass = mass
-    dynamics.inertia = shape_inertia(body, link, mass) if inertia is None else inertia
-    _write(body, link)
-    if link == BASE and (mass > 0.0) == body.fixed_base:
-        body.world.set_base_freedom(body, free=mass > 0.0)
-        body.world.contact_arrays.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
+    world, dynamics = body.world, body.dynamics(link)
+    moments = shape_inertia(body, link, mass) if inertia is None else inertia
+    frees_or_fixes = link == BASE and (mass > 0.0) == body.fixed_base
+
+    def set_mass() -> None:
+        dynamics.mass, dynamics.inertia = mass, moments
+        _write(body, link)
+        if frees_or_fixes:
+            change_base_freedom(world, body, free=mass > 0.0)
+            world.contact_arrays.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
+            world.scene_changed()
+
+    return set_mass
+
+
+def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
+    """Let the base of a body move, or hold it where it is, within a change; can be called again."""
+    set_base_freedom(world, body, free=free)
+    world.constraints.base_freedom_changed(body)
+
+
+def set_base_freedom(world: World, body: Body, *, free: bool) -> None:
+    """The same without numbering the islands anew."""
+    world.arrays.set_base_freedom(body.rows, free=free)
+    body.fixed_base = not free
+    body.derived.clear()
 
 
 def shape_inertia(body: Body, link: int, mass: float) -> Vector3:

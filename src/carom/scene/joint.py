@@ -11,6 +11,7 @@ from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.native.products import length
 from carom.scene import joint_motor
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -246,15 +247,15 @@ class Joint:
         if not self._has_quaternion:
             raise ValueError(f"joint {self.name!r} is {self.type.value}, not spherical")
         quaternion = vector(target, 4, "target")
-        length = np.linalg.norm(quaternion)
-        if length == 0.0:
+        size = length(quaternion)
+        if size == 0.0:
             raise ValueError("target must be a quaternion other than 0")
         world = world_of(self.body)
         joint_motor.aim_at_orientation(
             world.motor,
             self._dofs,
             world.parameters.substep_time,
-            quaternion / length,
+            quaternion / size,
             gain,
             damping,
             self._force(max_force),

@@ -11,6 +11,7 @@ from carom.checks import finite
 from carom.description.transform import rotation_matrix
 from carom.model.soft_arrays import Anchor, SoftRows
 from carom.model.soft_spec import SoftSpec
+from carom.native.products import dots, length, product
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ class SoftBody(Body):
         skin = self.soft_spec.skin
         if skin is None:
             return self.nodes.copy(), self.soft_spec.faces
-        return np.einsum("vk,vkx->vx", skin.weights, self.nodes[skin.nodes]), skin.triangles
+        return dots(skin.weights[:, None], np.swapaxes(self.nodes[skin.nodes], 1, 2)), skin.triangles
 
     @property
     def tetrahedra(self) -> np.ndarray:
@@ -122,9 +123,9 @@ class SoftBody(Body):
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
         before = np.array(rotation_matrix(_unit(state["position"][0, first + 3 : first + 7])))
-        turn = np.array(rotation_matrix(_unit(orientation))) @ before.T
-        self.nodes[:] = (self.nodes - center) @ turn.T + np.asarray(position)
-        self.node_velocities[:] = self.node_velocities @ turn.T
+        turn = product(np.array(rotation_matrix(_unit(orientation))), before.T)
+        self.nodes[:] = product(self.nodes - center, turn.T) + np.asarray(position)
+        self.node_velocities[:] = product(self.node_velocities, turn.T)
         self.update()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
@@ -172,7 +173,8 @@ class SoftBody(Body):
 
 
 def _unit(quaternion: Sequence[float] | np.ndarray) -> tuple[float, float, float, float]:
-    x, y, z, w = (np.asarray(quaternion) / np.linalg.norm(quaternion)).tolist()
+    four = np.asarray(quaternion, dtype=np.float64)
+    x, y, z, w = (four / length(four)).tolist()
     return x, y, z, w
 
 

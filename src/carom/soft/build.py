@@ -12,6 +12,7 @@ from carom.description.pose import Pose
 from carom.errors import DescriptionError
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.soft_spec import Skin, SoftSpec
+from carom.native.products import determinants
 from carom.soft.materials import NeoHookean, Springs
 from carom.soft.shapes import oriented
 from carom.soft.skin import bind
@@ -141,7 +142,7 @@ def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source
     corners = nodes[tetras]
     edges = corners[:, 1:] - corners[:, :1]
     size = np.abs(edges).max(axis=(1, 2))
-    flat = np.linalg.det(edges) <= _FLAT * size**3
+    flat = determinants(edges) <= _FLAT * size**3
     if flat.any():
         raise DescriptionError(
             f"tetrahedron {int(flat.argmax())} has no volume; mend the mesh, or leave it out", file=source

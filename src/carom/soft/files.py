@@ -53,7 +53,7 @@ def soft_body_from_file(
     Raises:
         DescriptionError: The file is missing or broken, of another kind, or its mesh cannot be used.
     """
-    nodes, cells = _mesh(path if simulated is None else simulated)
+    nodes, cells = mesh_of(path if simulated is None else simulated)
     seen = None
     if simulated is not None:
         part = read_mesh(path)[0]
@@ -73,7 +73,12 @@ def soft_body_from_file(
     )
 
 
-def _mesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def mesh_of(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The nodes of a file, and its triangles or tetrahedra.
+
+    Raises:
+        DescriptionError: The file is missing or broken, or of another kind.
+    """
     suffix = path.suffix.lower()
     if suffix in SOLIDS:
         mesh = read_vtk(path)

@@ -40,5 +40,9 @@ class NeoHookean:
     def of(cls, youngs_modulus: float, poissons_ratio: float, damping: float = 0.0) -> NeoHookean:
         """What behaves for small strains as a solid of that Young's modulus [Pa] and Poisson's ratio."""
         shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
-        first = 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio)
+        return cls.of_lame(shear, 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio), damping)
+
+    @classmethod
+    def of_lame(cls, shear: float, first: float, damping: float = 0.0) -> NeoHookean:
+        """The same by the shear modulus and Lamé's first parameter [Pa]."""
         return cls(4.0 / 3.0 * shear, first + 5.0 / 6.0 * shear, damping)

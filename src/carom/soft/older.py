@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from carom.formats.mesh.reader import read_mesh
+from carom.errors import DescriptionError
 from carom.model.body_spec import BodySpec
-from carom.soft.files import soft_body_from_file
+from carom.soft.build import soft_body
+from carom.soft.files import is_solid, mesh_of
 from carom.soft.materials import Springs
 
 # Bullet projects the springs of such cloth 20 times in a step, whatever its mass. At this frequency of a
@@ -28,11 +29,23 @@ def older_cloth_from_file(path: Path, *, scale: float, mass: float, margin: floa
         margin: Distance at which nodes rest on other surfaces [m].
 
     Raises:
-        DescriptionError: The file is missing or broken, of another kind, or its mesh cannot be used.
+        DescriptionError: The file is missing or broken, holds tetrahedra, or its mesh cannot be used.
     """
-    node_mass = mass / len(read_mesh(path)[0].vertices)
+    if is_solid(path):
+        raise DescriptionError(
+            "it holds tetrahedra: call resetSimulation(RESET_USE_DEFORMABLE_WORLD) before", file=path
+        )
+    nodes, triangles = mesh_of(path)
+    node_mass = mass / len(nodes) if len(nodes) else mass
     stiffness = node_mass * _FREQUENCY**2
     springs = Springs(stiffness, _DAMPING * node_mass * _FREQUENCY, stiffness)
-    return soft_body_from_file(
-        path, scale=scale, mass=mass, springs=springs, margin=margin, friction=_FRICTION
+    return soft_body(
+        path.stem,
+        nodes * scale,
+        triangles,
+        mass=mass,
+        springs=springs,
+        margin=margin,
+        friction=_FRICTION,
+        source=path,
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.products import determinants, dots
+
 # A cube's corners, numbered by bits x, y, z, as six tetrahedra around the diagonal from 0 to 7.
 _IN_CUBE = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
 
@@ -48,7 +50,7 @@ def box(
     k, j, i = np.meshgrid(*(np.arange(cells[axis]) for axis in (2, 1, 0)), indexing="ij")
     origin = ((k * counts[1] + j) * counts[0] + i).ravel()
     step = np.array([1, counts[0], counts[0] * counts[1]])
-    corners = np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(8)]) @ step
+    corners = dots(np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(8)]), step)
     return nodes, (origin[:, None, None] + corners[np.array(_IN_CUBE)]).reshape(-1, 4).astype(np.int32)
 
 
@@ -68,7 +70,7 @@ def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int
 def oriented(nodes: NDArray[np.float64], tetras: NDArray[np.int32]) -> NDArray[np.int32]:
     """Tetrahedra with two corners exchanged where their volume is negative."""
     corners = nodes[tetras]
-    volumes = np.linalg.det(corners[:, 1:] - corners[:, :1])
+    volumes = determinants(corners[:, 1:] - corners[:, :1])
     turned = tetras.copy()
     turned[volumes < 0.0, 2], turned[volumes < 0.0, 3] = tetras[volumes < 0.0, 3], tetras[volumes < 0.0, 2]
     return turned

@@ -2,10 +2,10 @@
 
 The server listens on this machine alone unless it is told otherwise, but that is not enough: other users may
 work on it, and any page in the user's browser could open a socket to it, or reach it under a name of its own
-that it lets point here. So whoever asks has to know a token, which is part of the address that the user is
-told; a browser that has asked with it once keeps it in a cookie. With the cookie, or under a name that is
+that it lets point here. So each request has to state a token, which is part of the address that the user is
+told; a browser that has stated it once keeps it in a cookie. With the cookie, or under a name that is
 allowed, a request has to name the server by an address no other site can have, and a socket has to come from
-the server's own page. The token alone does behind a proxy, as of a notebook, where names are others.
+the server's own page. Behind a proxy, as of a notebook, names are others: there the token alone is enough.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Access:
 
     Attributes:
         host: What the server listens on.
-        token: What whoever asks has to know.
+        token: What requests have to state.
         names: Names, besides its own, by which the server may be asked for.
     """
 
@@ -61,18 +61,17 @@ class Access:
         return own and self.is_known(path, host_header, cookies)
 
     def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether a file of the page may be given out; they are the same for everybody.
+        """Whether the page may be given out.
 
         Args:
             path: What is asked for, with the query.
             host_header: `Host` of the request.
-            cookies: `Cookie` of the request. The page itself is asked for with the token; its parts come with
-                a cookie instead.
+            cookies: `Cookie` of the request.
         """
         return self.is_own(host_header) or self.knows_token(path) or self.has_cookie(cookies)
 
     def is_known(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether whoever asks knows the token, or asks under a name that the user has allowed."""
+        """Whether a request states the token, has the cookie, or names a host that the user has allowed."""
         named = _name(f"//{host_header}") in self.names
         return named or self.knows_token(path) or self.has_cookie(cookies)
 
@@ -94,8 +93,11 @@ class Access:
 
     def knows_token(self, path: str) -> bool:
         """Whether a request states the token."""
-        stated = parse_qs(urlsplit(path).query).get("token", [""])[0]
-        return secrets.compare_digest(stated.encode(), self.token.encode())
+        return secrets.compare_digest(_stated_token(path).encode(), self.token.encode())
+
+    def guesses_token(self, path: str) -> bool:
+        """Whether a request states another token: it is meant for another server, or guesses."""
+        return bool(_stated_token(path)) and not self.knows_token(path)
 
 
 def reachable_host(host: str) -> str:
@@ -145,6 +147,10 @@ def origin_allowed(host_header: str | None, origin: str | None) -> bool:
         return True
     parts = urlsplit(origin)
     return parts.scheme in ("http", "https") and parts.netloc.lower() == (host_header or "").lower()
+
+
+def _stated_token(path: str) -> str:
+    return parse_qs(urlsplit(path).query).get("token", [""])[0]
 
 
 def _name(address: str) -> str | None:

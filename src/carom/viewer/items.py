@@ -1,4 +1,4 @@
-"""What scripts draw into the scene, and the sliders and buttons they add."""
+"""What scripts draw into the scene, and the sliders, buttons and handles they add."""
 
 from __future__ import annotations
 
@@ -55,6 +55,29 @@ class DebugPoints(DebugItem):
 
 
 @dataclass(slots=True)
+class Handle:
+    """A frame that the user moves with the mouse.
+
+    Attributes:
+        name: What is written beside it.
+        pose: Position [m] and orientation (x, y, z, w), in the world.
+    """
+
+    name: str
+    pose: tuple[Vector3, Quaternion]
+
+    @property
+    def position(self) -> Vector3:
+        """Where it is [m]."""
+        return self.pose[0]
+
+    @property
+    def orientation(self) -> Quaternion:
+        """How it is turned: a unit quaternion (x, y, z, w)."""
+        return self.pose[1]
+
+
+@dataclass(slots=True)
 class Slider:
     """A number the user can set; a button that counts its clicks when `lower > upper`."""
 
@@ -67,3 +90,20 @@ class Slider:
     def is_button(self) -> bool:
         """Whether it is a button."""
         return self.lower > self.upper
+
+
+@dataclass(slots=True)
+class Choice(Slider):
+    """One of several texts; `value` is its number. With no texts it is a box to check: 0 or 1."""
+
+    options: tuple[str, ...] = ()
+
+    @property
+    def chosen(self) -> str:
+        """The text that the user has chosen."""
+        return self.options[int(self.value)]
+
+    @property
+    def checked(self) -> bool:
+        """Whether the user has checked the box."""
+        return self.value != 0.0

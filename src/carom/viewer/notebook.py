@@ -4,36 +4,55 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import sys
+from base64 import b64encode
 from typing import Any
 from uuid import uuid4
 
 from carom.viewer.page_files import page_files
 
 HEIGHT = 520
+# What the page may do in the frame: fill the screen, and copy the camera's numbers.
+_ALLOWED = "fullscreen; clipboard-write"
 _UNREACHABLE = """<p style="font: 14px system-ui, sans-serif">The simulation cannot be reached from here. It
 has ended, or the notebook server has no proxy: <code>pip install jupyter-server-proxy</code> and restart it.
 What needs no connection is a recording: <code>with world.record("run.html") as replay: ...</code> and
 <code>replay</code> as the last line of a cell.</p>"""
 
 
-def frame(port: int, token: str, height: int = HEIGHT) -> str:
+def frame(port: int, token: str, picture: bytes | None = None, height: int = HEIGHT) -> str:
     """HTML that shows the page of a server on the machine of the kernel.
 
     Args:
         port: Of the server.
         token: Of the server.
+        picture: PNG file to show where the page cannot be reached.
         height: Of the frame [pixels].
     """
     identifier = f"carom-{uuid4().hex}"
-    facts = json.dumps({"id": identifier, "port": port, "token": token, "unreachable": _UNREACHABLE})
+    facts = json.dumps(
+        {
+            "id": identifier,
+            "port": port,
+            "token": token,
+            "proxy": _proxy_of_editor(port),
+            "unreachable": _shown(picture) + _UNREACHABLE,
+        }
+    )
     script = page_files()["notebook.js"].decode().replace("FACTS", facts.replace("</", "<\\/"))
     style = f"width:100%;height:{height}px;border:0"
     address = f"http://127.0.0.1:{port}/?token={token}"
     return (
-        f'<iframe id="{identifier}" style="{style}" allow="fullscreen"></iframe><script>{script}</script>'
+        f'<iframe id="{identifier}" style="{style}" allow="{_ALLOWED}"></iframe><script>{script}</script>'
         f'<noscript><iframe src="{address}" style="{style}"></iframe></noscript>'
     )
+
+
+def _shown(picture: bytes | None) -> str:
+    if picture is None:
+        return ""
+    return f'<img alt="The simulation" src="data:image/png;base64,{b64encode(picture).decode()}">'
 
 
 def replay_frame(page: str, height: int = HEIGHT) -> str:
@@ -52,6 +71,14 @@ def show(markup: str) -> None:
     from importlib import import_module
 
     import_module("IPython.display").display({"text/html": markup}, raw=True)
+
+
+def _proxy_of_editor(port: int) -> str | None:
+    """Where an editor in the browser shows a port of the kernel's machine, if it says so, as code-server."""
+    pattern = os.environ.get("VSCODE_PROXY_URI", "")
+    if not pattern.startswith(("http://", "https://")) or "{{port}}" not in pattern:
+        return None
+    return pattern.replace("{{port}}", str(port)).rstrip("/") + "/"
 
 
 def _shell() -> Any:

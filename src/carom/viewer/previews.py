@@ -1,4 +1,4 @@
-"""Small pictures of what the last camera image of a script shows."""
+"""Small pictures of what the last camera image of a script shows, and where its camera is."""
 
 from __future__ import annotations
 
@@ -15,6 +15,10 @@ _WIDTH = 200
 _PERIOD = 0.1
 # Neighbouring numbers get colours far apart: each turns the hue by the golden ratio.
 _HUE_STEP = 0.61803398875
+# How deep the pyramid is that stands for a camera [m].
+_PYRAMID_DEPTH = 0.25
+# Corners of the image, one after the other, in OpenGL's coordinates.
+_CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
 class Previews:
@@ -23,14 +27,22 @@ class Previews:
     def __init__(self, board: Board) -> None:
         self._board = board
         self._due = 0.0
+        self._corners: list[list[float]] | None = None
 
-    def show(self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]) -> None:
+    def show(
+        self,
+        rgba: NDArray[np.uint8],
+        depth: NDArray[np.float32],
+        labels: NDArray[np.int32],
+        camera: NDArray[np.float64],
+    ) -> None:
         """Shows an image, unless the last one is very recent.
 
         Args:
             rgba: (height, width, 4) colours.
             depth: (height, width) depth from 0 to 1, as OpenGL has it.
             labels: (height, width) numbers of bodies; -1 where there is nothing.
+            camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
         """
         now = monotonic()
         if now < self._due:
@@ -42,6 +54,38 @@ class Previews:
         height, width = pictures[0].shape[:2]
         header: dict[str, Any] = {"type": "previews", "width": width, "height": height}
         self._board.put("previews", header, b"".join(np.ascontiguousarray(p).tobytes() for p in pictures))
+        self._show_pyramid(camera)
+
+    def _show_pyramid(self, camera: NDArray[np.float64]) -> None:
+        """Shows where the camera is: the part of what it sees that is near it."""
+        corners = pyramid(camera)
+        # A camera that stands still is shown once.
+        if corners is not None and corners != self._corners:
+            self._corners = corners
+            self._board.put("pyramid", {"type": "pyramid", "corners": corners})
+
+
+def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
+    """Corners of what a camera sees from its near plane to 25 cm behind that: four near, four far.
+
+    Args:
+        camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+
+    Returns:
+        Points in the world; None if the matrix has no inverse.
+    """
+    try:
+        back = np.linalg.inv(camera)
+    except np.linalg.LinAlgError:
+        return None
+    ends = []
+    for plane in (-1.0, 1.0):
+        points = np.column_stack((_CORNERS, np.full(4, plane), np.ones(4))) @ back.T
+        ends.append(points[:, :3] / points[:, 3:])
+    near, far = ends
+    depth = float(np.linalg.norm((far - near).mean(axis=0)))
+    corners = np.concatenate((near, near + (far - near) * min(1.0, _PYRAMID_DEPTH / max(depth, 1e-9))))
+    return corners.round(5).tolist() if np.isfinite(corners).all() else None
 
 
 def _shades(depth: NDArray[np.float32]) -> NDArray[np.uint8]:

@@ -21,7 +21,7 @@ class Rays:
     """Rays on the board, as long as a page wants to see them. Safe to use from all threads.
 
     Attributes:
-        wanted: A page shows rays; else nobody need tell of them.
+        wanted: A page shows rays. While none does, they need not be told of.
     """
 
     def __init__(self, board: Board) -> None:

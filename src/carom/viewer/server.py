@@ -21,6 +21,8 @@ from carom.viewer.access import Access
 from carom.viewer.board import Board
 from carom.viewer.messages import MAX_INCOMING_BYTES, received
 from carom.viewer.page_files import page_files
+from carom.viewer.pages import Page, Pages
+from carom.viewer.polling import Polling
 from carom.viewer.replay.page import replay_page
 
 _log = logging.getLogger("carom")
@@ -29,6 +31,7 @@ _quiet = logging.getLogger("carom.viewer.sockets")
 _quiet.setLevel(logging.CRITICAL)
 _THREAD_NAME = "carom viewer"
 
+_OTHER_NAME = "This server does not answer to that host name; the option --names of connect allows it.\n"
 _WHOLE_ADDRESS = "Open the whole address that the simulation has printed, with its token.\n"
 
 
@@ -47,12 +50,13 @@ _KINDS = {
     ".js": "text/javascript; charset=utf-8",
     ".svg": "image/svg+xml",
 }
-# Notebooks show the page inside their own, which lives on this machine or in an editor.
 _POLICY = (
     "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; "
-    "style-src 'self' 'unsafe-inline'; "
-    "frame-ancestors 'self' http://localhost:* http://127.0.0.1:* vscode-webview: https://*.googleusercontent.com"
+    "style-src 'self' 'unsafe-inline'"
 )
+# Who may show the page inside a page of their own: notebooks and editors, wherever they are, if they know the
+# token; without it, those of this machine.
+_OWN_FRAMES = "; frame-ancestors 'self' http://localhost:* http://127.0.0.1:*"
 
 
 @cache
@@ -63,13 +67,26 @@ def _files() -> dict[str, tuple[str, bytes]]:
     return {**files, "/": files["/index.html"], "/replay.html": replay}
 
 
-class _Page:
-    """One page that is open."""
+def _is_part(path: str) -> bool:
+    """Whether a file belongs to the page.
 
-    def __init__(self, number: int) -> None:
-        self.number = number
-        self.revision = 0
-        self.news = asyncio.Event()
+    Such files are the same for everybody and are given to everybody: in a notebook of another site the
+    browser sends no cookie along.
+    """
+    return path != "/index.html" and path[1:] in page_files()
+
+
+def _headers(kind: str, content: bytes, policy: str, cache: str = "no-cache") -> Headers:
+    return Headers(
+        {
+            "Content-Type": kind,
+            "Content-Length": str(len(content)),
+            "Content-Security-Policy": policy,
+            "X-Content-Type-Options": "nosniff",
+            "Cache-Control": cache,
+            "Connection": "close",
+        }
+    )
 
 
 class PageServer:
@@ -104,9 +121,8 @@ class PageServer:
         self._make_frame = frame
         self._frame: bytes | None = None
         self._receive = receive
-        self._gone = gone
-        self._pages: set[_Page] = set()
-        self._numbers = 0
+        self._pages = Pages(gone)
+        self._polling = Polling(self._pages, self._news, self._take)
         self._started = Event()
         self._problem: OSError | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -128,7 +144,7 @@ class PageServer:
 
     def page_numbers(self) -> set[int]:
         """The pages that are open, by the numbers `receive` is called with."""
-        return {page.number for page in tuple(self._pages)}
+        return {page.number for page in self._pages}
 
     def stop(self) -> None:
         """Closes all sockets; pages say that the simulation has ended."""
@@ -151,7 +167,6 @@ class PageServer:
 
     async def _serve(self) -> None:
         self._stopping = asyncio.Event()
-        self._somebody = asyncio.Event()
         async with await self._listen() as server:
             self.port: int = next(iter(server.sockets)).getsockname()[1]
             self._loop = asyncio.get_running_loop()
@@ -185,81 +200,84 @@ class PageServer:
         loop = asyncio.get_running_loop()
         due = loop.time()
         while True:
-            await self._somebody.wait()
+            await self._pages.somebody.wait()
+            self._polling.forget_silent()
             try:
                 self._frame = self._make_frame() or self._frame
             except Exception:
                 _log.exception("The viewer could not read the world.")
-            self._board.forget_removals(min((page.revision for page in self._pages), default=0))
+            self._board.forget_removals(self._pages.oldest_revision)
             for page in self._pages:
                 page.news.set()
             due = max(due + 1.0 / _FRAMES_PER_SECOND, loop.time())
             await asyncio.sleep(due - loop.time())
 
-    def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
+    async def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
         cookies = "; ".join(request.headers.get_all("Cookie"))
         host = hosts[0] if len(hosts) == 1 else None
-        # Several of what may be there once are none of them.
-        if len(origins) > 1 or not self.access.may_read(request.path, host, cookies):
-            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, "This server has another name.\n")
         path = request.path.partition("?")[0]
+        access = self.access
+        if access.guesses_token(request.path):
+            return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
+        # Several of what may be there once are none of them.
+        if len(origins) > 1 or not (_is_part(path) or access.may_read(request.path, host, cookies)):
+            return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, _OTHER_NAME)
         if path == "/socket":
-            if self.access.may_connect(request.path, host, origins[0] if origins else None, cookies):
+            if access.may_connect(request.path, host, origins[0] if origins else None, cookies):
                 return None
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
-        if path == "/" and not self.access.is_known(request.path, host, cookies):
+        if path == "/poll":
+            # Browsers name no origin here, and send the cookie to all ports of a machine: the token counts.
+            if not access.knows_token(request.path):
+                return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
+            return await self._answer_poll(connection, request.path)
+        if path == "/" and not access.is_known(request.path, host, cookies):
             return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
         file = _files().get(path)
         if file is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "There is no such file.\n")
         kind, content = file
-        headers = Headers(
-            {
-                "Content-Type": kind,
-                "Content-Length": str(len(content)),
-                "Content-Security-Policy": _POLICY,
-                "X-Content-Type-Options": "nosniff",
-                "Cache-Control": "no-cache",
-                "Connection": "close",
-            }
-        )
-        if self.access.knows_token(request.path):
-            headers["Set-Cookie"] = f"{self.access.cookie}; HttpOnly; SameSite=Strict"
+        if not access.knows_token(request.path):
+            return Response(HTTPStatus.OK, "OK", _headers(kind, content, _POLICY + _OWN_FRAMES), content)
+        headers = _headers(kind, content, _POLICY)
+        headers["Set-Cookie"] = f"{access.cookie}; HttpOnly; SameSite=Strict"
         return Response(HTTPStatus.OK, "OK", headers, content)
 
+    async def _answer_poll(self, connection: ServerConnection, path: str) -> Response:
+        try:
+            content = await self._polling.answer(path)
+        except ValueError:
+            return connection.respond(HTTPStatus.BAD_REQUEST, "The request does not say who asks.\n")
+        headers = _headers("application/octet-stream", content, _POLICY, cache="no-store")
+        return Response(HTTPStatus.OK, "OK", headers, content)
+
+    def _news(self, page: Page) -> list[bytes]:
+        return page.take_news(self._board, self._frame)
+
+    def _take(self, page: int, text: str | bytes) -> None:
+        """A page has sent something."""
+        try:
+            self._receive(page, received(text))
+        except (KeyError, TypeError, ValueError) as problem:
+            _log.debug("A page sent something that is not understood: %s", problem)
+
     async def _talk(self, connection: ServerConnection) -> None:
-        self._numbers += 1
-        page = _Page(self._numbers)
-        self._pages.add(page)
-        self._somebody.set()
+        page = self._pages.join()
         sender = asyncio.create_task(self._send(connection, page))
         try:
             async for message in connection:
-                try:
-                    self._receive(page.number, received(message))
-                except (KeyError, TypeError, ValueError) as problem:
-                    _log.debug("A page sent something that is not understood: %s", problem)
+                self._take(page.number, message)
         except ConnectionClosed:
             pass
         finally:
             sender.cancel()
-            self._pages.discard(page)
-            if not self._pages:
-                self._somebody.clear()
-            self._gone(page.number)
+            self._pages.leave(page)
 
-    async def _send(self, connection: ServerConnection, page: _Page) -> None:
-        sent: bytes | None = None
+    async def _send(self, connection: ServerConnection, page: Page) -> None:
         with suppress(ConnectionClosed):
             while True:
                 await page.news.wait()
                 page.news.clear()
-                messages, revision = self._board.since(page.revision)
-                for message in messages:
+                for message in self._news(page):
                     await connection.send(message)
-                page.revision = revision
-                frame = self._frame
-                if frame is not None and frame is not sent:
-                    await connection.send(frame)
-                    sent = frame

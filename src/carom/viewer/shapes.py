@@ -173,6 +173,7 @@ def _link(body: Body, link: int) -> dict[str, Any]:
     }
     if link != BASE:
         facts |= {"joint": spec.joint_name, "kind": spec.joint_type.value, "axis": spec.joint_axis}
+        facts["parent"] = spec.parent - BASE
         lower, upper = body.joints[link].limits
         if isfinite(lower) and isfinite(upper) and lower < upper:
             facts["limits"] = (lower, upper)

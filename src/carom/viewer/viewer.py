@@ -5,7 +5,7 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import inf, isfinite
+from math import hypot, inf, isfinite
 from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
@@ -19,11 +19,12 @@ from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import drive
+from carom.viewer.input.handles import Handles
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
-from carom.viewer.items import Slider
+from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -35,6 +36,7 @@ from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.sleeping import Sleeping
 from carom.viewer.steps.step_lock import StepLock
+from carom.viewer.still import still
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -108,6 +110,7 @@ class Viewer:
         self._board.put("title", {"type": "title", "title": title})
         self.controls: Controls = Controls(self._board)
         self.drawings: Drawings = Drawings(self._board)
+        self._handles = Handles(self._board)
         self.camera: SharedCamera = SharedCamera(self._board, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
@@ -137,6 +140,7 @@ class Viewer:
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             "want": lambda page, told: self._want(page, Wish.told(told)),
             "drive": self._take_drive,
+            "handle": self._take_handle,
             "sleep": lambda page, told: self._chores.add(self._sleeping.toggle),
             "profile": lambda page, told: self.on_profile(bool(told["running"])),
             "grasp": self._take_grasp,
@@ -270,10 +274,69 @@ class Viewer:
             ValueError: A number is not finite, or the bounds are no interval with the start in it.
         """
         if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
-            raise ValueError(f"slider {name!r} goes from {lower} to {upper} and starts at {start}")
+            raise ValueError(
+                f"slider {name!r} needs a lower bound below the upper one and a start value between them, "
+                f"not {lower}, {upper} and {start}"
+            )
         slider = Slider(name, float(lower), float(upper), float(start))
-        self.controls.add(max(self.controls.sliders, default=-1) + 1, slider)
+        self._add_control(slider)
         return slider
+
+    def button(self, name: str) -> Slider:
+        """Adds a button to the panel; its `value` counts how often it was pressed."""
+        button = Slider(name, 1.0, 0.0, 0.0)
+        self._add_control(button)
+        return button
+
+    def choice(self, name: str, options: Iterable[str], start: int = 0) -> Choice:
+        """Adds a list of texts to the panel, of which the user chooses one: its `chosen`.
+
+        Raises:
+            ValueError: There are no texts, or none of that number.
+        """
+        texts = tuple(map(str, options))
+        if not 0 <= start < len(texts):
+            raise ValueError(f"choice {name!r} needs a start between 0 and {len(texts) - 1}, not {start}")
+        choice = Choice(name, 0.0, float(len(texts) - 1), float(start), texts)
+        self._add_control(choice)
+        return choice
+
+    def checkbox(self, name: str, start: bool = False) -> Choice:
+        """Adds a box to the panel that the user checks or not: its `checked`."""
+        box = Choice(name, 0.0, 1.0, float(start))
+        self._add_control(box)
+        return box
+
+    def handle(
+        self, name: str, position: Iterable[float], orientation: Iterable[float] = (0.0, 0.0, 0.0, 1.0)
+    ) -> Handle:
+        """Adds a frame that the user moves with the mouse, such as the target of a hand.
+
+        Args:
+            name: What is written beside it.
+            position: Where it is at first [m].
+            orientation: How it is turned at first: a quaternion (x, y, z, w).
+
+        Returns:
+            The handle; its `position` and `orientation` are where the user has put it.
+
+        Raises:
+            ValueError: The numbers are no position and no quaternion.
+        """
+        x, y, z = map(float, position)
+        a, b, c, d = map(float, orientation)
+        if not all(map(isfinite, (x, y, z, a, b, c, d))) or not any((a, b, c, d)):
+            raise ValueError(
+                f"handle {name!r} needs a finite position and a quaternion that is not 0, "
+                f"not {(x, y, z)} and {(a, b, c, d)}"
+            )
+        size = hypot(a, b, c, d)
+        handle = Handle(name, ((x, y, z), (a / size, b / size, c / size, d / size)))
+        self._handles.add(handle)
+        return handle
+
+    def _add_control(self, control: Slider) -> None:
+        self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
 
     @property
     def rays(self) -> Rays:
@@ -309,7 +372,9 @@ class Viewer:
 
     def _repr_html_(self) -> str:
         """The page, for notebooks."""
-        return frame(self._server.port, self._server.access.token)
+        with self.lock:
+            picture = still(self._world)
+        return frame(self._server.port, self._server.access.token, picture)
 
     def close(self) -> None:
         """Ends it: pages say that the simulation is over."""
@@ -398,6 +463,10 @@ class Viewer:
     def _take_drive(self, page: int, told: dict[str, Any]) -> None:
         body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])
         self._chores.add(lambda: drive(self._world, body, joint, target, place=self.pause_control.closed))
+
+    def _take_handle(self, page: int, told: dict[str, Any]) -> None:
+        x, y, z, w = map(float, told["orientation"])
+        self._handles.move(int(told["handle"]), _vector(told["position"]), (x, y, z, w))
 
     def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
         point, target = _vector(told["point"]), _vector(told["target"])

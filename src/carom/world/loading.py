@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,23 +9,14 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
 from carom.scene.body import Body
+from carom.world.adding import BodyAdding
 
 if TYPE_CHECKING:
     from carom.formats.search import AssetSearch
 
 
-class DescriptionLoading(ABC):
+class DescriptionLoading(BodyAdding):
     """What a world that can add a body can load; readers of files are imported when they are needed."""
-
-    @abstractmethod
-    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
-        """Add a body at rest."""
-
-    @abstractmethod
-    def _add_all(
-        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
-    ) -> list[Body]:
-        """Add bodies at rest, all or none."""
 
     def load_urdf(
         self,
@@ -51,7 +41,7 @@ class DescriptionLoading(ABC):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.model.from_files import urdf_body
+        from carom.soft.from_urdf import urdf_body
 
         spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
         return self._add(spec, position, orientation)

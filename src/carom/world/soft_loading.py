@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from carom.model.body_spec import BodySpec
-from carom.scene.body import Body
 from carom.scene.soft_body import SoftBody
+from carom.world.adding import BodyAdding
 
 _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
-class SoftLoading(ABC):
+class SoftLoading(BodyAdding):
     """What soft bodies a world that can add a body can load."""
-
-    @abstractmethod
-    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
-        """Add a body at rest."""
 
     def load_cloth(
         self,

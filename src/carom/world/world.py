@@ -523,6 +523,8 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
                 self.present_poses,
                 self.contact_arrays,
                 self.engine.workspace.pairs,
+                self.arrays.state,
+                self.engine.workspace.soft_work,
                 self.quick,
             )
         return self._derived.queries
@@ -577,7 +579,9 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     def update_soft_poses(self) -> None:
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
         if self.contact_arrays.soft.bodies:
-            self.contact_arrays.soft.write_anchors()
+            if self._derived.step is None:
+                # Nodes that are held do not count; whoever has prepared steps has written which these are.
+                self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 
     def update_link_velocities(self, body: Body) -> None:

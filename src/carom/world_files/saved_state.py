@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.formats.robot.context import MAX_MAGNITUDE
 from carom.layouts.contacts import THERE
 from carom.scene.snapshot import BodyLayout, Layout, Snapshot, layout, return_to, take
 from carom.world_files.records import Reader
@@ -17,6 +19,11 @@ if TYPE_CHECKING:
 
 _ARRAYS = ("state", "contacts")
 _USER_IMPULSES = 6
+# What makes bodies be where they are, and move.
+_MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position", "node_velocity")
+# Coordinates of a base: a position, then a quaternion.
+_BASE_TURN, _QUATERNION = 3, 4
+_UNIT_TOLERANCE = 1e-3
 _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 
@@ -69,6 +76,9 @@ def read_state(reader: Reader, data: Any) -> SavedState:
     for name in _OF_NODES:
         # Files of versions without soft bodies do not have them.
         arrays["state"].setdefault(name, np.zeros((0, 3)))
+    split_impulses(arrays["contacts"])
+    # Nor do the first ones with soft bodies have this; the next step finds it.
+    arrays["state"].setdefault("node_push", np.zeros_like(arrays["state"]["node_position"]))
     _check_counts(reader, bodies, arrays["state"])
     impulses = reader.array(
         data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
@@ -81,6 +91,14 @@ def read_state(reader: Reader, data: Any) -> SavedState:
         arrays["contacts"],
         impulses,
     )
+
+
+def split_impulses(contacts: dict[str, np.ndarray]) -> None:
+    """Give warm starting an array of its own: older files have it in a fourth column of impulses."""
+    impulses = contacts.get("contact_impulse")
+    if impulses is not None and impulses.ndim == 2 and "contact_warm_start" not in contacts:
+        contacts["contact_warm_start"] = impulses[:, 3:].ravel()
+        contacts["contact_impulse"] = impulses[:, :3].copy()
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
@@ -125,7 +143,7 @@ def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: b
     if any(a != b if whole else not a.moves_like(b) for a, b in zip(ours, saved.bodies, strict=True)):
         raise ValueError("the state is that of other bodies")
     snapshot = saved.snapshot()
-    check_arrays(world, snapshot)
+    check_arrays(world, bodies, snapshot)
     if whole:
         return_to(world, present, snapshot)()
         return
@@ -137,19 +155,24 @@ def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: b
     return_to(world, present, others)()
 
 
-def check_arrays(world: World, snapshot: Snapshot) -> None:
+def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:
     """See that the arrays of a snapshot from a file can be those of its bodies in this world.
+
+    Args:
+        world: The world.
+        bodies: The bodies of the snapshot, as the world has them, in its order.
+        snapshot: The snapshot.
 
     Raises:
         ValueError: They cannot.
     """
-    bodies = snapshot.layout.bodies
+    saved = snapshot.layout.bodies
     lengths = {
-        "tree": len(bodies),
-        "link": sum(body.links for body in bodies),
-        "position": sum(body.positions for body in bodies),
-        "dof": sum(body.dofs for body in bodies),
-        "node": sum(body.nodes for body in bodies),
+        "tree": len(saved),
+        "link": sum(body.links for body in saved),
+        "position": sum(body.positions for body in saved),
+        "dof": sum(body.dofs for body in saved),
+        "node": sum(body.nodes for body in saved),
         "drive": len(snapshot.layout.joint_dofs),
         "contact": int(snapshot.contacts["count_contacts"][THERE]),
     }
@@ -163,9 +186,31 @@ def check_arrays(world: World, snapshot: Snapshot) -> None:
             if array.shape != (length, *wanted[name].shape[1:]) or array.dtype != wanted[name].dtype:
                 raise ValueError(f"array {name!r} has the wrong shape")
     islands = snapshot.state["tree_island"]
-    if islands.size and not 0 <= islands.min() <= islands.max() < len(bodies):
+    if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
         raise ValueError("there is no such island")
+    for name in _MOTION:
+        if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
+            raise ValueError(f"array {name!r} holds a number that is not finite or very large")
+    _check_turns(bodies, snapshot)
     _check_contacts(world, snapshot)
+
+
+def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
+    """See that orientations of links, bases and spherical joints are quaternions of about length 1."""
+    turns = [snapshot.state["link_pose"][:, 3:]]
+    first = 0
+    for body, saved in zip(bodies, snapshot.layout.bodies, strict=True):
+        places = [_BASE_TURN]
+        for place, count in zip(body.position_index, body.position_count, strict=True):
+            if count == _QUATERNION:
+                places.append(place - body.first_position)
+        for place in places:
+            turn = snapshot.state["position"][first + place : first + place + _QUATERNION]
+            turns.append(turn[None])
+        first += saved.positions
+    lengths = np.square(np.concatenate(turns)).sum(axis=1)
+    if (np.abs(lengths - 1.0) > _UNIT_TOLERANCE).any():
+        raise ValueError("a quaternion does not have length 1")
 
 
 def _check_contacts(world: World, snapshot: Snapshot) -> None:

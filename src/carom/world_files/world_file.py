@@ -18,7 +18,8 @@ from carom.formats.files import read_bounded
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
-from carom.scene.changes import append, change_base_freedom, note_additions
+from carom.scene.changes import append, note_additions
+from carom.scene.dynamics_changes import change_base_freedom, dynamics_change
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.link_dynamics import LinkDynamics
 from carom.scene.snapshot import check_same, layout, return_to
@@ -201,7 +202,7 @@ def restore_world(world: World, path: Path) -> None:
         document, reader, _ = _read(path)
         snapshot = read_state(reader, document.get("state")).snapshot()
         check_same(snapshot.layout, layout(world))
-        check_arrays(world, snapshot)
+        check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
         world.restore(snapshot)
 
     _guarded(path, restore)
@@ -365,13 +366,13 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
     for joint, enabled in enumerate(record.sensors):
         if enabled:
             body.set_sensor(joint, True)
-    body.change_dynamics(
-        BASE,
-        linear_damping=record.linear_damping,
-        angular_damping=record.angular_damping,
-        max_joint_velocity=record.max_velocity,
-        sleep_threshold=record.sleep_threshold,
-    )
+    damping = {
+        "linear_damping": record.linear_damping,
+        "angular_damping": record.angular_damping,
+        "max_joint_velocity": record.max_velocity,
+        "sleep_threshold": record.sleep_threshold,
+    }
+    dynamics_change(body, BASE, damping)()
     model = body.world.arrays.model.numpy
     model["tree_can_sleep"][body.rows.tree] = record.can_sleep
     model["tree_can_wake"][body.rows.tree] = record.can_wake

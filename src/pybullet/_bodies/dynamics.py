@@ -228,11 +228,12 @@ def changeDynamics(
             named_link,
         )
     with client.lock:
-        body.change_dynamics(link, **changes.values)
+        # First, lest an interrupt leave what knows the body as it was.
         if not _LIMITS.isdisjoint(changes.values):
             client.bodies.forget(body.id)
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
+        body.change_dynamics(link, **changes.values)
         # So that the native library can see to it next time.
         client.bodies[body.id]
         client.world.be_quick()

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from carom.description.transform import subtracted
 from pybullet._calls.arguments import Vector, integer, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import no_body
-from pybullet._maths.camera_maths import cross, subtracted
+from pybullet._maths.camera_maths import cross
 from pybullet._maths.rotations import turned
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ import numpy as np
 
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
+from carom.native.products import product
 from pybullet._calls.arguments import MAX_MAGNITUDE, sequence, vector3
 from pybullet._calls.errors import fail
 
@@ -38,4 +39,4 @@ def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
 
 def in_world(points: np.ndarray, frame: Pose) -> np.ndarray:
     """Points that are given in a frame, in world axes; shape (count, 3) both."""
-    return points @ np.array(rotation_matrix(frame.orientation)).T + frame.position
+    return product(points, np.array(rotation_matrix(frame.orientation)).T) + frame.position

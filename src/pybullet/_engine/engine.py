@@ -8,7 +8,11 @@ from typing import Any
 from carom.errors import SimulationError
 from pybullet._calls.arguments import integer, quantity, real
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import DIRECT, RESET_USE_DEFORMABLE_WORLD
+from pybullet._calls.constants import (
+    DIRECT,
+    RESET_USE_DEFORMABLE_WORLD,
+    RESET_USE_REDUCED_DEFORMABLE_WORLD,
+)
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.shape_registry import ShapeRegistry
@@ -34,6 +38,10 @@ _WORK = {
 _MOST_WORK = 10_000_000
 # Forces are impulses by time [s].
 _LEAST_TIME_STEP = 1e-12
+
+
+# In both soft bodies are what their parameters say.
+_DEFORMABLE = RESET_USE_DEFORMABLE_WORLD | RESET_USE_REDUCED_DEFORMABLE_WORLD
 
 
 @exported
@@ -84,7 +92,8 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
 
     Args:
         flags: `RESET_USE_*` for another kind of world. Rigid bodies are the same in each; what
-            `loadSoftBody` makes is said by its parameters with `RESET_USE_DEFORMABLE_WORLD` only.
+            `loadSoftBody` makes is said by its parameters with `RESET_USE_DEFORMABLE_WORLD`, or
+            `RESET_USE_REDUCED_DEFORMABLE_WORLD`, only.
         physicsClientId: The connection.
 
     Raises:
@@ -96,7 +105,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
         0
     """
     client = client_of(physicsClientId)
-    deformable = bool(integer(flags, "flags") & RESET_USE_DEFORMABLE_WORLD)
+    deformable = bool(integer(flags, "flags") & _DEFORMABLE)
     with client.lock:
         client.bodies.forget_all()
 

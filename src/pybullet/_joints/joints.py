@@ -237,7 +237,8 @@ def resetJointState(
     try:
         joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
         if _LEAST < targetValue < MAX_MAGNITUDE and _LEAST < targetVelocity < MAX_MAGNITUDE:
-            joint.reset(targetValue, targetVelocity)
+            # Arrays compare like numbers; they are refused before the first of the two is written.
+            joint.reset(float(targetValue), float(targetVelocity))
             return
     except (KeyError, TypeError, ValueError):
         pass

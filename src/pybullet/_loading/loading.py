@@ -123,11 +123,18 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     warn_of_coordinates("loadURDF", maximal)
 
     from carom.errors import CaromError
-    from carom.model.from_files import urdf_body
+    from carom.soft.from_urdf import urdf_body
 
     scale = moderate(scaling, _CANNOT_LOAD, "globalScaling") if scaling > 0.0 else 1.0
     try:
-        spec = urdf_body(Path(name), client.search(), scale=scale, flags=flags, fixed_base=fixed_base)
+        spec = urdf_body(
+            Path(name),
+            client.search(),
+            scale=scale,
+            flags=flags,
+            fixed_base=fixed_base,
+            older=not client.deformable,
+        )
     except CaromError as problem:
         fail(_CANNOT_LOAD, str(problem))
     load = FileLoad(

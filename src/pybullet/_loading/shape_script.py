@@ -21,7 +21,7 @@ from carom.description import (
     Sphere,
     TriangleMesh,
 )
-from carom.layouts.codes import JOINT_CODE
+from carom.description.joint import JOINT_CODE
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import LinkSpec
 from pybullet._loading.multi_body import JOINT_TYPES

@@ -180,7 +180,7 @@ def _spec(
     self_collision: bool,
 ) -> BodySpec:
     from carom.errors import CaromError
-    from carom.soft.files import is_solid, soft_body_from_file
+    from carom.soft.files import soft_body_from_file
     from carom.soft.older import older_cloth_from_file
 
     path = _found(client, name)
@@ -198,12 +198,6 @@ def _spec(
                 solid=solid,
                 self_collision=self_collision,
                 simulated=inside,
-            )
-        if is_solid(inside or path):
-            fail(
-                _CANNOT_LOAD,
-                f"{inside or path} holds tetrahedra: "
-                "call resetSimulation(RESET_USE_DEFORMABLE_WORLD) before.",
             )
         return older_cloth_from_file(inside or path, scale=scale, mass=mass, margin=margin)
     except CaromError as problem:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot, pi, radians
 
 from carom.description.pose import Vector3
-from carom.description.transform import dot
+from carom.description.transform import dot, subtracted
 from carom.native.trigonometry import cos, sin, tan
 from pybullet._calls.arguments import Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
@@ -21,11 +21,6 @@ __all__ = [
 Matrix16 = tuple[float, ...]
 
 Y_UP, Z_UP = 1, 2
-
-
-def subtracted(a: Vector3, b: Vector3) -> Vector3:
-    """Difference of two vectors."""
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def cross(a: Vector3, b: Vector3) -> Vector3:

@@ -13,6 +13,7 @@ from carom.geometry.hull import extreme_points
 from carom.layouts.flags import LoadFlags
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import mesh_geometries, shape_pieces
+from carom.native.products import product
 from carom.scene.body import Body
 from carom.scene.soft_body import SoftBody
 from pybullet._calls.constants import MESH_DATA_SIMULATION_MESH
@@ -76,4 +77,4 @@ def _hulls(geometry: Geometry, index: int, implicit_cylinder: bool) -> Iterator[
 
 def _placed(points: Corners, inertial_frame: Pose, collision: Collision) -> Corners:
     rotation, position = placement(inertial_frame, collision.frame)
-    return points @ np.array(rotation).T + position
+    return product(points, np.array(rotation).T) + position

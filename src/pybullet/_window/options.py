@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from math import hypot
 
 from carom.description.pose import Vector3
+from carom.description.transform import subtracted
 from pybullet._maths.camera_maths import (
     Y_UP,
     Z_UP,
@@ -14,7 +15,6 @@ from pybullet._maths.camera_maths import (
     frustum,
     look_at,
     orbit,
-    subtracted,
     unit,
 )
 

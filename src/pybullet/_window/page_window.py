@@ -133,10 +133,14 @@ class PageWindow(RecordingWindow):
             self._viewer.rays.tell(starts, ends, hits)
 
     def show_image(
-        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+        self,
+        rgba: NDArray[np.uint8],
+        depth: NDArray[np.float32],
+        labels: NDArray[np.int32],
+        camera: NDArray[np.float64],
     ) -> None:
         if self._viewer.page_count:
-            self._viewer.previews.show(rgba, depth, labels)
+            self._viewer.previews.show(rgba, depth, labels, camera)
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         orbit = self._viewer.camera.orbit

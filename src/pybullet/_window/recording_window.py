@@ -106,7 +106,11 @@ class RecordingWindow(Window):
         camera.distance, camera.yaw, camera.pitch, camera.target = distance, yaw, pitch, target
 
     def show_image(
-        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+        self,
+        rgba: NDArray[np.uint8],
+        depth: NDArray[np.float32],
+        labels: NDArray[np.int32],
+        camera: NDArray[np.float64],
     ) -> None:
         """Nobody would see it."""
 

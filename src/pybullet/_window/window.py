@@ -108,9 +108,20 @@ class Window(ABC):
 
     @abstractmethod
     def show_image(
-        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+        self,
+        rgba: NDArray[np.uint8],
+        depth: NDArray[np.float32],
+        labels: NDArray[np.int32],
+        camera: NDArray[np.float64],
     ) -> None:
-        """Shows what a camera image of the script shows; see `getCameraImage` for the arrays."""
+        """Shows what a camera image of the script shows; see `getCameraImage` for the arrays.
+
+        Args:
+            rgba: Colours.
+            depth: Depth.
+            labels: Bodies.
+            camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+        """
 
     def show_rays(  # noqa: B027 (most windows do not show them)
         self, starts: Points, ends: Points, hits: Sequence[RayHit]
@@ -174,7 +185,11 @@ class NoWindow(Window):
         """There is no camera."""
 
     def show_image(
-        self, rgba: NDArray[np.uint8], depth: NDArray[np.float32], labels: NDArray[np.int32]
+        self,
+        rgba: NDArray[np.uint8],
+        depth: NDArray[np.float32],
+        labels: NDArray[np.int32],
+        camera: NDArray[np.float64],
     ) -> None:
         """Nobody would see it."""
 

@@ -7,6 +7,7 @@ it either, and robot files account for that.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
+from carom.native.products import length, product
+from carom.native.trigonometry import cos, sin
 
 # Numbers that sources hold for each vertex, and primitives for each corner.
 _MOST_COLUMNS = 1000
@@ -90,7 +93,7 @@ class ColladaReader:
         return float(np.float32(self.numbers(unit, unit.attributes["meter"], 1)[0]))
 
     def _nodes(self, node: Element, parent: NDArray[np.float64]) -> Iterator[tuple[str, NDArray[np.float64]]]:
-        placement = parent @ self._local_transform(node)
+        placement = product(parent, self._local_transform(node))
         for instance in node.all("instance_geometry"):
             identifier = _target(instance, "url")
             if identifier not in self.geometries:
@@ -103,16 +106,16 @@ class ColladaReader:
         total = np.eye(4)
         for step in node.children:
             if step.tag == "matrix":
-                total = total @ self.numbers(step, step.text, 16).reshape(4, 4)
+                total = product(total, self.numbers(step, step.text, 16).reshape(4, 4))
             elif step.tag == "translate":
                 translation = np.eye(4)
                 translation[:3, 3] = self.numbers(step, step.text, 3)
-                total = total @ translation
+                total = product(total, translation)
             elif step.tag == "scale":
-                total = total @ np.diag([*self.numbers(step, step.text, 3), 1.0])
+                total = product(total, np.diag([*self.numbers(step, step.text, 3), 1.0]))
             elif step.tag == "rotate":
                 x, y, z, degrees = self.numbers(step, step.text, 4)
-                total = total @ _rotation(np.array([x, y, z]), np.radians(degrees))
+                total = product(total, _rotation(np.array([x, y, z]), radians(degrees)))
         return total
 
     def part(self, identifier: str, placement: NDArray[np.float64]) -> MeshPart:
@@ -120,7 +123,7 @@ class ColladaReader:
         if identifier not in self._triangles:
             self._triangles[identifier] = self._read_geometry(self.geometries[identifier])
         positions, corners = self._triangles[identifier]
-        placed = positions @ placement[:3, :3].T + placement[:3, 3]
+        placed = product(positions, placement[:3, :3].T) + placement[:3, 3]
         return make_part(self.file, placed, corners, identifier)
 
     def _read_geometry(self, geometry: Element) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -248,9 +251,9 @@ def _target(element: Element, attribute: str) -> str:
 def _rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     """4x4 rotation; none for an axis without length."""
     total = np.eye(4)
-    length = np.linalg.norm(axis)
-    if length > 0.0:
-        x, y, z = axis / length
+    size = length(axis)
+    if size > 0.0:
+        x, y, z = axis / size
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        total[:3, :3] += np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+        total[:3, :3] += sin(angle) * cross + (1.0 - cos(angle)) * product(cross, cross)
     return total

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -68,17 +69,17 @@ def read_obj(data: bytes, file: Path) -> list[MeshPart]:
 
 
 def _read_positions(lines: list[tuple[int, bytes]], file: Path) -> NDArray[np.float64]:
-    words = b"\n".join(line for _, line in lines).split()
-    if len(words) == 3 * len(lines):
+    words = [line.split() for _, line in lines]
+    if all(len(line) == 3 for line in words):
         try:
-            return np.array(list(map(float, words)), dtype=np.float64).reshape(-1, 3)
+            return np.array([*map(float, chain.from_iterable(words))], dtype=np.float64).reshape(-1, 3)
         except ValueError:
             pass  # the loop below finds the line
     positions = np.empty((len(lines), 3))
-    for index, (number, line) in enumerate(lines):
+    for index, (number, _) in enumerate(lines):
         try:
             # Colours or a weight may follow.
-            x, y, z = line.split()[:3]
+            x, y, z = words[index][:3]
             positions[index] = float(x), float(y), float(z)
         except ValueError:
             raise DescriptionError("a vertex needs three numbers", file=file, line=number) from None

@@ -2,13 +2,15 @@
 
 The format is that of "VTK File Formats", simple legacy formats: a header line with the version, a title,
 `ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Cells that are no
-tetrahedra, and data of points and cells, are left out.
+tetrahedra, and data of points and cells, are left out. Some of Bullet's own files have no space in the first
+line, a wrong sum of the lengths of cells, or no types of cells after the word for them; they are read, too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +25,8 @@ MOST_CELLS = 20_000_000
 """Most points or cells that a file may claim to have."""
 TETRAHEDRON = 10
 """VTK's number for the kind of cell."""
+# VTK's largest cell of a fixed kind has 27; polyhedra have more.
+_MOST_CORNERS = 10_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,14 +59,14 @@ class _Sections:
     def __init__(self, data: bytes, file: Path) -> None:
         self._file = file
         lines = data.split(b"\n")
-        if not lines[0].lower().startswith(b"# vtk datafile"):
+        if not lines[0].lower().replace(b" ", b"").startswith(b"#vtkdatafile"):
             raise self._wrong("it does not begin with '# vtk DataFile', as VTK's legacy files do", 1)
         kind = lines[2].strip().upper() if len(lines) > 2 else b""
         if kind == b"BINARY":
             raise self._wrong("it is binary; write it as ASCII", 3)
         if kind != b"ASCII":
             raise self._wrong("the third line has to be ASCII", 3)
-        self._words = _numbered_words(lines, first=3)
+        self._words: Iterator[tuple[int, bytes]] = _numbered_words(lines, first=3)
         self._line = 3
 
     def mesh(self) -> TetraMesh:
@@ -81,10 +85,10 @@ class _Sections:
                 self._word("a type of numbers")
                 points = self._numbers(3 * count, float, "coordinate").reshape(-1, 3)
             elif keyword == b"CELLS":
-                count, total = self._count("CELLS"), self._count("CELLS")
-                cells = self._cells(self._numbers(total, int, "index"), count)
+                count, _ = self._count("CELLS"), self._count("CELLS")
+                cells = [self._cell() for _ in range(count)]
             elif keyword == b"CELL_TYPES":
-                kinds = self._numbers(self._count("CELL_TYPES"), int, "type")
+                kinds = self._kinds()
             elif keyword in (b"POINT_DATA", b"CELL_DATA", b"METADATA"):
                 break
             else:
@@ -110,17 +114,19 @@ class _Sections:
             raise DescriptionError("a point is not finite", file=self._file)
         return TetraMesh(points, tetras.astype(np.int32))
 
-    def _cells(self, numbers: NDArray[np.int64], count: int) -> list[NDArray[np.int64]]:
-        cells, at = [], 0
-        while at < len(numbers) and len(cells) < count:
-            length = int(numbers[at])
-            if length < 1 or at + 1 + length > len(numbers):
-                raise self._wrong("a cell has more corners than there are numbers")
-            cells.append(numbers[at + 1 : at + 1 + length])
-            at += 1 + length
-        if at != len(numbers) or len(cells) != count:
-            raise self._wrong(f"{count} cells do not take {len(numbers)} numbers")
-        return cells
+    def _cell(self) -> NDArray[np.int64]:
+        (length,) = self._numbers(1, int, "length of a cell").tolist()
+        if not 1 <= length <= _MOST_CORNERS:
+            raise self._wrong(f"a cell has from 1 to {_MOST_CORNERS} corners, not {length}")
+        return self._numbers(length, int, "index")
+
+    def _kinds(self) -> NDArray[np.int64] | None:
+        count = self._count("CELL_TYPES")
+        first = next(self._words, None)
+        if first is None:
+            return None
+        self._words = chain([first], self._words)
+        return self._numbers(count, int, "type")
 
     def _word(self, what: str) -> bytes:
         for number, word in self._words:

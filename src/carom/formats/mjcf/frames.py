@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, sin
+from math import hypot
 
 from carom.description import Pose
 from carom.description.pose import Quaternion, Vector3
@@ -18,6 +18,7 @@ from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
+from carom.native.trigonometry import cos, sin
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}

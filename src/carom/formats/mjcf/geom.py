@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, hypot, pi, sin
+from math import hypot, pi
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +31,7 @@ from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
 from carom.formats.xml_element import Element
+from carom.native.trigonometry import cos, sin
 
 _FRICTION = 0.5
 _CONTACT_DIMENSIONS = "3"

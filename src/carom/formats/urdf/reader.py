@@ -11,9 +11,11 @@ from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_o
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
 from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.deformable import TAGS, read_deformable
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.link import read_link
 from carom.formats.urdf.material import read_global_materials
+from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
 
@@ -57,10 +59,10 @@ def parse_urdf(
     element = parse_root(data, file, "robot")
     context = UrdfContext(file, element, scale, search)
     name = context.required(element, "name")
-    for tag in ("deformable", "reduced_deformable"):
+    for tag in TAGS:
         soft = element.first(tag)
         if soft is not None:
-            raise context.error(soft, "deformable bodies are not supported")
+            return _soft_robot(context, name, soft), context.references
     read_global_materials(context)
     links = _read_links(context)
     joints = _read_joints(context, links)
@@ -75,6 +77,19 @@ def parse_urdf(
         user_data=context.user_data(element),
     )
     return robot, context.references
+
+
+def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
+    """A robot that is a soft body; as in PyBullet its links and joints do not count."""
+    deformable = read_deformable(context, element)
+    return Robot(
+        name,
+        (Link(context.required(element, "name")),),
+        (),
+        source=context.file,
+        user_data=context.user_data(context.root),
+        deformable=deformable,
+    )
 
 
 def _read_links(context: UrdfContext) -> list[Link]:

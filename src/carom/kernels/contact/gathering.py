@@ -1,10 +1,11 @@
-"""Manifolds of what lies on its rolling side: they gather their points over the steps, as Bullet's do.
+"""Manifolds of what does not lie on a face: they gather their points over the steps, as Bullet's do.
 
 Bullet adds one point in a step, the deepest, and keeps those of the steps before until their sides have
-parted. A face has all its corners after a few steps, so a manifold made at once is as good and steadier.
-But a wheel never comes so far: new points enter where it rolls to, old ones linger where it rolled from,
-and both decide how deep it rolls and how it scrubs sideways. So wheels, cylinders and capsules on their
-sides get their points by Bullet's rules, and so do cylinders on infinite planes wherever they stand.
+parted. A face that lies flat has all its corners after a few steps, so a manifold made at once is as good and
+steadier, and which of its points is the deepest is up to rounding. But what rolls or tumbles never comes so
+far: new points enter where it rolls to, old ones linger where it rolled from, and both decide how deep it
+rolls and how it scrubs sideways. So hulls, cylinders and capsules get their points by Bullet's rules unless
+they lie on a face, and cylinders on infinite planes wherever they stand.
 """
 
 import math
@@ -26,16 +27,20 @@ from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
 from carom.layouts.codes import (
     CYLINDER,
+    HULL,
     NO_ROLLING,
     PLANE,
     ROLLING_ABOUT_ANY,
     ROLLING_ABOUT_X,
+    ROLLING_OFF_FACES,
     SPHERE,
     TRIANGLES,
 )
 
 # Cosine of the angle between axis and normal up to which a shape lies on its side.
 ON_SIDE = real(math.sqrt(0.5))
+# Cosine of the angle between face and contact, 1.8 degrees, beyond which a shape lies on the face.
+ON_FACE = real(0.9995)
 # Stands for the new point among the rows of previous contacts.
 NEW = wp.constant(-1)
 # There is no new point to add, as the manifold is to be made at once.
@@ -54,7 +59,7 @@ class Gathered:
 
 @func
 def rolls(shapes: Shapes, shape: Int32) -> bool:
-    """Whether a shape is round about an axis."""
+    """Whether a shape is round about an axis, or a hull."""
     return shapes.shape_rolling[shape] != NO_ROLLING
 
 
@@ -66,15 +71,38 @@ def is_single_sided(shapes: Shapes, shape: Int32) -> bool:
 
 
 @func
-def lies_on_side(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, normal: Vector3) -> bool:
-    """Whether a shape, if it rolls, touches with the side on which it does."""
+def lies_on_face(shapes: Shapes, shape: Int32, outward: Vector3) -> bool:
+    """Whether a hull touches with a face on which it can lie; `outward` is a direction in its frame."""
+    first = shapes.shape_first_face[shape]
+    for face in range(first, first + shapes.shape_flat_faces[shape]):
+        plane = shapes.face_plane[face]
+        if plane[0] * outward[0] + plane[1] * outward[1] + plane[2] * outward[2] > ON_FACE:
+            return True
+    return False
+
+
+@func
+def rolls_on(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, outward: Vector3) -> bool:
+    """Whether a shape, if it rolls, touches with something on which it does, and not with a face.
+
+    Args:
+        shapes: All shapes.
+        pairs: Poses of the shapes.
+        world: The world.
+        shape: The shape.
+        outward: The contact's normal, out of the shape.
+    """
     about = shapes.shape_rolling[shape]
     if about == NO_ROLLING or about == ROLLING_ABOUT_ANY:
         return about == ROLLING_ABOUT_ANY
-    frame = pairs.shape_frame[world, shape]
-    axis = about - ROLLING_ABOUT_X
-    along = frame[0, axis] * normal[0] + frame[1, axis] * normal[1] + frame[2, axis] * normal[2]
-    return wp.abs(along) < ON_SIDE
+    local = wp.transpose(pairs.shape_frame[world, shape]) * outward
+    if about != ROLLING_OFF_FACES:
+        along = wp.abs(local[about - ROLLING_ABOUT_X])
+        if shapes.shape_kind[shape] != HULL:
+            return along < ON_FACE
+        if along < ON_SIDE:
+            return True
+    return not lies_on_face(shapes, shape, local)
 
 
 @func
@@ -95,7 +123,7 @@ def gathers(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, norm
     """Whether a manifold with this normal gathers its points."""
     if gathers_everywhere(shapes, a, b):
         return True
-    return lies_on_side(shapes, pairs, world, a, normal) or lies_on_side(shapes, pairs, world, b, normal)
+    return rolls_on(shapes, pairs, world, a, -normal) or rolls_on(shapes, pairs, world, b, normal)
 
 
 @func

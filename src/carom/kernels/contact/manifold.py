@@ -12,7 +12,7 @@ from carom.kernels.contact.candidates import (
 )
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, THERE
 
 _HALF_ROOT = real(math.sqrt(0.5))
@@ -57,6 +57,7 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
         pairs.previous_anchor_a[world, kept] = contacts.contact_anchor_a[world, row]
         pairs.previous_anchor_b[world, kept] = contacts.contact_anchor_b[world, row]
         pairs.previous_impulse[world, kept] = contacts.contact_impulse[world, row]
+        pairs.previous_warm_start[world, kept] = contacts.contact_warm_start[world, row]
         pairs.previous_taken[world, kept] = 0
     return first
 
@@ -80,6 +81,7 @@ def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
         contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, row]
         contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, row]
         contacts.contact_impulse[world, row] = pairs.previous_impulse[world, row]
+        contacts.contact_warm_start[world, row] = pairs.previous_warm_start[world, row]
     contacts.count_contacts[world, THERE] = count
 
 
@@ -142,11 +144,13 @@ def keep_for_matching(contacts: Contacts, pairs: Pairs, world: Int32, before: In
         contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
         contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
         contacts.contact_impulse[world, row] = pairs.previous_impulse[world, before]
+        contacts.contact_warm_start[world, row] = pairs.previous_warm_start[world, before]
         pairs.previous_taken[world, before] = 1
     else:
         contacts.contact_anchor_a[world, row] = contacts.contact_local_a[world, row]
         contacts.contact_anchor_b[world, row] = contacts.contact_local_b[world, row]
-        contacts.contact_impulse[world, row] = Vector4(0.0, 0.0, 0.0, 0.0)
+        contacts.contact_impulse[world, row] = Vector3(0.0, 0.0, 0.0)
+        contacts.contact_warm_start[world, row] = 0.0
 
 
 @func
@@ -233,7 +237,7 @@ def write_new_contact(
     keep_for_matching(contacts, pairs, world, before, row)
     if before < 0 and last > first:
         # A new point of a manifold that was there before does not end the warm starting of the others.
-        contacts.contact_impulse[world, row][3] = minimum(pairs.previous_impulse[world, first][3], 1.0)
+        contacts.contact_warm_start[world, row] = minimum(pairs.previous_warm_start[world, first], 1.0)
 
 
 @func

@@ -90,7 +90,7 @@ def shade_background(picture: Picture, first: Int32, end: Int32):
 
 
 @func
-def shade_run(
+def shade_span(
     scene: Scene,
     view: View,
     light: View,
@@ -168,5 +168,5 @@ def shade_row(scene: Scene, view: View, light: View, picture: Picture, lighting:
     first = Int32(0)
     for column in range(1, view.width + 1):
         if column == view.width or view.pixel_facet[line + column] != view.pixel_facet[line + first]:
-            shade_run(scene, view, light, picture, lighting, row, first, column)
+            shade_span(scene, view, light, picture, lighting, row, first, column)
             first = column

@@ -95,13 +95,18 @@ def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
     return axis * (2.0 * wp.atan2(sine, cosine) / sine)
 
 
-@func
-def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Vector3:
-    """Fill `block_error` with the ways from the ends to their targets.
+@wp.struct
+class Errors:
+    """How far the ends are from their targets."""
 
-    Returns:
-        Greatest distance [m], greatest angle [rad], sum of the squares of all errors.
-    """
+    distance: real  # the greatest [m]
+    angle: real  # the greatest [rad]
+    squares: real  # sum of the squares of all errors
+
+
+@func
+def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Errors:
+    """Fill `block_error` with the ways from the ends to their targets; returns how long these are."""
     distance = real(0.0)
     angle = real(0.0)
     squares = real(0.0)
@@ -120,7 +125,11 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
             search.block_error[end * stride + 1] = turn
             angle = wp.max(angle, wp.length(turn))
             squares += wp.dot(turn, turn)
-    return Vector3(distance, angle, squares)
+    errors = Errors()
+    errors.distance = distance
+    errors.angle = angle
+    errors.squares = squares
+    return errors
 
 
 @func

@@ -9,6 +9,7 @@ starts again from poses around the present one, ever farther away.
 import warp as wp
 
 from carom.kernels.inverse_kinematics.kinematics import (
+    Errors,
     advance,
     copy,
     fill_jacobian,
@@ -19,7 +20,7 @@ from carom.kernels.inverse_kinematics.kinematics import (
 from carom.kernels.inverse_kinematics.selective_step import selective_step
 from carom.kernels.inverse_kinematics.steps import bounded_step, damped_step, null_space_step
 from carom.kernels.structs import Chain, ChainSizes, Search
-from carom.kernels.types import Int32, Quaternion, Reals, Vector3, Vector4, func, kernel, real
+from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
 from carom.layouts.codes import SPHERICAL
 
@@ -59,7 +60,7 @@ def follow(
     iteration = Int32(0)
     while iteration < iterations:
         place(sizes, chain, search, search.coordinate_now)
-        error = measure_errors(sizes, chain, search, oriented)
+        errors = measure_errors(sizes, chain, search, oriented)
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
         greatest = real(0.0)
         if step_kind == NULL_SPACE:
@@ -70,7 +71,7 @@ def follow(
             greatest = damped_step(sizes, chain, search, blocks)
         advance(sizes, chain, search, search.coordinate_now, search.coordinate_now)
         iteration += 1
-        if error[0] <= threshold or greatest < _NO_STEP:
+        if errors.distance <= threshold or greatest < _NO_STEP:
             iteration = iterations
 
 
@@ -97,8 +98,8 @@ def descend(
     oriented: Int32,
     budget: Int32,
     threshold: real,
-    error: Vector3,
-) -> Vector4:
+    errors: Errors,
+):
     """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
 
     Args:
@@ -108,34 +109,35 @@ def descend(
         oriented: 1 if the ends are to be turned as well.
         budget: How many poses may be tried.
         threshold: Distance and angle that are close enough.
-        error: Distance, angle and sum of squares at `coordinate_now`.
+        errors: Those at `coordinate_now`.
 
     Returns:
-        The same at the end, and how many poses were tried.
+        The errors at the end, and how many poses were tried.
     """
     blocks = (1 + oriented) * sizes.ends
     tried = Int32(0)
     slow = Int32(0)
+    left = errors
     growth = real(1.0)
-    while tried < budget and slow < _SLOW_STEPS and (error[0] > threshold or error[1] > threshold):
+    while tried < budget and slow < _SLOW_STEPS and (left.distance > threshold or left.angle > threshold):
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
         attempt = Int32(0)
         better = Int32(0)
         while better == 0 and attempt < _TRIES and tried < budget:
-            damping = growth * _DAMPING_BY_ERROR * error[2] + _LEAST_DAMPING
+            damping = growth * _DAMPING_BY_ERROR * left.squares + _LEAST_DAMPING
             bounded_step(sizes, chain, search, search.coordinate_now, blocks, damping)
             advance(sizes, chain, search, search.coordinate_now, search.coordinate_trial)
             place(sizes, chain, search, search.coordinate_trial)
             trial = measure_errors(sizes, chain, search, oriented)
             tried += 1
             attempt += 1
-            if trial[2] < error[2]:
+            if trial.squares < left.squares:
                 better = Int32(1)
                 growth = wp.max(0.25 * growth, real(1.0e-3))
                 slow += 1
-                if trial[2] < _LITTLE_PROGRESS * error[2]:
+                if trial.squares < _LITTLE_PROGRESS * left.squares:
                     slow = Int32(0)
-                error = trial
+                left = trial
                 copy(sizes.coordinates, search.coordinate_trial, search.coordinate_now)
             else:
                 growth *= 8.0
@@ -144,7 +146,7 @@ def descend(
                 measure_errors(sizes, chain, search, oriented)
         if better == 0:
             slow = _SLOW_STEPS
-    return Vector4(error[0], error[1], error[2], real(tried))
+    return left, tried
 
 
 @func
@@ -226,23 +228,23 @@ def inverse_kinematics_kernel(
     if patience > 0.0:
         place(sizes, chain, search, search.coordinate_now)
         first = measure_errors(sizes, chain, search, oriented)
-        bearable = wp.max(patience * first[0], _NEAR)
+        bearable = wp.max(patience * first.distance, _NEAR)
     follow(sizes, chain, search, oriented, step_kind, iterations, threshold)
     outside = Int32(0)
     if bounded == 1:
         outside = keep_limits(sizes, chain, search, search.coordinate_now)
     place(sizes, chain, search, search.coordinate_now)
-    error = measure_errors(sizes, chain, search, oriented)
+    errors = measure_errors(sizes, chain, search, oriented)
     copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
     goal = wp.max(threshold, _LEAST_THRESHOLD)
-    if error[0] <= goal and error[1] <= goal:
+    if errors.distance <= goal and errors.angle <= goal:
         return
-    if error[0] <= bearable and outside == 0:
+    if errors.distance <= bearable and outside == 0:
         return
 
     # PyBullet's iteration ends by distances alone. Where it has ended, only smaller angles count as better.
-    content = error[0] <= goal and outside == 0
-    best = error[2]
+    content = errors.distance <= goal and outside == 0
+    best = errors.squares
     if step_kind == DAMPED:
         mean = real(0.0)
         for column in range(sizes.columns):
@@ -258,11 +260,11 @@ def inverse_kinematics_kernel(
     worth = real(1.0)
     seed = Int32(1)
     while left > 0:
-        outcome = descend(sizes, chain, search, oriented, left, goal, error)
-        left -= Int32(outcome[3]) + 1
-        arrived = outcome[0] <= goal and outcome[1] <= goal
-        if arrived or (outcome[2] < worth * best and not content):
-            best = outcome[2]
+        found, tried = descend(sizes, chain, search, oriented, left, goal, errors)
+        left -= tried + 1
+        arrived = found.distance <= goal and found.angle <= goal
+        if arrived or (found.squares < worth * best and not content):
+            best = found.squares
             copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
         if arrived:
             return
@@ -272,7 +274,7 @@ def inverse_kinematics_kernel(
         if bounded == 1:
             keep_limits(sizes, chain, search, search.coordinate_now)
         place(sizes, chain, search, search.coordinate_now)
-        error = measure_errors(sizes, chain, search, oriented)
+        errors = measure_errors(sizes, chain, search, oriented)
         spread = wp.min(1.6 * spread, real(1.0))
         worth = _WORTH_A_JUMP
         seed += 1

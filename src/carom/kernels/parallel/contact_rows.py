@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.parallel.workspace import GIVEN_UP, UNWRITTEN, WRITTEN, is_called_off, pair_rows_of_island
 from carom.kernels.solver.units import write_units
 from carom.kernels.structs import Contacts, IslandWork, Model, PairRows, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, kernel, real
+from carom.kernels.types import Int32, kernel, real
 from carom.layouts.status import OVERFLOW, STATUS
 
 
@@ -29,18 +29,21 @@ def island_contacts_kernel(
         return
     if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != UNWRITTEN:
         return
-    made = work.tree_progress[world, root].made
-    units = Index4(0, 0, 0, 0)
+    units = Int32(0)
+    manifold_blocks = Int32(0)
+    torsion = Int32(0)
     first_contact = pair_rows.tree_first_contact[world, root]
     if first_contact >= 0:
-        units = write_units(
+        units, manifold_blocks, torsion = write_units(
             model, settings, state, scratch, shapes, contacts,
             pair_rows_of_island(pair_rows, work, world, root), world, first_contact,
-            Index4(made[1], made[2], 0, 0),
+            work.tree_progress[world, root].pair_row, work.tree_progress[world, root].block,
             settings.contact_warm_starting * real(work.tree_progress[world, root].resting),
         )  # fmt: skip
     work.tree_progress[world, root].units = units
+    work.tree_progress[world, root].manifold_blocks = manifold_blocks
+    work.tree_progress[world, root].torsion = torsion
     work.tree_progress[world, root].stage = Int32(WRITTEN)
-    if made[3] < 0 or units[0] < 0:
+    if work.tree_progress[world, root].visits < 0 or units < 0:
         state.status_entry[world, STATUS] = OVERFLOW
         work.tree_progress[world, root].stage = Int32(GIVEN_UP)

@@ -23,7 +23,7 @@ from carom.kernels.structs import (
     State,
     UserConstraints,
 )
-from carom.kernels.types import Index4, Int32, kernel
+from carom.kernels.types import Int32, kernel
 
 
 @kernel
@@ -42,10 +42,16 @@ def island_rows_kernel(
         return
     own_scratch = scratch_of_island(scratch, work, world, root)
     own_pair_rows = pair_rows_of_island(pair_rows, work, world, root)
-    work.tree_progress[world, root].made = island_rows(
+    rows, pair_row, block, visits = island_rows(
         model, settings, state, own_scratch, users, own_pair_rows, world, root
     )
-    work.tree_progress[world, root].units = Index4(0, 0, 0, 0)
+    work.tree_progress[world, root].rows = rows
+    work.tree_progress[world, root].pair_row = pair_row
+    work.tree_progress[world, root].block = block
+    work.tree_progress[world, root].visits = visits
+    work.tree_progress[world, root].units = 0
+    work.tree_progress[world, root].manifold_blocks = 0
+    work.tree_progress[world, root].torsion = 0
     work.tree_progress[world, root].resting = wp.min(pair_rows.tree_rest[world, root], 1)
     work.tree_progress[world, root].outcome = Int32(NOT_RESTING)
     work.tree_progress[world, root].stage = Int32(UNWRITTEN)
@@ -77,7 +83,7 @@ def island_impulses_kernel(
         own_scratch,
         world,
         root,
-        work.tree_progress[world, root].made[0],
+        work.tree_progress[world, root].rows,
         work.tree_progress[world, root].sweeps,
         work.tree_progress[world, root].residual,
     )
@@ -85,7 +91,7 @@ def island_impulses_kernel(
         contacts,
         own_pair_rows,
         world,
-        work.tree_progress[world, root].units[0],
+        work.tree_progress[world, root].units,
         work.tree_progress[world, root].outcome,
     )
     keep_constraint_impulses(model, state, users, own_pair_rows, world, root)

@@ -5,15 +5,15 @@ import warp as wp
 from carom.kernels.parallel.workspace import (
     JACOBIAN,
     MANIFOLD_BLOCK,
+    MATRICES,
     PAIR_ROW,
     ROW,
-    RUN,
     TERMS,
     UNIT,
     VISIT,
     Window,
 )
-from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK
+from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.units import next_unit
 from carom.kernels.solver.warm_starting import is_rigid
@@ -79,7 +79,7 @@ def room_for_contacts(
         else:
             room[MANIFOLD_BLOCK] += 1
             if not rigid:
-                room[RUN] += RUN_PER_BLOCK * blocks
+                room[MATRICES] += VECTORS_PER_BLOCK * blocks
                 temporary = wp.max(temporary, ROWS_PER_PAIR * blocks)
         contact = pair_rows.contact_next[world, members[count - 1]]
     if temporary > 0:

@@ -21,5 +21,5 @@ def restless_sweeps_kernel(
         and work.tree_progress[world, root].stage == WRITTEN
         and work.tree_progress[world, root].resting == 0
     ):
-        visits = work.tree_progress[world, root].made[3]
+        visits = work.tree_progress[world, root].visits
         sweep(settings, scratch, pair_rows, work, world, root, visits, 0)

@@ -12,7 +12,7 @@ from carom.kernels.parallel.workspace import (
 from carom.kernels.solver.solver import forget_changes, sweep_island
 from carom.kernels.solver.warm_starting import SOLVED, UNSOLVED
 from carom.kernels.structs import IslandWork, Model, PairRows, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector3, func, kernel
+from carom.kernels.types import Int32, func, kernel, real
 
 
 @func
@@ -25,20 +25,22 @@ def sweep(
     root: Int32,
     visits: Int32,
     resting: Int32,
-) -> Vector3:
-    """Relax the rows of an island until they hardly change; see `solver.sweep_island`."""
-    found = sweep_island(
+) -> real:
+    """Relax the rows of an island until they hardly change; returns what is left: see `sweep_island`."""
+    residual, sweeps = sweep_island(
         settings,
         scratch_of_island(scratch, work, world, root),
         pair_rows_of_island(pair_rows, work, world, root),
         world,
         visits,
         work.tree_progress[world, root].units,
+        work.tree_progress[world, root].manifold_blocks,
+        work.tree_progress[world, root].torsion,
         resting,
     )
-    work.tree_progress[world, root].residual = found[0]
-    work.tree_progress[world, root].sweeps = Int32(found[1])
-    return found
+    work.tree_progress[world, root].residual = residual
+    work.tree_progress[world, root].sweeps = sweeps
+    return residual
 
 
 @kernel
@@ -56,9 +58,9 @@ def resting_sweeps_kernel(
     ):
         return
     # It has no motors, limits or user constraints to visit.
-    found = sweep(settings, scratch, pair_rows, work, world, root, 0, 1)
+    residual = sweep(settings, scratch, pair_rows, work, world, root, 0, 1)
     work.tree_progress[world, root].outcome = Int32(SOLVED)
-    if found[0] > settings.residual_threshold:
+    if residual > settings.residual_threshold:
         work.tree_progress[world, root].outcome = Int32(UNSOLVED)
         work.tree_progress[world, root].resting = 0
         work.tree_progress[world, root].stage = Int32(UNWRITTEN)

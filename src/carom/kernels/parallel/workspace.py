@@ -14,7 +14,7 @@ from carom.layouts.status import LEFT_OUT, STATUS, WELL
 
 # What a window has parts of: rows over one tree, rows to visit, units, manifold blocks, rows over two trees,
 # their blocks, the blocks of articulated manifold blocks, and contact terms.
-ROW, VISIT, UNIT, MANIFOLD_BLOCK, PAIR_ROW, JACOBIAN, RUN, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
+ROW, VISIT, UNIT, MANIFOLD_BLOCK, PAIR_ROW, JACOBIAN, MATRICES, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
 
 # How far an island is: its contacts have still to be written; all its rows are; they did not fit.
 UNWRITTEN, WRITTEN, GIVEN_UP = 0, 1, 2
@@ -72,10 +72,10 @@ def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, roo
     own.entry_row = pair_rows.entry_row[:, 4 * block : 4 * last_block]
     own.entry_response = pair_rows.entry_response[:, 4 * block : 4 * last_block]
 
-    run = wp.min(first[RUN], pair_rows.run_block.shape[1])
-    last_run = window_end(work, world, root, RUN, pair_rows.run_block.shape[1])
-    own.run_block = pair_rows.run_block[:, run:last_run]
-    own.entry_run = pair_rows.entry_run[:, 4 * run : 4 * last_run]
+    matrix = wp.min(first[MATRICES], pair_rows.matrix_block.shape[1])
+    last_matrix = window_end(work, world, root, MATRICES, pair_rows.matrix_block.shape[1])
+    own.matrix_block = pair_rows.matrix_block[:, matrix:last_matrix]
+    own.entry_matrix = pair_rows.entry_matrix[:, 4 * matrix : 4 * last_matrix]
 
     visit = first[VISIT]
     unit = first[UNIT]
@@ -87,9 +87,9 @@ def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, roo
     own.unit_code = pair_rows.unit_code[
         :, unit : window_end(work, world, root, UNIT, pair_rows.unit_code.shape[1])
     ]
-    own.manifold_block = pair_rows.manifold_block[
-        :, manifold_block : window_end(work, world, root, MANIFOLD_BLOCK, pair_rows.manifold_block.shape[1])
-    ]
+    last_manifold_block = window_end(work, world, root, MANIFOLD_BLOCK, pair_rows.manifold_block.shape[1])
+    own.manifold_block = pair_rows.manifold_block[:, manifold_block:last_manifold_block]
+    own.side = pair_rows.side[:, 2 * manifold_block : 2 * last_manifold_block]
     own.terms = work.terms[:, terms : window_end(work, world, root, TERMS, work.terms.shape[1])]
     return own
 

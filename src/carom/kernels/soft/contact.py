@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.soft.elasticity import column
 from carom.kernels.soft.pushes import push_along, row_mass, row_velocity
-from carom.kernels.soft.touches import tangents
+from carom.kernels.soft.tangents import tangents
 from carom.kernels.structs import PairRows, Scratch, SoftModel, SoftWork, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
@@ -53,6 +53,7 @@ def relax_touch(
     if gap < wanted:
         push = (wanted - gap) / (h * (mass + row_mass(pair_rows, world, row)))
         state.node_position[world, node] += normal * (push * mass * h)
+        work.touch_impulse[world, touch] += normal * push
         push_along(scratch, pair_rows, world, row, -push)
         bound = push * work.touch_friction[world, touch]
         if bound > 0.0:
@@ -90,7 +91,9 @@ def relax_friction(
     if size > bound:
         push1 = push1 * bound / size
         push2 = push2 * bound / size
-    state.node_position[world, node] += (first * push1 + second * push2) * (mass * h)
+    along = first * push1 + second * push2
+    state.node_position[world, node] += along * (mass * h)
+    work.touch_impulse[world, touch] += along
     push_along(scratch, pair_rows, world, row1, -push1)
     push_along(scratch, pair_rows, world, row2, -push2)
 
@@ -142,6 +145,7 @@ def relax_anchors(
             if weight > 0.0:
                 push = (wanted - gap) / (h * weight)
                 state.node_position[world, node][axis] += push * mass * h
+                work.anchor_impulse[world, anchor][axis] += push
                 push_along(scratch, pair_rows, world, line, -push)
 
 

@@ -86,25 +86,35 @@ def on_segment(a: Vector3, b: Vector3, point: Vector3) -> Vector3:
 
 
 @func
+def nearest_beside(a: Vector3, b: Vector3, point: Vector3, normal: Vector3, best: Vector3, least: real):
+    """The nearest place so far of a face, once one edge more has been looked at, and how far away it is.
+
+    Only edges that the point is beyond count; -1 is how far away it is as long as there was none.
+    """
+    nearest = best
+    distance = least
+    if wp.dot(wp.cross(b - a, point - a), normal) < 0.0:
+        place = on_segment(a, b, point)
+        apart = wp.length(place - point)
+        if least < 0.0 or apart < least:
+            nearest = place
+            distance = apart
+    return nearest, distance
+
+
+@func
 def on_face(shapes: Shapes, face: Int32, point: Vector3, height: real) -> Vector3:
     """The place of a polyhedron's face nearest to a point `height` above its plane, in the shape frame."""
     plane = shapes.face_plane[face]
     normal = Vector3(plane[0], plane[1], plane[2])
     best = point - normal * height
-    outside = Int32(0)
-    least = real(0.0)
+    least = real(-1.0)
     first = shapes.face_first_corner[face]
     count = shapes.face_corner_count[face]
     for corner in range(count):
         a = shapes.vertex_position[shapes.corner_vertex[first + corner]]
         b = shapes.vertex_position[shapes.corner_vertex[first + (corner + 1) % count]]
-        if wp.dot(wp.cross(b - a, point - a), normal) < 0.0:
-            place = on_segment(a, b, point)
-            distance = wp.length(place - point)
-            if outside == 0 or distance < least:
-                least = distance
-                best = place
-            outside = Int32(1)
+        best, least = nearest_beside(a, b, point, normal, best, least)
     return best
 
 
@@ -145,18 +155,11 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
 def on_triangle(corners: Matrix3, point: Vector3, normal: Vector3) -> Vector3:
     """The place of a triangle, its corners as columns, nearest to a point."""
     best = point - normal * wp.dot(point - column(corners, 0), normal)
-    outside = Int32(0)
-    least = real(0.0)
+    least = real(-1.0)
     for corner in range(3):
         a = column(corners, corner)
         b = column(corners, (corner + 1) % 3)
-        if wp.dot(wp.cross(b - a, point - a), normal) < 0.0:
-            place = on_segment(a, b, point)
-            distance = wp.length(place - point)
-            if outside == 0 or distance < least:
-                least = distance
-                best = place
-            outside = Int32(1)
+        best, least = nearest_beside(a, b, point, normal, best, least)
     return best
 
 

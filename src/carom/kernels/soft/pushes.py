@@ -122,12 +122,11 @@ def add_push_rows(
         return Index4(row, block, 1, 0)
     for i in range(PUSH_ROWS):
         direction = Vector3(axes[0, i], axes[1, i], axes[2, i])
-        found = write_pair_jacobian(
+        inverse_mass, _velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, Index4(tree, link, -1, -1), point, point,
             direction, Vector3(0.0, 0.0, 0.0),
         )  # fmt: skip
-        pair_rows.row_terms[world, row][ROW_INVERSE_MASS] = found[0]
-        block = Int32(found[2])
+        pair_rows.row_terms[world, row][ROW_INVERSE_MASS] = inverse_mass
         row += 1
     return Index4(row, block, place[2], 0)
 

@@ -7,6 +7,7 @@ from carom.kernels.maths.min_max import maximum
 from carom.kernels.soft.contact import move_anchors, move_touches, relax_anchors, relax_touches
 from carom.kernels.soft.damping import damp_springs, damp_tetras
 from carom.kernels.soft.elasticity import relax_springs, relax_tetras
+from carom.kernels.soft.feedback import report_pushes, wake_held
 from carom.kernels.soft.frames import follow_nodes, report_nodes
 from carom.kernels.soft.neighbours import find_neighbours, relax_neighbours
 from carom.kernels.soft.pushes import exchange_velocities, keep_velocities, take_over_pushes
@@ -54,13 +55,12 @@ def move_freely(
     model: Model, soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32, h: real
 ):
     """Let nodes move on under gravity and what users push them with."""
+    gravity = model.gravity_vector[world, 0] * soft.soft[body].gravity_factor
     for node in range(soft.soft[body].first_node, node_end(soft, body)):
         position = state.node_position[world, node]
         soft_work.node_before[world, node] = position
         if soft.node_inverse_mass[node] > 0.0:
-            gain = (
-                model.gravity_vector[world, 0] + state.node_force[world, node] * soft.node_inverse_mass[node]
-            )
+            gain = gravity + state.node_force[world, node] * soft.node_inverse_mass[node]
             velocity = state.node_velocity[world, node] + gain * h
             state.node_position[world, node] = position + velocity * h
 
@@ -163,6 +163,7 @@ def soft_motion_kernel(
             settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, place
         )
     place = write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, place)
+    wake_held(model, state, soft, world)
     if place[2] != 0:
         state.status_entry[world, STATUS] = OVERFLOW
     else:
@@ -172,11 +173,30 @@ def soft_motion_kernel(
         take_small_steps(
             settings, model, shapes, scratch, pair_rows, soft, state, soft_work, world, neighbours
         )
+        report_pushes(settings, shapes, model, state, scratch, soft, soft_work, world)
     # Before what they have pushed is found not to be finite either.
     for body in range(soft.count_soft[BODIES]):
         report_nodes(state, soft, world, body)
     exchange_velocities(settings, model, state, soft_work, world)
     take_over_pushes(settings, model, state, scratch, world)
+
+
+@kernel
+def find_touches_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pairs: Pairs,
+    soft: SoftModel,
+    soft_work: SoftWork,
+    world: Int32,
+):
+    """Find which nodes are near which shapes at their present places; asked for between steps."""
+    place_shapes(shapes, state, settings, pairs, world)
+    for body in range(soft.count_soft[BODIES]):
+        find_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
 
 
 @kernel

@@ -7,8 +7,10 @@ from carom.kernels.contact.filters import masks_match, pair_filter
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.min_max import lower_corner, upper_corner
+from carom.kernels.soft.feedback import wake_touched
 from carom.kernels.soft.nearest import nearest_on_shape
 from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
+from carom.kernels.soft.tangents import tangents
 from carom.kernels.structs import (
     Model,
     PairRows,
@@ -20,26 +22,11 @@ from carom.kernels.structs import (
     SoftWork,
     State,
 )
-from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
 # Nodes this far from resting are looked at whatever their speed, as a share of the margin.
 _AHEAD = real(1.0)
-
-
-@func
-def tangents(normal: Vector3) -> Matrix3:
-    """A unit vector and two across it, as columns."""
-    aside = Vector3(1.0, 0.0, 0.0)
-    if wp.abs(normal[0]) > 0.7:
-        aside = Vector3(0.0, 1.0, 0.0)
-    first = wp.normalize(wp.cross(aside, normal))
-    second = wp.cross(normal, first)
-    return Matrix3(
-        normal[0], first[0], second[0],
-        normal[1], first[1], second[1],
-        normal[2], first[2], second[2],
-    )  # fmt: skip
 
 
 @func
@@ -118,7 +105,7 @@ def find_node_touches(
 ):
     """Note the nodes of a body that a shape may touch within a substep.
 
-    Of a touch, `touch_row` is the shape and `touch_offset` the distance until all have been found.
+    Of a touch `touch_offset` is the distance until all have been found.
     """
     margin = soft.soft[body].margin
     first = soft.soft[body].first_node
@@ -144,7 +131,7 @@ def find_node_touches(
                         work.node_touches[world, node] = wp.max(
                             work.node_touches[world, node], place - TOUCHES_PER_NODE * node + 1
                         )
-                        work.touch_row[world, place] = shape
+                        work.touch_shape[world, place] = shape
                         work.touch_offset[world, place] = distance
                         work.touch_normal[world, place] = normal
 
@@ -231,18 +218,20 @@ def write_touches(
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
         for touch in range(TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]):
-            shape = work.touch_row[world, touch]
+            shape = work.touch_shape[world, touch]
             link = shapes.shape_link[shape]
             tree = shapes.shape_tree[shape]
             normal = work.touch_normal[world, touch]
             point = state.node_position[world, node] - normal * work.touch_offset[world, touch]
             work.touch_point[world, touch] = point
-            work.touch_offset[world, touch] = soft.soft[body].margin
             work.touch_friction[world, touch] = (
                 shapes.link_lateral_friction[world, own] * shapes.link_lateral_friction[world, link]
             )
             work.touch_velocity[world, touch] = Vector3(0.0, 0.0, 0.0)
+            work.touch_impulse[world, touch] = Vector3(0.0, 0.0, 0.0)
             work.touch_row[world, touch] = Int32(-1)
+            wake_touched(model, state, soft, work, world, body, node, touch, tree, settings.time_step)
+            work.touch_offset[world, touch] = soft.soft[body].margin
             if can_be_pushed(model, state, world, tree, link):
                 make_ready(model, state, scratch, pair_rows, work, world, tree)
                 work.touch_velocity[world, touch] = point_velocity(
@@ -273,6 +262,7 @@ def write_anchors(
         point = wp.transform_point(state.link_pose[world, link], soft.anchor[anchor].pivot)
         work.anchor_point[world, anchor] = point
         work.anchor_velocity[world, anchor] = Vector3(0.0, 0.0, 0.0)
+        work.anchor_impulse[world, anchor] = Vector3(0.0, 0.0, 0.0)
         work.anchor_row[world, anchor] = Int32(-1)
         if can_be_pushed(model, state, world, tree, link):
             make_ready(model, state, scratch, pair_rows, work, world, tree)

@@ -1,7 +1,7 @@
 """Writing the rows of manifold blocks of trees of any size; see `articulated_manifolds`."""
 
 from carom.kernels.maths.blocks import combine4, combine8, fill_zero
-from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK, run_parts
+from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK, matrix_parts
 from carom.kernels.solver.pair_rows import write_jacobians
 from carom.kernels.solver.rigid_manifold_rows import row_direction, write_row_numbers
 from carom.kernels.structs import ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
@@ -9,14 +9,14 @@ from carom.kernels.types import Index4, Int32, func, real
 
 
 @func
-def clear_run(pair_rows: PairRows, world: Int32, manifold_block: Int32):
+def clear_matrices(pair_rows: PairRows, world: Int32, manifold_block: Int32):
     """Set the matrices of a manifold block to zero."""
     place = pair_rows.manifold_block[world, manifold_block].place
     fill_zero(
-        pair_rows.run_block,
-        pair_rows.manifold_block[world, manifold_block].run,
+        pair_rows.matrix_block,
+        pair_rows.manifold_block[world, manifold_block].matrices,
         world,
-        RUN_PER_BLOCK * (place[1] + place[3]),
+        VECTORS_PER_BLOCK * (place[1] + place[3]),
     )
 
 
@@ -30,9 +30,9 @@ def write_normal_matrices(
         jacobian = pair_rows.jacobian_row[world, start + block]
         for i in range(4):
             entry = 4 * (part[0] + 4 * block + i) + contact
-            pair_rows.entry_run[world, entry] = mass * jacobian[i]
+            pair_rows.entry_matrix[world, entry] = mass * jacobian[i]
         response = pair_rows.jacobian_response[world, start + block]
-        pair_rows.run_block[world, part[2] + 4 * block + contact] = response
+        pair_rows.matrix_block[world, part[2] + 4 * block + contact] = response
         block += 1
 
 
@@ -46,14 +46,14 @@ def write_friction_matrices(
         jacobian = pair_rows.jacobian_row[world, start + block]
         for i in range(4):
             entry = 4 * (part[1] + 8 * block + 2 * i) + row
-            pair_rows.entry_run[world, entry] = mass * jacobian[i]
+            pair_rows.entry_matrix[world, entry] = mass * jacobian[i]
         response = pair_rows.jacobian_response[world, start + block]
-        pair_rows.run_block[world, part[3] + 8 * block + row] = response
+        pair_rows.matrix_block[world, part[3] + 8 * block + row] = response
         block += 1
 
 
 @func
-def write_normal_gains(
+def write_normal_delassus(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, contact: Int32, mass: real, start: Int32
 ):
     """Write by how much the normal rows before this, of effective mass `mass`, lower its impulse wanted.
@@ -61,46 +61,44 @@ def write_normal_gains(
     The response to this row says by how much it lowers theirs; masses tell the two apart.
     """
     place = pair_rows.manifold_block[world, manifold_block].place
-    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     lowered = pair_rows.manifold_block[world, manifold_block].normal_share * real(0.0)
-    if place[1] > 0:
-        lowered += combine4(pair_rows.run_block, part[0], pair_rows.jacobian_response, start, world, place[1])
-    if place[3] > 0:
-        lowered += combine4(
-            pair_rows.run_block, part[0] + 4 * place[1], pair_rows.jacobian_response, start + place[1],
-            world, place[3],
-        )  # fmt: skip
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            lowered += combine4(
+                pair_rows.matrix_block, part[0] + 4 * place[1] * side, pair_rows.jacobian_response,
+                start + place[1] * side, world, place[2 * side + 1],
+            )  # fmt: skip
     for i in range(4):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[i]
-        pair_rows.manifold_block[world, manifold_block].normal_gain[i, contact] = (
+        pair_rows.manifold_block[world, manifold_block].normal_delassus[i, contact] = (
             lowered[i] * inverse_mass * mass
         )
 
 
 @func
-def write_friction_gains(
+def write_friction_delassus(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, row: Int32, mass: real, start: Int32
 ):
-    """As `write_normal_gains`, for friction row `row` of eight."""
+    """As `write_normal_delassus`, for friction row `row` of eight."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     lowered = pair_rows.manifold_block[world, manifold_block].friction_share * real(0.0)
-    if place[1] > 0:
-        lowered += combine8(pair_rows.run_block, part[1], pair_rows.jacobian_response, start, world, place[1])
-    if place[3] > 0:
-        lowered += combine8(
-            pair_rows.run_block, part[1] + 8 * place[1], pair_rows.jacobian_response, start + place[1],
-            world, place[3],
-        )  # fmt: skip
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            lowered += combine8(
+                pair_rows.matrix_block, part[1] + 8 * place[1] * side, pair_rows.jacobian_response,
+                start + place[1] * side, world, place[2 * side + 1],
+            )  # fmt: skip
     for i in range(8):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i]
-        pair_rows.manifold_block[world, manifold_block].friction_gain[i, row] = (
+        pair_rows.manifold_block[world, manifold_block].friction_delassus[i, row] = (
             lowered[i] * inverse_mass * mass
         )
 
 
 @func
-def write_long_contact(
+def write_articulated_contact(
     settings: Settings,
     model: Model,
     state: State,
@@ -115,26 +113,28 @@ def write_long_contact(
 ):
     """Write the three rows of a contact; blocks of rows over two trees from `start` on are free."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    part_a = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
-    part_b = part_a + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1])
-    start_b = start + place[1]
+    part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     row = Int32(0)
     while row < 3:
         direction = row_direction(terms, row)
-        moved = write_jacobians(
+        inverse_mass, velocity = write_jacobians(
             model, state, scratch, pair_rows, world, terms.ends, terms.point_a, terms.point_b, direction,
             0.0 * direction, start,
         )  # fmt: skip
         mass = write_row_numbers(
-            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, moved[1], moved[0]
+            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, velocity, inverse_mass
         )
+        line = 2 * contact + row - 1
+        for side in range(2):
+            # What is of body b comes after what is of body a.
+            own = part + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1]) * side
+            jacobian = start + place[1] * side
+            if row == 0:
+                write_normal_matrices(pair_rows, world, own, place[2 * side + 1], contact, mass, jacobian)
+            else:
+                write_friction_matrices(pair_rows, world, own, place[2 * side + 1], line, mass, jacobian)
         if row == 0:
-            write_normal_matrices(pair_rows, world, part_a, place[1], contact, mass, start)
-            write_normal_matrices(pair_rows, world, part_b, place[3], contact, mass, start_b)
-            write_normal_gains(pair_rows, world, manifold_block, contact, mass, start)
+            write_normal_delassus(pair_rows, world, manifold_block, contact, mass, start)
         else:
-            line = 2 * contact + row - 1
-            write_friction_matrices(pair_rows, world, part_a, place[1], line, mass, start)
-            write_friction_matrices(pair_rows, world, part_b, place[3], line, mass, start_b)
-            write_friction_gains(pair_rows, world, manifold_block, line, mass, start)
+            write_friction_delassus(pair_rows, world, manifold_block, line, mass, start)
         row += 1

@@ -1,6 +1,6 @@
 """Manifold blocks of trees of any size; see `rigid_manifolds`.
 
-Their matrices are in `PairRows.run_block`, one after the other, each for tree a and then tree b: the
+Their matrices are in `PairRows.matrix_block`, one after the other, each for tree a and then tree b: the
 weighted Jacobians of the normals, a vector for each dof; those of friction, two for each; the responses
 to the normals, four vectors for each block of dofs; those to friction, eight.
 """
@@ -18,66 +18,68 @@ from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Index4, Int32, func, real
 
 # Vectors of all matrices of an articulated manifold block for each block of dofs of its trees.
-RUN_PER_BLOCK = 24
+VECTORS_PER_BLOCK = 24
 
 
 @func
-def run_parts(run: Int32, place: Index4) -> Index4:
+def matrix_parts(matrices: Int32, place: Index4) -> Index4:
     """Where the four matrices of a manifold block start."""
     blocks = place[1] + place[3]
-    return Index4(run, run + 4 * blocks, run + 12 * blocks, run + 16 * blocks)
+    return Index4(matrices, matrices + 4 * blocks, matrices + 12 * blocks, matrices + 16 * blocks)
 
 
 @func
-def relax_long_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
+def relax_articulated_normals(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+) -> real:
     """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     wanted = pair_rows.manifold_block[world, manifold_block].normal_share - wp.cw_mul(
         pair_rows.manifold_block[world, manifold_block].normal_softness,
         pair_rows.manifold_block[world, manifold_block].normal_impulse,
     )
-    if place[1] > 0:
-        wanted -= combine4(pair_rows.run_block, part[0], scratch.delta_velocity, place[0], world, place[1])
-    if place[3] > 0:
-        start = part[0] + 4 * place[1]
-        wanted -= combine4(pair_rows.run_block, start, scratch.delta_velocity, place[2], world, place[3])
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            start = part[0] + 4 * place[1] * side
+            wanted -= combine4(
+                pair_rows.matrix_block, start, scratch.delta_velocity, place[2 * side], world,
+                place[2 * side + 1],
+            )  # fmt: skip
     pair_rows.manifold_block[world, manifold_block].normal_wanted = wanted
     change = bounded_normals(pair_rows, world, manifold_block)
-    if place[1] > 0:
-        add_combination4(
-            scratch.delta_velocity, place[0], change, pair_rows.run_block, part[2], world, place[1]
-        )
-    if place[3] > 0:
-        start = part[2] + 4 * place[1]
-        add_combination4(
-            scratch.delta_velocity, place[2], change, pair_rows.run_block, start, world, place[3]
-        )
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            start = part[2] + 4 * place[1] * side
+            add_combination4(
+                scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
+                place[2 * side + 1],
+            )  # fmt: skip
     return normal_residual(pair_rows, world, manifold_block, change)
 
 
 @func
-def relax_long_friction(
+def relax_articulated_friction(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
 ) -> real:
-    """Relax the friction rows of a manifold block; returns as `relax_long_normals`."""
+    """Relax the friction rows of a manifold block; returns as `relax_articulated_normals`."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    part = run_parts(pair_rows.manifold_block[world, manifold_block].run, place)
+    part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     wanted = pair_rows.manifold_block[world, manifold_block].friction_share
-    if place[1] > 0:
-        wanted -= combine8(pair_rows.run_block, part[1], scratch.delta_velocity, place[0], world, place[1])
-    if place[3] > 0:
-        start = part[1] + 8 * place[1]
-        wanted -= combine8(pair_rows.run_block, start, scratch.delta_velocity, place[2], world, place[3])
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            start = part[1] + 8 * place[1] * side
+            wanted -= combine8(
+                pair_rows.matrix_block, start, scratch.delta_velocity, place[2 * side], world,
+                place[2 * side + 1],
+            )  # fmt: skip
     pair_rows.manifold_block[world, manifold_block].friction_wanted = wanted
     change = bounded_friction(settings, pair_rows, world, manifold_block)
-    if place[1] > 0:
-        add_combination8(
-            scratch.delta_velocity, place[0], change, pair_rows.run_block, part[3], world, place[1]
-        )
-    if place[3] > 0:
-        start = part[3] + 8 * place[1]
-        add_combination8(
-            scratch.delta_velocity, place[2], change, pair_rows.run_block, start, world, place[3]
-        )
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            start = part[3] + 8 * place[1] * side
+            add_combination8(
+                scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
+                place[2 * side + 1],
+            )  # fmt: skip
     return friction_residual(pair_rows, world, manifold_block, change)

@@ -27,44 +27,44 @@ def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) 
 
 
 @func
-def gather_runs(
+def gather_manifolds(
     model: Model, state: State, shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32
 ) -> Int32:
     """List the manifolds that can push a tree that is not asleep; returns their number.
 
     `tree_first_contact` of the root of an island has to be the last tree of it.
     """
-    runs = Int32(0)
+    count = Int32(0)
     contact_count = contacts.count_contacts[world, THERE]
     contact = Int32(0)
     while contact < contact_count:
         pair = contacts.contact_shapes[world, contact]
         tree = pushed_tree(shapes, model, pair)
         if tree >= 0 and not is_asleep(state, world, tree):
-            pair_rows.run_first[world, runs] = contact
-            pair_rows.run_island[world, runs] = pair_rows.tree_first_contact[
+            pair_rows.order_first[world, count] = contact
+            pair_rows.order_island[world, count] = pair_rows.tree_first_contact[
                 world, state.tree_island[world, tree]
             ]
-            runs += 1
+            count += 1
         contact += 1
         while contact < contact_count and same_shapes(contacts, world, contact, pair):
             contact += 1
-    return runs
+    return count
 
 
 @func
-def exchange_runs(pair_rows: PairRows, world: Int32, i: Int32, j: Int32):
+def exchange_manifolds(pair_rows: PairRows, world: Int32, i: Int32, j: Int32):
     """Swap two manifolds."""
-    first = pair_rows.run_first[world, i]
-    island = pair_rows.run_island[world, i]
-    pair_rows.run_first[world, i] = pair_rows.run_first[world, j]
-    pair_rows.run_island[world, i] = pair_rows.run_island[world, j]
-    pair_rows.run_first[world, j] = first
-    pair_rows.run_island[world, j] = island
+    first = pair_rows.order_first[world, i]
+    island = pair_rows.order_island[world, i]
+    pair_rows.order_first[world, i] = pair_rows.order_first[world, j]
+    pair_rows.order_island[world, i] = pair_rows.order_island[world, j]
+    pair_rows.order_first[world, j] = first
+    pair_rows.order_island[world, j] = island
 
 
 @func
-def sort_runs(pair_rows: PairRows, world: Int32, count: Int32):
+def sort_manifolds(pair_rows: PairRows, world: Int32, count: Int32):
     """Sort the first `count` manifolds by island: Hoare's quicksort around the middle element."""
     bounds = Bounds()
     waiting = Int32(0)
@@ -73,14 +73,14 @@ def sort_runs(pair_rows: PairRows, world: Int32, count: Int32):
     while low < high:
         i = low + 0
         j = high + 0
-        pivot = pair_rows.run_island[world, (low + high) // 2]
+        pivot = pair_rows.order_island[world, (low + high) // 2]
         while i <= j:
-            while pair_rows.run_island[world, i] < pivot:
+            while pair_rows.order_island[world, i] < pivot:
                 i += 1
-            while pivot < pair_rows.run_island[world, j]:
+            while pivot < pair_rows.order_island[world, j]:
                 j -= 1
             if i <= j:
-                exchange_runs(pair_rows, world, i, j)
+                exchange_manifolds(pair_rows, world, i, j)
                 i += 1
                 j -= 1
         # Go on with the shorter part; the other waits.
@@ -113,13 +113,13 @@ def list_contacts(
     for tree in range(settings.tree_count):
         if can_move(model, tree):
             pair_rows.tree_first_contact[world, state.tree_island[world, tree]] = tree
-    run = gather_runs(model, state, shapes, contacts, pair_rows, world)
-    sort_runs(pair_rows, world, run)
+    count = gather_manifolds(model, state, shapes, contacts, pair_rows, world)
+    sort_manifolds(pair_rows, world, count)
     for tree in range(settings.tree_count):
         pair_rows.tree_first_contact[world, tree] = NONE
-    while run > 0:
-        run -= 1
-        first = pair_rows.run_first[world, run]
+    while count > 0:
+        count -= 1
+        first = pair_rows.order_first[world, count]
         pair = contacts.contact_shapes[world, first]
         root = state.tree_island[world, pushed_tree(shapes, model, pair)]
         contact = first + 1

@@ -26,11 +26,11 @@ def add_contact_rows(
     contact: Int32,
     row: Int32,
     block: Int32,
-) -> Index4:
+):
     """Write all rows of one contact: normal, two lateral, two rolling, spinning, as far as there are.
 
     Returns:
-        Next free row and block.
+        The next free row, and the next free block.
     """
     rows = Index4(row, row + 1, -1, -1)
     end = row + 3
@@ -62,15 +62,13 @@ def add_contact_rows(
             if place > rows[ROLLING_ROW]:
                 angular = terms.rolling2
 
-        found = write_pair_jacobian(
+        inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, place, block, terms.ends, terms.point_a, terms.point_b,
             linear, angular,
         )  # fmt: skip
-        block = Int32(found[2])
-        inverse_mass = found[0]
         if terms.ignored != 0:
             inverse_mass = real(0.0)
-        velocity = found[1] + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
+        velocity = velocity + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
         change = friction_change(settings, velocity, terms.drift, linear)
         lower = -coefficient
         upper = coefficient
@@ -82,7 +80,7 @@ def add_contact_rows(
             softness = terms.softness
         write_row(pair_rows, world, place, inverse_mass, change, softness, lower, upper, coefficient)
         pair_rows.row_bound[world, place] = row
-    return Index4(end, block, 0, 0)
+    return end, block
 
 
 @func

@@ -6,7 +6,7 @@ from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.maths.min_max import maximum, minimum, within_bounds
 from carom.kernels.solver.warm_starting import next_warm_start, slides
 from carom.kernels.structs import Contacts, ContactTerms, Model, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
 
 _GREATEST_FRICTION = real(10.0)
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
@@ -23,12 +23,12 @@ def contact_damping(shapes: Shapes, world: Int32, link: Int32) -> real:
 
 
 @func
-def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
-    """Softness and error reduction of the normal row between two links, as (softness, erp, 0)."""
+def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32):
+    """Softness and error reduction of the normal row between two links."""
     stiffness_a = shapes.link_stiffness[world, a]
     stiffness_b = shapes.link_stiffness[world, b]
     if stiffness_a < 0.0 and stiffness_b < 0.0:
-        return Vector3(settings.contact_softness, settings.contact_erp, 0.0)
+        return settings.contact_softness, settings.contact_erp
     # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
     compliance = real(0.0)
     if stiffness_a > 0.0:
@@ -38,9 +38,7 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
     damping = contact_damping(shapes, world, a) + contact_damping(shapes, world, b)
     stiffness = 1.0 / maximum(compliance, _LEAST_DENOMINATOR)
     denominator = maximum(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
-    return Vector3(
-        1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator, 0.0
-    )
+    return 1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator
 
 
 @func
@@ -98,13 +96,7 @@ def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32,
 
 
 @func
-def starting_impulse(share: real, last: Vector4) -> Vector3:
-    """A share of the last impulses along the normal and both friction directions."""
-    return Vector3(share * last[0], share * last[1], share * last[2])
-
-
-@func
-def gained(
+def velocity_from_forces(
     settings: Settings,
     model: Model,
     state: State,
@@ -171,7 +163,7 @@ def contact_terms(
     lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
     contacts.contact_direction1[world, contact] = lateral1
     contacts.contact_direction2[world, contact] = lateral2
-    soft = contact_stiffness(settings, shapes, world, a, b)
+    softness, erp = contact_stiffness(settings, shapes, world, a, b)
     terms = ContactTerms()
     terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
     terms.point_a = contacts.contact_point_a[world, contact]
@@ -184,9 +176,9 @@ def contact_terms(
     terms.drift = anchor_drift(state, shapes, contacts, world, contact)
     terms.distance = contacts.contact_distance[world, contact]
     terms.friction = contact_friction(shapes, world, a, b)
-    terms.softness = soft[0]
-    terms.erp = soft[1]
-    terms.start = starting_impulse(share, contacts.contact_impulse[world, contact])
+    terms.softness = softness
+    terms.erp = erp
+    terms.start = share * contacts.contact_impulse[world, contact]
     terms.ignored = Int32(0)
     solved_up_to = minimum(
         shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
@@ -199,11 +191,13 @@ def contact_terms(
     terms.carried_spin = carried_spin(model, state, world, terms.ends[0]) - carried_spin(
         model, state, world, terms.ends[2]
     )
-    terms.gain = real(0.0)
+    terms.from_forces = real(0.0)
     if combined_restitution(shapes, world, a, b) > 0.0:
-        terms.gain = gained(
+        terms.from_forces = velocity_from_forces(
             settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
-        ) - gained(settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal)
+        ) - velocity_from_forces(
+            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal
+        )
     return terms
 
 
@@ -226,7 +220,7 @@ def normal_change(
     restitution = combined_restitution(shapes, world, terms.ends[1], terms.ends[3])
     if restitution <= 0.0:
         return parting - velocity
-    rebound = maximum(restitution, 1.0) * (terms.gain - velocity)
+    rebound = maximum(restitution, 1.0) * (terms.from_forces - velocity)
     return minimum(parting - restitution * velocity, maximum(rebound, parting)) - velocity
 
 
@@ -259,8 +253,10 @@ def keep_contact_impulse(
         friction: Coefficient of lateral friction.
         outcome: How the search for it went, see `warm_starting.next_warm_start`.
     """
-    warm_start = next_warm_start(contacts.contact_impulse[world, contact][3], outcome)
-    contacts.contact_impulse[world, contact] = Vector4(normal, first, second, warm_start)
+    contacts.contact_impulse[world, contact] = Vector3(normal, first, second)
+    contacts.contact_warm_start[world, contact] = next_warm_start(
+        contacts.contact_warm_start[world, contact], outcome
+    )
     if slides(normal, first, second, friction):
         contacts.contact_anchor_a[world, contact] = contacts.contact_local_a[world, contact]
         contacts.contact_anchor_b[world, contact] = contacts.contact_local_b[world, contact]

@@ -1,11 +1,21 @@
 """Making manifold blocks of contacts, and reporting what they did; see `rigid_manifolds`."""
 
-from carom.kernels.solver.articulated_manifold_rows import clear_run, write_long_contact
+from carom.kernels.solver.articulated_manifold_rows import clear_matrices, write_articulated_contact
 from carom.kernels.solver.contact_terms import keep_contact_impulse
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.rigid_manifold_rows import write_rigid_rows
 from carom.kernels.solver.warm_starting import SOLVED, SOLVED_AND_HOLDS, holds
-from carom.kernels.structs import Contacts, ManifoldBlock, Model, PairRows, Scratch, Settings, Shapes, State
+from carom.kernels.structs import (
+    Contacts,
+    ManifoldBlock,
+    ManifoldSide,
+    Model,
+    PairRows,
+    Scratch,
+    Settings,
+    Shapes,
+    State,
+)
 from carom.kernels.types import Index4, Int32, func
 
 
@@ -31,28 +41,30 @@ def write_manifold_block(
     count: Int32,
     a: Int32,
     b: Int32,
-    run: Int32,
+    matrices: Int32,
     temporary: Int32,
 ):
     """Write the rows of the `count` contacts in `members` of two trees, whose terms are in `PairRows.terms`.
 
-    `run` is where in `PairRows.run_block` their matrices go, -1 if they are rigid bodies; the
+    `matrices` is where in `PairRows.matrix_block` their matrices go, -1 if they are rigid bodies; the
     blocks from `temporary` on of a row over two trees are free.
     """
     pair_rows.manifold_block[world, manifold_block] = ManifoldBlock()
     pair_rows.manifold_block[world, manifold_block].place = Index4(
         tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
     )
-    pair_rows.manifold_block[world, manifold_block].run = run
+    pair_rows.manifold_block[world, manifold_block].matrices = matrices
     pair_rows.manifold_block[world, manifold_block].members = members
     pair_rows.manifold_block[world, manifold_block].count = count
-    if run < 0:
+    if matrices < 0:
+        for body in range(2):
+            pair_rows.side[world, 2 * manifold_block + body] = ManifoldSide()
         write_rigid_rows(settings, model, state, scratch, shapes, pair_rows, world, manifold_block, a, b)
         return
-    clear_run(pair_rows, world, manifold_block)
+    clear_matrices(pair_rows, world, manifold_block)
     contact = Int32(0)
     while contact < count:
-        write_long_contact(
+        write_articulated_contact(
             settings, model, state, scratch, shapes, pair_rows,
             pair_rows.terms[world, contact], world, manifold_block,
             contact, temporary,

@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
 from carom.kernels.structs import Model, PairRows, Scratch, State
-from carom.kernels.types import Index4, Int32, Vector3, Vector4, Vector8, func, real
+from carom.kernels.types import Index4, Int32, Vector3, Vector8, func, real
 from carom.layouts.codes import (
     ROW_EFFECTIVE_MASS,
     ROW_IMPULSE,
@@ -27,12 +27,14 @@ def tree_blocks(model: Model, tree: Int32) -> Int32:
 
 
 @func
-def has_room(model: Model, pair_rows: PairRows, place: Index4, tree_a: Int32, tree_b: Int32) -> bool:
-    """Whether all rows there may be between two trees still fit."""
+def has_room(
+    model: Model, pair_rows: PairRows, row: Int32, block: Int32, tree_a: Int32, tree_b: Int32
+) -> bool:
+    """Whether all rows there may be between two trees still fit, from the next free row and block on."""
     blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
-    if place[0] + ROWS_PER_PAIR > pair_rows.row_start.shape[1]:
+    if row + ROWS_PER_PAIR > pair_rows.row_start.shape[1]:
         return False
-    return place[1] + ROWS_PER_PAIR * blocks <= pair_rows.jacobian_row.shape[1]
+    return block + ROWS_PER_PAIR * blocks <= pair_rows.jacobian_row.shape[1]
 
 
 @func
@@ -48,13 +50,13 @@ def write_jacobian(
     linear: Vector3,
     angular: Vector3,
     start: Int32,
-) -> Vector3:
+):
     """Write how dofs move a point of a link along `linear` and turn it about `angular`.
 
     The point is in world axes. The row goes to block `start`, and the response of the tree to it beside.
 
     Returns:
-        Inverse mass of the row on this tree, its present velocity, 0.
+        Inverse mass of the row on this tree, and its present velocity.
     """
     inverse_mass = real(0.0)
     velocity = real(0.0)
@@ -81,7 +83,7 @@ def write_jacobian(
         inverse_mass = dot_product(
             pair_rows.jacobian_row, start, pair_rows.jacobian_response, start, world, blocks
         )
-    return Vector3(inverse_mass, velocity, 0.0)
+    return inverse_mass, velocity
 
 
 @func
@@ -241,15 +243,16 @@ def write_jacobians(
     linear: Vector3,
     angular: Vector3,
     start: Int32,
-) -> Vector3:
+):
     """Write the velocity of a point of a against one of b, along or about an axis, as a row.
 
     `ends` are tree and link of a, then of b; tree -1 is the world. The row goes to block `start`.
 
     Returns:
-        Inverse mass, relative velocity, 0.
+        Inverse mass and relative velocity.
     """
-    result = Vector3(0.0, 0.0, 0.0)
+    inverse_mass = real(0.0)
+    velocity = real(0.0)
     side = Int32(0)
     while side < 2:
         point = point_a
@@ -258,12 +261,14 @@ def write_jacobians(
             point = point_b
             sign = real(-1.0)
             start += tree_blocks(model, ends[0])
-        result += write_jacobian(
+        inverse_mass_of_side, velocity_of_side = write_jacobian(
             model, state, scratch, pair_rows, world, ends[2 * side], ends[2 * side + 1], point,
             sign * linear, sign * angular, start,
         )  # fmt: skip
+        inverse_mass += inverse_mass_of_side
+        velocity += velocity_of_side
         side += 1
-    return result
+    return inverse_mass, velocity
 
 
 @func
@@ -280,14 +285,14 @@ def write_pair_jacobian(
     point_b: Vector3,
     linear: Vector3,
     angular: Vector3,
-) -> Vector4:
+):
     """As `write_jacobians`, at the first free block, and note where the row is.
 
     Returns:
-        Inverse mass, relative velocity, next free block, 0.
+        Inverse mass, relative velocity, and the next free block.
     """
     after = place_row(model, pair_rows, world, row, ends[0], ends[2], block)
-    found = write_jacobians(
+    inverse_mass, velocity = write_jacobians(
         model, state, scratch, pair_rows, world, ends, point_a, point_b, linear, angular, block
     )
-    return Vector4(found[0], found[1], real(after), 0.0)
+    return inverse_mass, velocity, after

@@ -129,65 +129,38 @@ def write_rigid_jacobians(
     row = Int32(0)
     while row < 3:
         direction = row_direction(terms, row)
-        jacobian_a = rigid_jacobian(terms.point_a - reference_a, direction)
-        jacobian_b = rigid_jacobian(terms.point_b - reference_b, -direction)
         i = 2 * contact + row - 1
-        if row == 0:
-            pair_rows.manifold_block[world, manifold_block].normal_response_a[contact] = jacobian_a
-            pair_rows.manifold_block[world, manifold_block].normal_response_b[contact] = jacobian_b
-            for dof in range(6):
-                pair_rows.manifold_block[world, manifold_block].normal_weighted_a[dof, contact] = jacobian_a[
-                    dof
-                ]
-                pair_rows.manifold_block[world, manifold_block].normal_weighted_b[dof, contact] = jacobian_b[
-                    dof
-                ]
-        else:
-            pair_rows.manifold_block[world, manifold_block].friction_response_a[i] = jacobian_a
-            pair_rows.manifold_block[world, manifold_block].friction_response_b[i] = jacobian_b
-            for dof in range(6):
-                pair_rows.manifold_block[world, manifold_block].friction_weighted_a[dof, i] = jacobian_a[dof]
-                pair_rows.manifold_block[world, manifold_block].friction_weighted_b[dof, i] = jacobian_b[dof]
+        for body in range(2):
+            side = 2 * manifold_block + body
+            jacobian = rigid_jacobian(terms.point_a - reference_a, direction)
+            if body == 1:
+                jacobian = rigid_jacobian(terms.point_b - reference_b, -direction)
+            if row == 0:
+                pair_rows.side[world, side].normal_response[contact] = jacobian
+                for dof in range(6):
+                    pair_rows.side[world, side].normal_weighted[dof, contact] = jacobian[dof]
+            else:
+                pair_rows.side[world, side].friction_response[i] = jacobian
+                for dof in range(6):
+                    pair_rows.side[world, side].friction_weighted[dof, i] = jacobian[dof]
         row += 1
 
 
 @func
-def write_responses_a(pair_rows: PairRows, world: Int32, manifold_block: Int32, body: RigidBody):
-    """Turn the Jacobians of body a into responses, and add up what rows are to know of both bodies.
+def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, side: Int32, body: RigidBody):
+    """Turn the Jacobians of a body into responses, and add up what rows are to know of both bodies.
 
-    Until masses are known gains hold products of Jacobians and responses, shares the present velocities.
+    Until masses are known the Delassus matrices hold products of Jacobians and responses, and shares the
+    present velocities.
     """
-    normal = pair_rows.manifold_block[world, manifold_block].normal_weighted_a
-    friction = pair_rows.manifold_block[world, manifold_block].friction_weighted_a
-    normal_response = pair_rows.manifold_block[world, manifold_block].normal_response_a * body.inverse_mass
-    friction_response = (
-        pair_rows.manifold_block[world, manifold_block].friction_response_a * body.inverse_mass
-    )
-    pair_rows.manifold_block[world, manifold_block].normal_response_a = normal_response
-    pair_rows.manifold_block[world, manifold_block].friction_response_a = friction_response
-    pair_rows.manifold_block[world, manifold_block].normal_gain += normal_response * normal
-    pair_rows.manifold_block[world, manifold_block].friction_gain += friction_response * friction
-    pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
-        world, manifold_block
-    ].normal_share + combination(normal, body.velocity)
-    pair_rows.manifold_block[world, manifold_block].friction_share = pair_rows.manifold_block[
-        world, manifold_block
-    ].friction_share + combination(friction, body.velocity)
-
-
-@func
-def write_responses_b(pair_rows: PairRows, world: Int32, manifold_block: Int32, body: RigidBody):
-    """As `write_responses_a`, for body b."""
-    normal = pair_rows.manifold_block[world, manifold_block].normal_weighted_b
-    friction = pair_rows.manifold_block[world, manifold_block].friction_weighted_b
-    normal_response = pair_rows.manifold_block[world, manifold_block].normal_response_b * body.inverse_mass
-    friction_response = (
-        pair_rows.manifold_block[world, manifold_block].friction_response_b * body.inverse_mass
-    )
-    pair_rows.manifold_block[world, manifold_block].normal_response_b = normal_response
-    pair_rows.manifold_block[world, manifold_block].friction_response_b = friction_response
-    pair_rows.manifold_block[world, manifold_block].normal_gain += normal_response * normal
-    pair_rows.manifold_block[world, manifold_block].friction_gain += friction_response * friction
+    normal = pair_rows.side[world, side].normal_weighted
+    friction = pair_rows.side[world, side].friction_weighted
+    normal_response = pair_rows.side[world, side].normal_response * body.inverse_mass
+    friction_response = pair_rows.side[world, side].friction_response * body.inverse_mass
+    pair_rows.side[world, side].normal_response = normal_response
+    pair_rows.side[world, side].friction_response = friction_response
+    pair_rows.manifold_block[world, manifold_block].normal_delassus += normal_response * normal
+    pair_rows.manifold_block[world, manifold_block].friction_delassus += friction_response * friction
     pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
         world, manifold_block
     ].normal_share + combination(normal, body.velocity)
@@ -200,27 +173,23 @@ def write_responses_b(pair_rows: PairRows, world: Int32, manifold_block: Int32, 
 def weigh(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, normal_mass: Vector4, friction_mass: Vector8
 ):
-    """Multiply Jacobians and gains by the effective masses of their rows."""
-    for dof in range(6):
-        pair_rows.manifold_block[world, manifold_block].normal_weighted_a[dof] = wp.cw_mul(
-            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_weighted_a[dof]
-        )
-        pair_rows.manifold_block[world, manifold_block].normal_weighted_b[dof] = wp.cw_mul(
-            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_weighted_b[dof]
-        )
-        pair_rows.manifold_block[world, manifold_block].friction_weighted_a[dof] = wp.cw_mul(
-            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_weighted_a[dof]
-        )
-        pair_rows.manifold_block[world, manifold_block].friction_weighted_b[dof] = wp.cw_mul(
-            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_weighted_b[dof]
-        )
+    """Multiply Jacobians and Delassus matrices by the effective masses of their rows."""
+    for body in range(2):
+        side = 2 * manifold_block + body
+        for dof in range(6):
+            pair_rows.side[world, side].normal_weighted[dof] = wp.cw_mul(
+                normal_mass, pair_rows.side[world, side].normal_weighted[dof]
+            )
+            pair_rows.side[world, side].friction_weighted[dof] = wp.cw_mul(
+                friction_mass, pair_rows.side[world, side].friction_weighted[dof]
+            )
     for i in range(4):
-        pair_rows.manifold_block[world, manifold_block].normal_gain[i] = wp.cw_mul(
-            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_gain[i]
+        pair_rows.manifold_block[world, manifold_block].normal_delassus[i] = wp.cw_mul(
+            normal_mass, pair_rows.manifold_block[world, manifold_block].normal_delassus[i]
         )
     for i in range(8):
-        pair_rows.manifold_block[world, manifold_block].friction_gain[i] = wp.cw_mul(
-            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_gain[i]
+        pair_rows.manifold_block[world, manifold_block].friction_delassus[i] = wp.cw_mul(
+            friction_mass, pair_rows.manifold_block[world, manifold_block].friction_delassus[i]
         )
 
 
@@ -250,9 +219,9 @@ def write_rigid_rows(
         contact += 1
     place = pair_rows.manifold_block[world, manifold_block].place
     if place[1] > 0:
-        write_responses_a(pair_rows, world, manifold_block, body_a)
+        write_responses(pair_rows, world, manifold_block, 2 * manifold_block, body_a)
     if place[3] > 0:
-        write_responses_b(pair_rows, world, manifold_block, body_b)
+        write_responses(pair_rows, world, manifold_block, 2 * manifold_block + 1, body_b)
     normal_mass = Vector4(0.0, 0.0, 0.0, 0.0)
     friction_mass = Vector8(0.0)
     row = Int32(0)
@@ -261,10 +230,10 @@ def write_rigid_rows(
         part = row % 3
         i = 2 * contact + part - 1
         velocity = pair_rows.manifold_block[world, manifold_block].normal_share[contact]
-        inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_gain[contact, contact]
+        inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_delassus[contact, contact]
         if part > 0:
             velocity = pair_rows.manifold_block[world, manifold_block].friction_share[i]
-            inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_gain[i, i]
+            inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_delassus[i, i]
         mass = write_row_numbers(
             settings, shapes, pair_rows, pair_rows.terms[world, contact],
             world, manifold_block, contact, part,

@@ -59,16 +59,13 @@ def push_manifold_block(
 ):
     """Apply impulses along the rows of a manifold block of rigid bodies."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    if place[1] > 0:
-        moved = push_of_normals(
-            pair_rows.manifold_block[world, manifold_block].normal_response_a, normal
-        ) + combination(pair_rows.manifold_block[world, manifold_block].friction_response_a, friction)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_normals(
-            pair_rows.manifold_block[world, manifold_block].normal_response_b, normal
-        ) + combination(pair_rows.manifold_block[world, manifold_block].friction_response_b, friction)
-        add_change(scratch, world, place[2], moved)
+    for body in range(2):
+        side = 2 * manifold_block + body
+        if place[2 * body + 1] > 0:
+            moved = push_of_normals(pair_rows.side[world, side].normal_response, normal) + combination(
+                pair_rows.side[world, side].friction_response, friction
+            )
+            add_change(scratch, world, place[2 * body], moved)
 
 
 @func
@@ -83,13 +80,13 @@ def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) ->
     """Change the normal impulses of a manifold block by what is wanted as far as they stay pushes."""
     before = pair_rows.manifold_block[world, manifold_block].normal_impulse
     wanted = pair_rows.manifold_block[world, manifold_block].normal_wanted
-    gain = pair_rows.manifold_block[world, manifold_block].normal_gain
+    delassus = pair_rows.manifold_block[world, manifold_block].normal_delassus
     change = Vector4(0.0, 0.0, 0.0, 0.0)
     for i in range(4):
         change[i] = wanted[i]
         if change[i] < -before[i]:
             change[i] = -before[i]
-        wanted -= change[i] * gain[i]
+        wanted -= change[i] * delassus[i]
     pair_rows.manifold_block[world, manifold_block].normal_impulse = before + change
     return change
 
@@ -122,7 +119,7 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
         pair_rows.manifold_block[world, manifold_block].friction,
         pair_rows.manifold_block[world, manifold_block].normal_impulse,
     )
-    gain = pair_rows.manifold_block[world, manifold_block].friction_gain
+    delassus = pair_rows.manifold_block[world, manifold_block].friction_delassus
     change = Vector8(0.0)
     for i in range(4):
         bound = bounds[i]
@@ -138,14 +135,14 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
                 change2 = second * scale - before[2 * i + 1]
         elif bound > 0.0:
             change1 = within_bounds(first, -bound, bound) - before[2 * i]
-            second -= change1 * gain[2 * i, 2 * i + 1]
+            second -= change1 * delassus[2 * i, 2 * i + 1]
             change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
         else:
             change1 = real(0.0)
             change2 = real(0.0)
         change[2 * i] = change1
         change[2 * i + 1] = change2
-        wanted -= change1 * gain[2 * i] + change2 * gain[2 * i + 1]
+        wanted -= change1 * delassus[2 * i] + change2 * delassus[2 * i + 1]
     pair_rows.manifold_block[world, manifold_block].friction_impulse = before + change
     return change
 
@@ -174,27 +171,19 @@ def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, man
         pair_rows.manifold_block[world, manifold_block].normal_softness,
         pair_rows.manifold_block[world, manifold_block].normal_impulse,
     )
-    if place[1] > 0:
-        pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].normal_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].normal_weighted_a,
-            body_change(scratch, world, place[0]),
-        )
-    if place[3] > 0:
-        pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].normal_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].normal_weighted_b,
-            body_change(scratch, world, place[2]),
-        )
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
+                world, manifold_block
+            ].normal_wanted - combination(
+                pair_rows.side[world, 2 * manifold_block + body].normal_weighted,
+                body_change(scratch, world, place[2 * body]),
+            )
     change = bounded_normals(pair_rows, world, manifold_block)
-    if place[1] > 0:
-        moved = push_of_normals(pair_rows.manifold_block[world, manifold_block].normal_response_a, change)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = push_of_normals(pair_rows.manifold_block[world, manifold_block].normal_response_b, change)
-        add_change(scratch, world, place[2], moved)
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            response = pair_rows.side[world, 2 * manifold_block + body].normal_response
+            add_change(scratch, world, place[2 * body], push_of_normals(response, change))
     return normal_residual(pair_rows, world, manifold_block, change)
 
 
@@ -207,25 +196,17 @@ def relax_rigid_friction(
     pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
         world, manifold_block
     ].friction_share
-    if place[1] > 0:
-        pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].friction_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].friction_weighted_a,
-            body_change(scratch, world, place[0]),
-        )
-    if place[3] > 0:
-        pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
-            world, manifold_block
-        ].friction_wanted - combination(
-            pair_rows.manifold_block[world, manifold_block].friction_weighted_b,
-            body_change(scratch, world, place[2]),
-        )
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
+                world, manifold_block
+            ].friction_wanted - combination(
+                pair_rows.side[world, 2 * manifold_block + body].friction_weighted,
+                body_change(scratch, world, place[2 * body]),
+            )
     change = bounded_friction(settings, pair_rows, world, manifold_block)
-    if place[1] > 0:
-        moved = combination(pair_rows.manifold_block[world, manifold_block].friction_response_a, change)
-        add_change(scratch, world, place[0], moved)
-    if place[3] > 0:
-        moved = combination(pair_rows.manifold_block[world, manifold_block].friction_response_b, change)
-        add_change(scratch, world, place[2], moved)
+    for body in range(2):
+        if place[2 * body + 1] > 0:
+            response = pair_rows.side[world, 2 * manifold_block + body].friction_response
+            add_change(scratch, world, place[2 * body], combination(response, change))
     return friction_residual(pair_rows, world, manifold_block, change)

@@ -29,7 +29,7 @@ from carom.kernels.structs import (
     State,
     UserConstraints,
 )
-from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import USER
 from carom.layouts.status import OVERFLOW, STATUS
 
@@ -44,7 +44,7 @@ def island_rows(
     pair_rows: PairRows,
     world: Int32,
     root: Int32,
-) -> Index4:
+):
     """Write the rows of an island's active motors, limits and user constraints.
 
     Returns:
@@ -52,7 +52,8 @@ def island_rows(
         negative if some did not fit.
     """
     row = Int32(0)
-    place = Index4(0, 0, 0, 0)
+    pair_row = Int32(0)
+    block = Int32(0)
     visits = Int32(0)
     fits = Int32(1)
     constraint = pair_rows.tree_first_constraint[world, root]
@@ -65,10 +66,12 @@ def island_rows(
             if users.user_enabled[world, user] == 0:
                 constraint = pair_rows.constraint_next[world, constraint]
                 continue
-            if has_room(model, pair_rows, place, users.user_tree_a[user], users.user_tree_b[user]):
-                first = place[0]
-                place = add_user_rows(settings, model, state, scratch, users, pair_rows, world, user, place)
-                while first < place[0]:
+            if has_room(model, pair_rows, pair_row, block, users.user_tree_a[user], users.user_tree_b[user]):
+                first = pair_row + 0
+                pair_row, block = add_user_rows(
+                    settings, model, state, scratch, users, pair_rows, world, user, pair_row, block
+                )
+                while first < pair_row:
                     pair_rows.visit_row[world, visits] = -1 - first
                     visits += 1
                     first += 1
@@ -81,7 +84,7 @@ def island_rows(
         constraint = pair_rows.constraint_next[world, constraint]
     if fits == 0:
         visits = Int32(-1)
-    return Index4(row, place[0], place[1], visits)
+    return row, pair_row, block, visits
 
 
 @func
@@ -101,9 +104,11 @@ def sweep_island(
     pair_rows: PairRows,
     world: Int32,
     visits: Int32,
-    units: Index4,
+    units: Int32,
+    manifold_blocks: Int32,
+    torsion: Int32,
     resting: Int32,
-) -> Vector3:
+):
     """Sweep over the rows of an island until they hardly change; along conjugate directions if it rests.
 
     Args:
@@ -112,11 +117,13 @@ def sweep_island(
         pair_rows: Rows over two trees.
         world: The world.
         visits: Rows to visit.
-        units: What `write_units` returned.
+        units: How many units its contacts are relaxed in.
+        manifold_blocks: How many of them are manifold blocks.
+        torsion: 1 if there is rolling or spinning friction.
         resting: 1 if all units are manifold blocks that start from their last impulses.
 
     Returns:
-        Greatest change of a velocity in the last sweep, squared; number of sweeps; 0.
+        Greatest change of a velocity in the last sweep, squared; number of sweeps.
     """
     threshold = settings.residual_threshold
     most = settings.iterations
@@ -127,22 +134,22 @@ def sweep_island(
     square = real(0.0)
     sweep = Int32(0)
     searching = Int32(0)
-    if (visits > 0 or units[0] > 0) and most > 0:
+    if (visits > 0 or units > 0) and most > 0:
         searching = Int32(1)
     while searching == 1:
         if resting == 1:
-            remember_impulses(pair_rows, world, units[1])
+            remember_impulses(pair_rows, world, manifold_blocks)
         residual = visit_sweep(settings, scratch, pair_rows, world, visits, sweep)
         if resting == 1:
-            residual = maximum(residual, resting_sweep(settings, scratch, pair_rows, world, units[1]))
-        elif units[0] > 0:
-            residual = maximum(residual, contact_sweep(settings, scratch, pair_rows, world, units))
+            residual = maximum(residual, resting_sweep(settings, scratch, pair_rows, world, manifold_blocks))
+        elif units > 0:
+            residual = maximum(residual, contact_sweep(settings, scratch, pair_rows, world, units, torsion))
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)
         elif resting == 1:
-            square = go_on(scratch, pair_rows, world, units[1], square)
-    return Vector3(residual, real(sweep), 0.0)
+            square = go_on(scratch, pair_rows, world, manifold_blocks, square)
+    return residual, sweep
 
 
 @func
@@ -162,36 +169,42 @@ def solve_island(
 
     One that is at rest but cannot be solved so is solved once more, from nothing.
     """
-    made = island_rows(model, settings, state, scratch, users, pair_rows, world, root)
-    visits = made[3]
+    rows, pair_row, block, visits = island_rows(
+        model, settings, state, scratch, users, pair_rows, world, root
+    )
     first_contact = pair_rows.tree_first_contact[world, root]
     # Without any sweep there are no impulses, those of the last step included.
     resting = wp.min(wp.min(pair_rows.tree_rest[world, root], 1), settings.iterations)
     outcome = Int32(NOT_RESTING)
-    units = Index4(0, 0, 0, 0)
-    found = Vector3(0.0, 0.0, 0.0)
+    units = Int32(0)
+    manifold_blocks = Int32(0)
+    torsion = Int32(0)
+    residual = real(0.0)
+    sweeps = Int32(0)
     trying = Int32(1)
     while trying == 1:
         trying = Int32(0)
         if first_contact >= 0:
             share = settings.contact_warm_starting * real(resting)
-            units = write_units(
+            units, manifold_blocks, torsion = write_units(
                 model, settings, state, scratch, shapes, contacts, pair_rows, world, first_contact,
-                Index4(made[1], made[2], 0, 0), share,
+                pair_row, block, share,
             )  # fmt: skip
-        if visits < 0 or units[0] < 0:
+        if visits < 0 or units < 0:
             state.status_entry[world, STATUS] = OVERFLOW
             return
-        found = sweep_island(settings, scratch, pair_rows, world, visits, units, resting)
+        residual, sweeps = sweep_island(
+            settings, scratch, pair_rows, world, visits, units, manifold_blocks, torsion, resting
+        )
         if resting == 1:
             outcome = Int32(SOLVED)
-            if found[0] > settings.residual_threshold:
+            if residual > settings.residual_threshold:
                 outcome = Int32(UNSOLVED)
                 forget_changes(settings, model, state, scratch, world, root)
                 resting = Int32(0)
                 trying = Int32(1)
-    keep_row_results(model, settings, state, scratch, world, root, made[0], Int32(found[1]), found[0])
-    keep_unit_impulses(contacts, pair_rows, world, units[0], outcome)
+    keep_row_results(model, settings, state, scratch, world, root, rows, sweeps, residual)
+    keep_unit_impulses(contacts, pair_rows, world, units, outcome)
     keep_constraint_impulses(model, state, users, pair_rows, world, root)
 
 

@@ -3,12 +3,12 @@
 import warp as wp
 
 from carom.kernels.maths.min_max import maximum
-from carom.kernels.solver.articulated_manifolds import relax_long_friction, relax_long_normals
+from carom.kernels.solver.articulated_manifolds import relax_articulated_friction, relax_articulated_normals
 from carom.kernels.solver.joint_solver import relax_row
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
 from carom.kernels.structs import PairRows, Scratch, Settings
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROW_FRICTION, ROW_IMPULSE, SPINNING_ROW
 
 
@@ -46,9 +46,9 @@ def visit_sweep(
 @func
 def relax_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
     """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
-    if pair_rows.manifold_block[world, manifold_block].run < 0:
+    if pair_rows.manifold_block[world, manifold_block].matrices < 0:
         return relax_rigid_normals(scratch, pair_rows, world, manifold_block)
-    return relax_long_normals(scratch, pair_rows, world, manifold_block)
+    return relax_articulated_normals(scratch, pair_rows, world, manifold_block)
 
 
 @func
@@ -56,9 +56,9 @@ def relax_friction(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
 ) -> real:
     """Relax the friction rows of a manifold block; returns as `relax_normals`."""
-    if pair_rows.manifold_block[world, manifold_block].run < 0:
+    if pair_rows.manifold_block[world, manifold_block].matrices < 0:
         return relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block)
-    return relax_long_friction(settings, scratch, pair_rows, world, manifold_block)
+    return relax_articulated_friction(settings, scratch, pair_rows, world, manifold_block)
 
 
 @func
@@ -128,18 +128,18 @@ def friction_sweep(
 
 @func
 def contact_sweep(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, units: Index4
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, torsion: Int32
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` is what `units.write_units` returns.
+    `units` and `torsion` are what `units.write_units` returns.
     """
-    residual = normal_sweep(scratch, pair_rows, world, units[0])
+    residual = normal_sweep(scratch, pair_rows, world, units)
     kind = Int32(LATERAL_ROW)
-    if units[2] != 0:
+    if torsion != 0:
         kind = Int32(SPINNING_ROW)
     while kind >= LATERAL_ROW:
-        residual = maximum(residual, friction_sweep(settings, scratch, pair_rows, world, units[0], kind))
+        residual = maximum(residual, friction_sweep(settings, scratch, pair_rows, world, units, kind))
         kind -= 1
     return residual
 

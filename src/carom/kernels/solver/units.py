@@ -1,6 +1,6 @@
 """The contacts of an island as its sweeps relax them: in manifold blocks, or one by one."""
 
-from carom.kernels.solver.articulated_manifolds import RUN_PER_BLOCK
+from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_impulses
 from carom.kernels.solver.contact_terms import contact_friction, contact_terms
@@ -68,22 +68,23 @@ def write_units(
     pair_rows: PairRows,
     world: Int32,
     first_contact: Int32,
-    place: Index4,
+    row: Int32,
+    block: Int32,
     share: real,
-) -> Index4:
-    """Write the rows of an island's contacts, from the free place on.
+):
+    """Write the rows of an island's contacts, from the next free row and block on.
 
     Those of rigid bodies start from a `share` of their last impulses. Several contacts in a row that may
     be solved together make a manifold block.
 
     Returns:
         Number of units, negative if some did not fit; number of manifold blocks; 1 if there is rolling or
-        spinning friction; 0.
+        spinning friction.
     """
     units = Int32(0)
     manifold_blocks = Int32(0)
     torsion = Int32(0)
-    next_run = Int32(0)
+    next_matrices = Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
@@ -97,34 +98,34 @@ def write_units(
                 settings, model, state, scratch, shapes, contacts, world, members[i], share
             )
             i += 1
-        room = has_room(model, pair_rows, place, a, b)
+        room = has_room(model, pair_rows, row, block, a, b)
         if count > 1:
-            run = Int32(-1)
+            matrices = Int32(-1)
             if not rigid:
-                run = next_run + 0
-                next_run += RUN_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
-                if next_run > pair_rows.run_block.shape[1] or not room:
-                    return Index4(-1, manifold_blocks, torsion, 0)
+                matrices = next_matrices + 0
+                next_matrices += VECTORS_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
+                if next_matrices > pair_rows.matrix_block.shape[1] or not room:
+                    return Int32(-1), manifold_blocks, torsion
             write_manifold_block(
                 settings, model, state, scratch, shapes, pair_rows, world,
-                manifold_blocks, members, count, a, b, run,
-                place[1],
+                manifold_blocks, members, count, a, b, matrices,
+                block,
             )  # fmt: skip
             pair_rows.unit_code[world, units] = -1 - manifold_blocks
             manifold_blocks += 1
         else:
             if not room:
-                return Index4(-1, manifold_blocks, torsion, 0)
+                return Int32(-1), manifold_blocks, torsion
             if pair_rows.terms[world, 0].friction[1] > 0.0 or pair_rows.terms[world, 0].friction[2] > 0.0:
                 torsion = Int32(1)
-            place = add_contact_rows(
+            row, block = add_contact_rows(
                 settings, model, state, scratch, shapes, contacts, pair_rows, pair_rows.terms[world, 0],
-                world, contact, place[0], place[1],
+                world, contact, row, block,
             )  # fmt: skip
             pair_rows.unit_code[world, units] = contact
         units += 1
         contact = pair_rows.contact_next[world, members[count - 1]]
-    return Index4(units, manifold_blocks, torsion, 0)
+    return units, manifold_blocks, torsion
 
 
 @func

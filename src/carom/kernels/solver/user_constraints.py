@@ -66,8 +66,9 @@ def add_pose_rows(
     pair_rows: PairRows,
     world: Int32,
     user: Int32,
-    place: Index4,
-) -> Index4:
+    row: Int32,
+    block: Int32,
+):
     """Add the rows of a point-to-point, fixed or prismatic constraint; returns what is free next.
 
     Each row lets a not move against b along or about an axis, and takes back a share of the error.
@@ -99,8 +100,6 @@ def add_pose_rows(
         first_angle = Int32(2)
 
     bound = users.user_max_impulse[user]
-    row = place[0]
-    block = place[1]
     for i in range(user_row_count(kind)):
         linear = Vector3(0.0, 0.0, 0.0)
         angular = Vector3(0.0, 0.0, 0.0)
@@ -112,14 +111,13 @@ def add_pose_rows(
             axis = (i - linear_count + first_angle) % 3
             angular = column(axes, axis)
             error = turned[axis]
-        found = write_pair_jacobian(
+        inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
-        block = Int32(found[2])
-        change = -found[1] - error * settings.joint_erp / settings.time_step
-        write_row(pair_rows, world, row, found[0], change, 0.0, -bound, bound, 0.0)
+        change = -velocity - error * settings.joint_erp / settings.time_step
+        write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
         row += 1
-    return Index4(row, block, 0, 0)
+    return row, block
 
 
 @func
@@ -133,8 +131,8 @@ def write_dof_jacobian(
     dof: Int32,
     share: real,
     start: Int32,
-) -> Vector3:
-    """Write a row that is `share` times the rate of a dof; returns inverse mass, velocity, 0."""
+):
+    """Write a row that is `share` times the rate of a dof; returns inverse mass and velocity."""
     blocks = (model.tree[tree].dof_count + 3) // 4
     column_of_dof = dof - model.tree[tree].first_dof
     response = model.tree[tree].first_block + column_of_dof * blocks
@@ -144,7 +142,7 @@ def write_dof_jacobian(
     )
     pair_rows.entry_row[world, 4 * start + column_of_dof] = share
     inverse_mass = share * pair_rows.entry_response[world, 4 * start + column_of_dof]
-    return Vector3(inverse_mass, share * state.dof_velocity[world, dof], 0.0)
+    return inverse_mass, share * state.dof_velocity[world, dof]
 
 
 @func
@@ -163,8 +161,9 @@ def add_gear_row(
     pair_rows: PairRows,
     world: Int32,
     user: Int32,
-    place: Index4,
-) -> Index4:
+    row: Int32,
+    block: Int32,
+):
     """Add the row that ties the rate of joint a to minus the gear ratio times that of joint b."""
     link_a = users.user_link_a[user]
     link_b = users.user_link_b[user]
@@ -182,23 +181,20 @@ def add_gear_row(
             angle -= joint_position(model, state, world, auxiliary)
         error = -users.user_erp[user] * (users.user_relative_target[user] - angle)
 
-    row = place[0]
-    after = place_row(
-        model, pair_rows, world, row, users.user_tree_a[user], users.user_tree_b[user], place[1]
-    )
-    own = write_dof_jacobian(
+    after = place_row(model, pair_rows, world, row, users.user_tree_a[user], users.user_tree_b[user], block)
+    inverse_mass_a, rate_a = write_dof_jacobian(
         model, state, scratch, pair_rows, world,
-        users.user_tree_a[user], model.link[link_a].first_dof, 1.0, place[1],
+        users.user_tree_a[user], model.link[link_a].first_dof, 1.0, block,
     )  # fmt: skip
-    start_b = place[1] + pair_rows.row_place[world, row][1]
-    other = write_dof_jacobian(
+    start_b = block + pair_rows.row_place[world, row][1]
+    inverse_mass_b, rate_b = write_dof_jacobian(
         model, state, scratch, pair_rows, world,
         users.user_tree_b[user], model.link[link_b].first_dof, ratio, start_b,
     )  # fmt: skip
-    change = auxiliary_rate - (own[1] + other[1]) - error * settings.joint_erp / settings.time_step
+    change = auxiliary_rate - (rate_a + rate_b) - error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]
-    write_row(pair_rows, world, row, own[0] + other[0], change, 0.0, -bound, bound, 0.0)
-    return Index4(row + 1, after, 0, 0)
+    write_row(pair_rows, world, row, inverse_mass_a + inverse_mass_b, change, 0.0, -bound, bound, 0.0)
+    return row + 1, after
 
 
 @func
@@ -211,13 +207,16 @@ def add_user_rows(
     pair_rows: PairRows,
     world: Int32,
     user: Int32,
-    place: Index4,
-) -> Index4:
+    row: Int32,
+    block: Int32,
+):
     """Add the rows of one user constraint; returns the next free row and block."""
-    pair_rows.user_first_row[world, user] = place[0]
+    pair_rows.user_first_row[world, user] = row
     if users.user_kind[user] == USER_GEAR:
-        return add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, place)
-    return add_pose_rows(settings, model, state, scratch, users, pair_rows, world, user, place)
+        row, block = add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, row, block)
+    else:
+        row, block = add_pose_rows(settings, model, state, scratch, users, pair_rows, world, user, row, block)
+    return row, block
 
 
 @func

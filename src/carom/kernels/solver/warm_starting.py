@@ -89,7 +89,7 @@ def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
 @func
 def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
     """Whether a contact can be warm started: not new, in a block, rigid, lateral friction only."""
-    if contacts.contact_impulse[world, contact][3] < 1.0:
+    if contacts.contact_warm_start[world, contact] < 1.0:
         return False
     pair = contacts.contact_shapes[world, contact]
     after = contact + 1
@@ -108,7 +108,7 @@ def contact_traits(
     if not is_plain(shapes, contacts, world, contact):
         return HAS_CONTACTS | HAS_OTHER_CONTACTS
     gap = contacts.contact_distance[world, contact] + settings.contact_slop
-    if contacts.contact_impulse[world, contact][3] < HOLDS or wp.abs(gap) > SETTLED:
+    if contacts.contact_warm_start[world, contact] < HOLDS or wp.abs(gap) > SETTLED:
         return HAS_CONTACTS | HAS_LOOSE_CONTACTS
     return HAS_CONTACTS
 

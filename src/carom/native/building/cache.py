@@ -1,17 +1,21 @@
-"""Where what is built is kept, so that nothing is built twice."""
+"""Where what is built is kept, so that nothing is built twice.
+
+Every start in a clone comes here to find its library: what only building needs is imported when that begins.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
+import stat
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
-from hashlib import blake2b
 from pathlib import Path
 
 MANIFEST = "manifest.json"
+_LIBRARIES = "libraries"
 _KEY_BYTES = 16
 _LOCK_SECONDS = 0.1
 
@@ -30,12 +34,35 @@ def cache_folder() -> Path:
         base = Path.home() / "Library" / "Caches"
     else:
         base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "carom" / "native"
+    usual = Path(base) / "carom" / "native"
+    return usual if _is_of_use(usual) else _temporary_folder()
+
+
+def _is_of_use(folder: Path) -> bool:
+    """Whether there can be a cache: in a folder that can be written, or has libraries already."""
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+    return os.access(folder, os.W_OK | os.X_OK) or (folder / _LIBRARIES).is_dir()
+
+
+@functools.cache
+def _temporary_folder() -> Path:
+    """The cache of who has no home to write to: one for all processes, unless others could write to it."""
+    import tempfile
+
+    if os.name != "nt":
+        folder = Path(tempfile.gettempdir()) / f"carom-native-{os.getuid()}"
+        with contextlib.suppress(OSError):
+            folder.mkdir(mode=0o700, exist_ok=True)
+            status = folder.lstat()
+            if stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and not status.st_mode & 0o022:
+                return folder
+    return Path(tempfile.mkdtemp(prefix="carom-native-"))
 
 
 def library_place(cache: Path, digest: str, name: str) -> Path:
     """Where a library is kept that was made from the sources of a digest; it need not be there yet."""
-    return cache / "libraries" / digest / name
+    return cache / _LIBRARIES / digest / name
 
 
 def is_there(library: Path) -> bool:
@@ -60,6 +87,8 @@ def content_key(*contents: bytes | str) -> str:
     Args:
         *contents: The contents, in an order that matters.
     """
+    from hashlib import blake2b
+
     digest = blake2b(digest_size=_KEY_BYTES)
     for content in contents:
         content = content.encode() if isinstance(content, str) else content
@@ -75,6 +104,8 @@ def work_folder(cache: Path) -> Iterator[Path]:
     Args:
         cache: The cache folder.
     """
+    import tempfile
+
     cache.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=cache, prefix="work-", ignore_cleanup_errors=True) as folder:
         yield Path(folder)

@@ -1,11 +1,11 @@
-"""Sliders and buttons of the panel."""
+"""Sliders, buttons, choices and boxes to check of the panel."""
 
 from __future__ import annotations
 
 from math import isfinite
 
 from carom.viewer.board import Board
-from carom.viewer.items import Slider
+from carom.viewer.items import Choice, Slider
 
 
 class Controls:
@@ -33,7 +33,8 @@ class Controls:
         """The user has moved a slider; it stops at its ends."""
         slider = self.sliders.get(number)
         if slider is not None and not slider.is_button and isfinite(value):
-            slider.value = min(max(value, slider.lower), slider.upper)
+            within = min(max(value, slider.lower), slider.upper)
+            slider.value = float(round(within)) if isinstance(slider, Choice) else within
             self._show(number, slider)
 
     def press(self, number: int) -> None:
@@ -44,7 +45,7 @@ class Controls:
             self._show(number, slider)
 
     def _show(self, number: int, slider: Slider) -> None:
-        header = {
+        header: dict[str, object] = {
             "type": "slider",
             "slider": number,
             "name": slider.name,
@@ -53,4 +54,6 @@ class Controls:
             "upper": slider.upper,
             "value": slider.value,
         }
+        if isinstance(slider, Choice):
+            header["options"] = slider.options
         self._board.put(("slider", number), header)

@@ -4,9 +4,11 @@ import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
 import { Grasp, pick } from "./view/picking.js";
+import { Handles, Hands } from "./view/handles.js";
+import { Help } from "./panel/help.js";
 import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
-import { Labels, labelJoints } from "./view/labels.js";
+import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
@@ -20,6 +22,7 @@ import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
 import { Timeline } from "./time/timeline.js";
 import { Toggles } from "./panel/toggles.js";
+import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
 
 /** Simulated time after which the view is no longer moved to bodies that come [s]. */
@@ -43,7 +46,8 @@ export class App {
     this.player = new Player(this.history, (header, payload) => this.show(header, payload));
     this.drawings = new Drawings(this.renderer.gl, labels);
     this.labels = new Labels(labels);
-    this.overlays = new Overlays(this.scene, this.options, this.readings);
+    this.handles = new Handles(this.camera, send);
+    this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles);
     this.panel = new Panel(send, this.options);
     this.toggles = new Toggles(this.options, () => this.optionsChanged());
     this.timeline = new Timeline(this.player, send);
@@ -52,9 +56,12 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
     this.previews = new Previews();
     this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), say);
+    this.help = new Help();
     this.keys = new Keys(this);
+    this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);
     this.bindMouse();
     this.bodies.selectionChanged = (body, link) => this.select(body, link);
+    this.bodies.changed = () => this.changed();
     this.saving.changed = () => this.changed();
     this.saving.filming = (filming) => {
       this.renderer.pace.hold(filming);
@@ -74,7 +81,8 @@ export class App {
   bindMouse() {
     const pointer = new Pointer(this.canvas, this.camera, this.send, () => this.cameraMoved());
     pointer.hoverChanged = () => this.options.names && this.changed();
-    pointer.grasp = new Grasp(this.scene, this.camera, this.options, this.send);
+    this.grasp = new Grasp(this.scene, this.camera, this.options, this.send);
+    pointer.grasp = new Hands(this.handles, this.grasp);
     pointer.clicked = (x, y) => {
       const found = pick(this.scene, this.options, this.camera.eye, this.camera.ray(x, y));
       this.bodies.select(found?.body ?? null, found?.link ?? null);
@@ -100,6 +108,10 @@ export class App {
       frame: (header, payload) => this.showFrame(header, payload),
       constraints: (header) => (overlays.constraints = header.constraints),
       "no constraints": () => (overlays.constraints = []),
+      handle: (header) => this.handles.take(header),
+      "no handle": (header) => this.handles.remove(header),
+      pyramid: (header) => (overlays.pyramid = header.corners),
+      "no pyramid": () => (overlays.pyramid = []),
       rays: (_, payload) => overlays.takeRays(payload),
       "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
       previews: (header, payload) => {
@@ -131,7 +143,7 @@ export class App {
   /** A simulation begins to tell everything from the beginning. */
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
-    for (const part of [this.overlays, this.timeline, this.plots, this.player]) part.clear();
+    for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.undecided = true;
@@ -282,12 +294,14 @@ export class App {
     const { scene, camera, options, drawings, pointer } = this;
     this.viewpoint.follow();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
-    const lines = this.overlays.draw(drawings, pointer.grasp.line(), named);
+    const lines = this.overlays.draw(drawings, this.grasp.line(), named);
     this.renderer.draw(scene, camera, options, { lines, clouds: drawings.clouds, signs: drawings.signs });
     drawings.placeLabels(scene, camera);
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
     if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
+    if (options.linkNames) labelLinks(this.labels, camera, scene);
+    this.handles.addLabels(this.labels);
     this.labels.end();
     this.toggles.showScales(this.overlays.scales);
     this.viewpoint.show();

@@ -1,6 +1,11 @@
-// The socket to the simulation. It comes back by itself when the simulation does.
+// The connection to the simulation: a socket or, where a proxy passes none, one request after the other. It comes
+// back by itself when the simulation does.
 
 const RETRY_MS = 700;
+/** How long a socket may take to open before requests are tried [ms]. */
+const PATIENCE_MS = 4000;
+/** Most characters of what is told in one request; servers take no longer lines than 8,192. */
+const MOST_TOLD = 6000;
 
 export class Connection {
   /**
@@ -10,27 +15,79 @@ export class Connection {
   constructor(receive, changed) {
     this.receive = receive;
     this.changed = changed;
+    this.folder = location.pathname.replace(/[^/]*$/, "");
     this.socket = null;
+    this.untold = null;
+    this.hadSocket = false;
     this.open();
   }
 
   open() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    const folder = location.pathname.replace(/[^/]*$/, "");
     // The address may hold a token, by which the page may come through a proxy or from another machine.
-    const socket = new WebSocket(`${scheme}://${location.host}${folder}socket${location.search}`);
+    const socket = new WebSocket(`${scheme}://${location.host}${this.folder}socket${location.search}`);
+    const tooLong = setTimeout(() => socket.close(), PATIENCE_MS);
+    let opened = false;
     socket.binaryType = "arraybuffer";
-    socket.onopen = () => this.changed(true);
+    socket.onopen = () => {
+      clearTimeout(tooLong);
+      opened = this.hadSocket = true;
+      this.changed(true);
+    };
     socket.onmessage = (event) => this.receive(...decoded(event.data));
-    socket.onclose = () => {
+    socket.onclose = async () => {
+      clearTimeout(tooLong);
+      if (!opened) await this.poll();
       this.changed(false);
       setTimeout(() => this.open(), RETRY_MS);
     };
     this.socket = socket;
   }
 
+  /** Asks again and again, until that does not work. */
+  async poll() {
+    if (this.hadSocket || !new URLSearchParams(location.search).has("token")) return;
+    const name = Math.random().toString(36).slice(2);
+    let number = null;
+    this.untold = [];
+    try {
+      for (;;) {
+        const answer = await fetch(`${this.folder}poll${location.search}&page=${name}${this.takeUntold()}`, { cache: "no-store" });
+        if (!answer.ok) break;
+        const buffer = await answer.arrayBuffer();
+        const view = new DataView(buffer);
+        const known = view.getUint32(0, true);
+        if (known !== number) this.changed(true);
+        number = known;
+        for (let at = 4; at < buffer.byteLength; ) {
+          const length = view.getUint32(at, true);
+          this.receive(...decoded(buffer.slice(at + 4, at + 4 + length)));
+          at += 4 + length;
+        }
+      }
+    } catch (problem) {
+      // The simulation has ended, or was never there.
+      if (!(problem instanceof TypeError)) throw problem;
+    } finally {
+      this.untold = null;
+    }
+  }
+
+  /** What is to be told, as part of an address: as much as fits. */
+  takeUntold() {
+    let text = "";
+    while (this.untold.length > 0) {
+      const next = `&told=${encodeURIComponent(this.untold[0])}`;
+      if (text && text.length + next.length > MOST_TOLD) break;
+      text += next;
+      this.untold.shift();
+    }
+    return text;
+  }
+
   send(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    else this.untold?.push(JSON.stringify(message));
   }
 }
 

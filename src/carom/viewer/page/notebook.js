@@ -1,7 +1,8 @@
 // Runs in a notebook, below the cell that shows the page: finds where the browser can reach the server of the
-// kernel's machine. It takes the first place that answers: a name of this machine, Jupyter's proxy, that of Colab.
+// kernel's machine. It takes the first place that answers: a name of this machine, the proxy of the editor that has
+// started the kernel, Jupyter's, that of Colab.
 
-(async ({ id, port, token, unreachable }) => {
+(async ({ id, port, token, proxy, unreachable }) => {
   const frame = document.getElementById(id);
   if (!frame) return;
   const query = `?token=${token}`;
@@ -10,6 +11,7 @@
   const places = [];
   const onThisMachine = /^(localhost|127\.0\.0\.1|\[::1\]|)$/.test(location.hostname);
   if (onThisMachine || location.protocol === "vscode-webview:") places.push(`http://127.0.0.1:${port}/`);
+  if (proxy) places.push(proxy);
   if (base) places.push(new URL(`${base.replace(/\/?$/, "/")}proxy/${port}/`, location.href).href);
   const colab = globalThis.google?.colab?.kernel;
   if (colab) places.push((await colab.proxyPort(port, { cache: true })).replace(/\/?$/, "/"));

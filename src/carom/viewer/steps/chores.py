@@ -42,4 +42,4 @@ class Chores:
         try:
             chore()
         except Exception:
-            _log.exception("What a page asked for could not be done.")
+            _log.exception("A request from the page has failed.")

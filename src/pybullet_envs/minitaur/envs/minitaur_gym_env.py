@@ -13,8 +13,6 @@ from pybullet_envs.env_bases import Place
 from pybullet_envs.minitaur.envs.env_randomizer_base import EnvRandomizerBase
 from pybullet_envs.minitaur.envs.minitaur import SENSOR_NOISE_STDDEV, Minitaur
 from pybullet_envs.minitaur.envs.minitaur_derpy import MinitaurDerpy
-from pybullet_envs.minitaur.envs.minitaur_logging import MinitaurLogging, update_episode_proto
-from pybullet_envs.minitaur.envs.minitaur_logging_pb2 import MinitaurEpisode
 from pybullet_envs.minitaur.envs.minitaur_rainbow_dash import MinitaurRainbowDash
 from pybullet_envs.minitaur_env_bases import MinitaurEnvBase, Step
 
@@ -116,7 +114,8 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
             env_randomizer: What changes the robot at each `reset`, and disturbs it: one or several.
             forward_reward_cap: The most that a step's way forward counts [m].
             reflection: Whether the ground reflects; pictures here have no reflections.
-            log_path: A folder for logs of the episodes; none are written where not given.
+            log_path: A folder for logs of the episodes, for which `protobuf` is needed; none are written
+                where not given.
             render_mode: `human`, `rgb_array` or none.
 
         Raises:
@@ -163,9 +162,14 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         elif env_randomizer is not None:
             self._env_randomizers.append(env_randomizer)
         self._log_path = log_path
-        self.logging = MinitaurLogging(log_path)
         self._num_steps_to_log = num_steps_to_log
-        self._episode = MinitaurEpisode()
+        self.logging: Any = None
+        self._episode: Any = None
+        if log_path is not None:
+            # Logs alone need protobuf.
+            from pybullet_envs.minitaur.envs.minitaur_logging import MinitaurLogging
+
+            self.logging = MinitaurLogging(log_path)
         self._set_spaces(NUM_MOTORS, self._action_bound, self._get_observation_upper_bound())
 
     @property
@@ -288,7 +292,9 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         self.minitaur.Step(commands, self._randomize_sub_step if self._env_randomizers else None)
         reward = self._reward()
         ended = self._termination()
-        if self._log_path is not None:
+        if self._episode is not None:
+            from pybullet_envs.minitaur.envs.minitaur_logging import update_episode_proto
+
             update_episode_proto(self._episode, self.minitaur, commands, self._env_step_counter)
         self._env_step_counter += 1
         if ended:
@@ -309,9 +315,14 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         super().close()
 
     def _save_log(self) -> None:
-        if self._log_path is not None and self._env_step_counter > 0:
+        if self.logging is None:
+            return
+        from pybullet_envs.minitaur.envs.minitaur_logging import MinitaurEpisode, preallocate_episode_proto
+
+        if self._env_step_counter > 0:
             self.logging.save_episode(self._episode)
-        self._episode = MinitaurEpisode.of_steps(0 if self._log_path is None else self._num_steps_to_log)
+        self._episode = MinitaurEpisode()
+        preallocate_episode_proto(self._episode, self._num_steps_to_log)
 
     def _reward(self) -> float:
         forward, aside, _ = np.subtract(self.minitaur.GetBasePosition(), self._last_base_position)

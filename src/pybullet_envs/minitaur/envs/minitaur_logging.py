@@ -7,21 +7,23 @@ import os
 from datetime import datetime
 from typing import Any
 
-from pybullet_envs.minitaur.envs.minitaur_logging_pb2 import (
-    MinitaurEpisode,
-    MinitaurMotorState,
-    MinitaurStateAction,
-    Timestamp,
-    Vector3d,
-)
+from pybullet_envs.minitaur.envs.minitaur_logging_pb2 import MinitaurEpisode
+
+NUM_MOTORS = 8
 
 
-def preallocate_episode_proto(episode_proto: MinitaurEpisode, max_num_steps: int) -> None:
-    """Makes room for so many steps at the end of an episode."""
-    episode_proto.state_action.extend(MinitaurEpisode.of_steps(max_num_steps).state_action)
+def preallocate_episode_proto(episode_proto: Any, max_num_steps: int) -> None:
+    """Makes room for so many steps at the end of an episode, a `MinitaurEpisode`."""
+    for _ in range(max_num_steps):
+        step = episode_proto.state_action.add()
+        # In PyBullet's logs these are there where nothing is known yet, and have no length.
+        for name in ("time", "base_position", "base_orientation", "base_angular_vel"):
+            getattr(step, name).SetInParent()
+        for _ in range(NUM_MOTORS):
+            step.motor_states.add()
 
 
-def update_episode_proto(episode_proto: MinitaurEpisode, minitaur: Any, action: Any, step: int) -> None:
+def update_episode_proto(episode_proto: Any, minitaur: Any, action: Any, step: int) -> None:
     """Notes a step of an episode.
 
     Args:
@@ -36,7 +38,16 @@ def update_episode_proto(episode_proto: MinitaurEpisode, minitaur: Any, action: 
             "%dth step is not recorded in the logging since only %d steps were pre-allocated.", step, room
         )
         return
+    log = episode_proto.state_action[step]
     seconds = minitaur.GetTimeSinceReset()
+    log.info_valid = minitaur.IsObservationValid()
+    log.time.seconds, log.time.nanos = int(seconds), int(seconds % 1 * 1e9)
+    for vector, numbers in (
+        (log.base_position, minitaur.GetBasePosition()),
+        (log.base_orientation, minitaur.GetBaseRollPitchYaw()),
+        (log.base_angular_vel, minitaur.GetBaseRollPitchYawRate()),
+    ):
+        vector.x, vector.y, vector.z = map(float, numbers)
     motors = zip(
         minitaur.GetMotorAngles(),
         minitaur.GetMotorVelocities(),
@@ -44,14 +55,8 @@ def update_episode_proto(episode_proto: MinitaurEpisode, minitaur: Any, action: 
         action,
         strict=True,
     )
-    episode_proto.state_action[step] = MinitaurStateAction(
-        time=Timestamp(int(seconds), int(seconds % 1 * 1e9)),
-        base_position=Vector3d(*minitaur.GetBasePosition()),
-        base_orientation=Vector3d(*minitaur.GetBaseRollPitchYaw()),
-        base_angular_vel=Vector3d(*minitaur.GetBaseRollPitchYawRate()),
-        motor_states=[MinitaurMotorState(*map(float, motor)) for motor in motors],
-        info_valid=minitaur.IsObservationValid(),
-    )
+    for state, numbers in zip(log.motor_states, motors, strict=True):
+        state.angle, state.velocity, state.torque, state.action = map(float, numbers)
 
 
 class MinitaurLogging:
@@ -61,7 +66,7 @@ class MinitaurLogging:
         """Takes the folder, which is made when it is needed; without one nothing is written."""
         self._log_path = log_path
 
-    def save_episode(self, episode_proto: MinitaurEpisode) -> str | None:
+    def save_episode(self, episode_proto: Any) -> str | None:
         """Writes an episode; tells the file, whose name has the time, or the folder if there is nothing."""
         if not self._log_path or not episode_proto.state_action:
             return self._log_path
@@ -71,13 +76,11 @@ class MinitaurLogging:
             log.write(episode_proto.SerializeToString())
         return file
 
-    def restore_episode(self, log_path: str) -> MinitaurEpisode:
-        """Reads an episode from a file.
+    def restore_episode(self, log_path: str) -> Any:
+        """Reads a `MinitaurEpisode` from a file.
 
         Raises:
-            ValueError: It is no log.
+            google.protobuf.message.DecodeError: It is no log.
         """
-        episode = MinitaurEpisode()
         with open(log_path, "rb") as log:
-            episode.ParseFromString(log.read())
-        return episode
+            return MinitaurEpisode.FromString(log.read())

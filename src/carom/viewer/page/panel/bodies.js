@@ -23,6 +23,8 @@ export class Bodies {
     this.known = "";
     /** Called with body and link (or null) once another one is selected. */
     this.selectionChanged = () => {};
+    /** Called once a body has been hidden or shown. */
+    this.changed = () => {};
   }
 
   /** Lists the bodies there are. */
@@ -37,15 +39,28 @@ export class Bodies {
         const button = Object.assign(document.createElement("button"), { textContent: `${body}  ${name}` });
         button.dataset.body = body;
         button.addEventListener("click", () => this.select(body === this.selected ? null : body));
-        return button;
+        const row = document.createElement("div");
+        row.append(button, this.eye(body, name));
+        return row;
       }),
     );
     if (this.selected !== null && !this.scene.bodies.has(this.selected)) this.select(null);
     else this.mark();
   }
 
+  /** The switch that hides a body. */
+  eye(body, name) {
+    const eye = Object.assign(document.createElement("input"), { type: "checkbox", title: `Show ${name} (body ${body})` });
+    eye.checked = !this.scene.hidden.has(body);
+    eye.addEventListener("change", () => {
+      this.scene.setHidden(body, !eye.checked);
+      this.changed();
+    });
+    return eye;
+  }
+
   mark() {
-    for (const button of this.list.children) button.classList.toggle("on", Number(button.dataset.body) === this.selected);
+    for (const button of this.list.querySelectorAll("button")) button.classList.toggle("on", Number(button.dataset.body) === this.selected);
   }
 
   select(body, link = null) {
@@ -64,7 +79,10 @@ export class Bodies {
     if (!body) return;
     const title = Object.assign(document.createElement("h2"), { textContent: `${body.name} (body ${body.body})` });
     this.facts = document.createElement("dl");
-    this.card.append(title, this.facts);
+    const copy = Object.assign(document.createElement("button"), { textContent: "Copy state", className: "copy" });
+    copy.title = "Copy pose and joint positions as calls of resetBasePositionAndOrientation and resetJointState";
+    copy.addEventListener("click", () => this.copy());
+    this.card.append(title, this.facts, copy);
     body.links.forEach((link, index) => {
       if (MOVABLE.test(link.kind ?? "")) this.card.append(this.jointSlider(body.body, index - 1, link));
     });
@@ -117,6 +135,21 @@ export class Bodies {
       );
     }
     for (const [key, slider] of this.sliders) this.showJoint(slider, this.readings.joints.get(key));
+  }
+
+  /** Copies the state of the selected body as calls that bring it back. */
+  copy() {
+    const body = this.selected;
+    const pose = this.scene.inertialPose(body, 0);
+    if (!pose) return;
+    const list = (values) => `[${values.map((value) => Number(value.toFixed(6))).join(", ")}]`;
+    const calls = [`p.resetBasePositionAndOrientation(${body}, ${list(pose.position)}, ${list(pose.orientation)})`];
+    for (const [key, { position, velocity }] of this.readings.joints) {
+      const [owner, joint] = key.split(",").map(Number);
+      if (owner !== body || !this.sliders.has(key)) continue;
+      calls.push(`p.resetJointState(${body}, ${joint}, ${Number(position.toFixed(6))}, ${Number(velocity.toFixed(6))})`);
+    }
+    navigator.clipboard?.writeText(calls.join("\n")).catch(() => {});
   }
 
   showJoint(slider, reading) {

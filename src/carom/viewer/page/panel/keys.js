@@ -26,6 +26,7 @@ export class Keys {
       o: () => app.send({ type: "step" }),
       p: () => app.send({ type: "profile", running: true }),
       F1: () => app.saving.toggleFilm(),
+      "?": () => app.help.toggle(),
     };
     window.addEventListener("keydown", (event) => this.down(event));
     window.addEventListener("keyup", (event) => this.up(event));
@@ -41,6 +42,8 @@ export class Keys {
     const onControl = element?.matches("input, button, summary");
     if (KEPT_FROM_THE_BROWSER.test(key) && !command && !onControl) event.preventDefault();
     if (event.repeat) return;
+    // Whoever reads the list closes that, and not the simulation.
+    if (key === "Escape" && this.app.help.open) return this.app.help.toggle();
     this.app.send({ type: "key", key, code: event.code, down: true });
     if (!this.app.options.shortcuts || command || event.altKey) return;
     const name = SHORTCUTS[key];

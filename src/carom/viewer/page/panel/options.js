@@ -45,6 +45,12 @@ export class Options {
     this.inertias = false;
     this.constraints = false;
     this.rays = false;
+    this.cameras = false;
+    this.linkNames = false;
+    this.skeleton = false;
+    this.trail = false;
+    this.linkColours = false;
+    this.depth = false;
     this.yUp = false;
     this.background = null;
     this.lightPosition = [-3, -2.2, 6];
@@ -59,6 +65,11 @@ export class Options {
   /** Whether shapes are drawn: those that collide, or those that are there to be seen. */
   shows(collision) {
     return collision === this.collisions && (collision || this.visuals);
+  }
+
+  /** Whether surfaces have plain colours that mean something, and no light. */
+  get flat() {
+    return !this.wireframe && (this.linkColours || this.depth);
   }
 
   /** What frames have to tell for what is shown. */

@@ -73,7 +73,7 @@ export class Panel {
   addSlider(message) {
     const known = this.controls.get(message.slider);
     if (known) known.show(message);
-    else this.controls.set(message.slider, message.button ? this.makeButton(message) : this.makeSlider(message));
+    else this.controls.set(message.slider, this.makeControl(message));
   }
 
   removeSlider({ slider }) {
@@ -83,6 +83,36 @@ export class Panel {
 
   clear() {
     for (const slider of [...this.controls.keys()]) this.removeSlider({ slider });
+  }
+
+  makeControl(message) {
+    if (message.button) return this.makeButton(message);
+    if (message.options) return message.options.length ? this.makeChoice(message) : this.makeBox(message);
+    return this.makeSlider(message);
+  }
+
+  makeChoice(message) {
+    const select = document.createElement("select");
+    select.append(...message.options.map((text, number) => new Option(text, number)));
+    select.addEventListener("change", () => this.send({ type: "slider", slider: message.slider, value: Number(select.value) }));
+    return this.labelled("row pair", select, message, ({ value }) => (select.value = value));
+  }
+
+  makeBox(message) {
+    const box = Object.assign(document.createElement("input"), { type: "checkbox" });
+    box.addEventListener("change", () => this.send({ type: "slider", slider: message.slider, value: Number(box.checked) }));
+    return this.labelled("check", box, message, ({ value }) => (box.checked = value !== 0));
+  }
+
+  /** A control with its name around it. */
+  labelled(className, control, message, show) {
+    const label = Object.assign(document.createElement("label"), { className });
+    label.append(...(className === "check" ? [control, message.name] : [message.name, control]));
+    const element = Object.assign(document.createElement("div"), { className: "slider" });
+    element.append(label);
+    this.sliders.append(element);
+    show(message);
+    return { element, show };
   }
 
   makeButton({ slider, name }) {

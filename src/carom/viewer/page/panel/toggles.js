@@ -11,7 +11,11 @@ const GROUPS = [
     ["grid", "Grid", ""],
     ["frames", "Link frames", "J"],
     ["bounds", "Bounds", "A"],
-    ["names", "Names", ""],
+    ["names", "Name at mouse", ""],
+    ["linkNames", "Link names", ""],
+    ["linkColours", "Colour by link", ""],
+    ["depth", "Depth", ""],
+    ["cameras", "Cameras", ""],
   ],
   [
     "Contacts",
@@ -29,6 +33,8 @@ const GROUPS = [
     ["constraints", "Constraints", "K"],
     ["masses", "Centres of mass", ""],
     ["inertias", "Inertia boxes", ""],
+    ["skeleton", "Skeleton", ""],
+    ["trail", "Trail of selected", ""],
   ],
 ];
 

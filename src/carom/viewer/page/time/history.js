@@ -11,7 +11,7 @@ const LEAST_INTERVAL = 1 / 60;
 /** How many frames pass between two looks at the memory. */
 const TIDY_EVERY = 64;
 /** Kinds of messages that belong to a moment; others say how things are now. */
-const SINGLE = new Set(["layout", "constraints", "rays"]);
+const SINGLE = new Set(["layout", "constraints", "rays", "pyramid"]);
 const NUMBERED = { body: "body", mesh: "mesh", texture: "texture", slider: "slider", dynamics: "dynamics", line: "item", text: "item", points: "item" };
 
 export class History {

@@ -35,7 +35,9 @@ export function boundsOfBody(scene, body, collisions, picked = () => true) {
 /** The same around everything but floors. */
 export function boundsOfScene(scene, collisions) {
   const box = emptyBox();
-  for (const body of scene.bodies.values()) boundsOfBody(scene, body, collisions)?.forEach((corner) => extend(box, corner));
+  for (const body of scene.bodies.values()) {
+    if (!scene.hidden.has(body.body)) boundsOfBody(scene, body, collisions)?.forEach((corner) => extend(box, corner));
+  }
   return box[0][0] <= box[1][0] ? box : null;
 }
 

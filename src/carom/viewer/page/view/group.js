@@ -40,20 +40,22 @@ export class Group {
   fill(scene, options, eye, focal) {
     const [levels, several] = [this.levels, this.levels.length > 1];
     // Where there is one mesh it does not matter who looks.
-    const filledFor = [scene.version, options.wireframe, options.version, ...(several ? [...eye, focal] : [])].join();
+    const looks = [options.wireframe, options.linkColours, options.version];
+    const filledFor = [scene.version, ...looks, ...(several ? [...eye, focal] : [])].join();
     if (this.filledFor === filledFor) return;
     this.filledFor = filledFor;
     for (const level of levels) level.begin(this.members.length);
     for (const { body, shape, radius } of this.members) {
       const at = scene.poseAt(body.body, shape.link);
-      if (at < 0) continue;
+      if (at < 0 || scene.hidden.has(body.body)) continue;
       let level = 0;
       if (several) {
         const distance = Math.hypot(scene.poses[at] - eye[0], scene.poses[at + 1] - eye[1], scene.poses[at + 2] - eye[2]);
         const pixels = (focal * radius) / Math.max(distance - radius, 1e-6);
         while (level + 1 < levels.length && pixels <= levels[level + 1].reach) level++;
       }
-      const colour = (options.wireframe && options.wireColour(body.body, shape.link)) || shape.rgba;
+      const wire = options.wireframe && options.wireColour(body.body, shape.link);
+      const colour = wire || (options.linkColours ? linkColour(body.body, shape.link) : shape.rgba);
       levels[level].push(scene.poses, at, shape, colour);
     }
     for (const level of levels) level.end();
@@ -73,4 +75,14 @@ export class Group {
   dispose() {
     for (const level of this.levels) level.dispose();
   }
+}
+
+/** Turns the hue from one number to the next, so that neighbours get colours far apart: the golden ratio. */
+const HUE_STEP = 0.61803398875;
+
+/** A colour of its own for each link. */
+export function linkColour(body, link) {
+  const hue = ((body * 17 + link + 1) * HUE_STEP) % 1;
+  const part = (turn) => 0.35 + 0.6 * Math.min(Math.max(Math.abs(((hue + turn) % 1) * 6 - 3) - 1, 0), 1);
+  return [part(0), part(1 / 3), part(2 / 3), 1];
 }

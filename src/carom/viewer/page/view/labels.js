@@ -11,13 +11,13 @@ export class Labels {
     this.used = 0;
   }
 
-  add(camera, point, text) {
+  add(camera, point, text, down = -8) {
     const pixel = camera.pixel(point);
     if (!pixel) return;
     const span = (this.spans[this.used++] ??= this.make());
     span.hidden = false;
     if (span.textContent !== text) span.textContent = text;
-    span.style.transform = `translate(${pixel[0] + 10}px, ${pixel[1] - 8}px)`;
+    span.style.transform = `translate(${pixel[0] + 10}px, ${pixel[1] + down}px)`;
   }
 
   end() {
@@ -28,6 +28,21 @@ export class Labels {
     const span = Object.assign(document.createElement("span"), { className: "reading" });
     this.overlay.append(span);
     return span;
+  }
+}
+
+/** Names of more links than these would cover each other. */
+const MOST_NAMES = 300;
+
+/** Puts the name of each link beside its frame, below the position of its joint. */
+export function labelLinks(labels, camera, scene) {
+  let room = MOST_NAMES;
+  for (const { body, name, links } of scene.bodies.values()) {
+    if (scene.hidden.has(body)) continue;
+    for (let link = 0; link < links.length && room > 0; link++, room--) {
+      const pose = scene.linkPose(body, link);
+      if (pose) labels.add(camera, pose.position, links[link].name || name, 10);
+    }
   }
 }
 

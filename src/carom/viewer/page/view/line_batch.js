@@ -1,4 +1,4 @@
-// Lines on the graphics card: all of a picture with one call, a rectangle of four corners each.
+// Lines on the graphics card: all of a picture at once, a rectangle of four corners each.
 
 import { LINE_FLOATS } from "./lines.js";
 
@@ -26,8 +26,8 @@ export class LineBatch {
     gl.bindVertexArray(null);
   }
 
-  /** Draws lines with the present program. */
-  draw({ used: numbers, count }) {
+  /** Draws lines with the present program: those inside of bodies over all that is there. */
+  draw({ used: numbers, count, outside }) {
     const gl = this.gl;
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
@@ -39,7 +39,16 @@ export class LineBatch {
       }
     }
     gl.bufferData(gl.ARRAY_BUFFER, this.wide.subarray(0, to), gl.DYNAMIC_DRAW);
-    gl.drawElements(gl.TRIANGLES, count * TRIANGLES.length, gl.UNSIGNED_INT, 0);
+    if (outside > 0) this.drawPart(0, outside);
+    if (outside === count) return;
+    gl.disable(gl.DEPTH_TEST);
+    this.drawPart(outside, count);
+    gl.enable(gl.DEPTH_TEST);
+  }
+
+  drawPart(from, to) {
+    const [first, length] = [from * TRIANGLES.length, (to - from) * TRIANGLES.length];
+    this.gl.drawElements(this.gl.TRIANGLES, length, this.gl.UNSIGNED_INT, first * Uint32Array.BYTES_PER_ELEMENT);
   }
 
   makeRoom(lines) {

@@ -13,10 +13,22 @@ export class Lines {
   constructor() {
     this.data = new Float32Array(FIRST_ROOM * LINE_FLOATS);
     this.count = 0;
+    this.seenThrough = null;
   }
 
   clear() {
     this.count = 0;
+    this.seenThrough = null;
+  }
+
+  /** Lines that come from now on are inside of bodies, and are seen through them. */
+  goInside() {
+    this.seenThrough = this.count;
+  }
+
+  /** How many lines, the first ones, are hidden by what is before them. */
+  get outside() {
+    return this.seenThrough ?? this.count;
   }
 
   /** The numbers of all lines. */

@@ -25,13 +25,20 @@ const TIE = [0.1, 0.65, 0.6];
 const HIT = [0.95, 0.25, 0.15];
 const MISS = [0.2, 0.75, 0.3];
 const BEYOND = [0.6, 0.65, 0.7];
+const CAMERA = [0.35, 0.3, 0.75];
+const BONE = [0.95, 0.75, 0.15];
+const TRAIL = [0.9, 0.3, 0.55];
 
 export class Overlays {
-  constructor(scene, options, readings) {
-    Object.assign(this, { scene, options, readings });
+  constructor(scene, options, readings, handles) {
+    Object.assign(this, { scene, options, readings, handles });
     this.lines = new Lines();
     this.constraints = [];
     this.rays = new Float32Array(0);
+    /** Four near and four far corners of what the script's camera sees; none if there is no camera. */
+    this.pyramid = [];
+    /** Places of what is selected, the newest last. */
+    this.trail = () => [];
     /** Body and link that are selected; link null for all of the body. */
     this.selection = null;
     /** What a metre of an arrow stands for: newtons and newton metres. */
@@ -41,6 +48,7 @@ export class Overlays {
   clear() {
     this.constraints = [];
     this.rays = new Float32Array(0);
+    this.pyramid = [];
     this.selection = null;
     this.scales = { force: 0, torque: 0 };
   }
@@ -64,16 +72,21 @@ export class Overlays {
     if (options.frames) this.eachLink((body, link) => this.addFrame(body.body, link));
     if (options.bounds) this.eachLink((body, link) => this.addBounds(boundsOfLink(scene, body, link, options.collisions), BOUNDS));
     this.addSelection();
-    this.addMasses();
     if (options.constraints) this.addConstraints();
     if (options.rays) this.addRays();
+    if (options.cameras) this.addCamera();
+    if (options.trail) this.addTrail();
     addContacts(this);
+    lines.goInside();
+    this.addMasses();
+    if (options.skeleton) this.addSkeleton();
     addJoints(this);
+    this.handles.addLines(lines);
     return lines;
   }
 
   eachLink(visit) {
-    for (const body of this.scene.bodies.values()) body.links.forEach((link, index) => visit(body, index, link));
+    for (const body of this.scene.bodies.values()) if (!this.scene.hidden.has(body.body)) body.links.forEach((link, index) => visit(body, index, link));
   }
 
   addFrame(body, link) {
@@ -120,6 +133,35 @@ export class Overlays {
       this.lines.line(a, b, TIE, 2.5);
       for (const end of [a, b]) this.lines.star(end, 0.02, TIE);
     }
+  }
+
+  /** A pyramid, with a mark where the image has its upper edge. */
+  addCamera() {
+    const [near, far] = [this.pyramid.slice(0, 4), this.pyramid.slice(4)];
+    if (far.length === 0) return;
+    for (let i = 0; i < 4; i++) {
+      this.lines.line(near[i], far[i], CAMERA, 2);
+      for (const corners of [near, far]) this.lines.line(corners[i], corners[(i + 1) % 4], CAMERA, 2);
+    }
+    const [right, left] = [far[2], far[3]];
+    const up = scale(add(far[3], scale(far[0], -1)), 0.3);
+    const tip = add(scale(add(left, right), 0.5), up);
+    for (const corner of [left, right]) this.lines.line(corner, tip, CAMERA, 2);
+  }
+
+  /** A line from each link to the one it hangs on. */
+  addSkeleton() {
+    this.eachLink((body, link, { parent }) => {
+      const [child, other] = [this.scene.linkPose(body.body, link), parent !== undefined && this.scene.linkPose(body.body, parent)];
+      if (!child) return;
+      this.lines.star(child.position, 0.012, BONE, 3);
+      if (other) this.lines.line(other.position, child.position, BONE, 3);
+    });
+  }
+
+  addTrail() {
+    const places = this.trail();
+    for (let i = 1; i < places.length; i++) this.lines.line(places[i - 1], places[i], TRAIL, 2);
   }
 
   addRays() {

@@ -8,6 +8,7 @@ export function pick(scene, options, eye, direction) {
   for (const group of scene.groups) {
     if (!options.shows(group.collision)) continue;
     for (const { body, shape } of group.members) {
+      if (scene.hidden.has(body.body)) continue;
       const pose = scene.inertialPose(body.body, shape.link);
       if (!pose) continue;
       const back = inverse(pose.orientation);

@@ -72,11 +72,12 @@ export class Renderer {
     const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
     // Where the processor draws, what moves is drawn without what is hardly missed.
     const detailed = !this.byProcessor || this.pace.still;
-    const shadows = options.shadows && !options.wireframe;
+    const { flat } = options;
+    const shadows = options.shadows && !options.wireframe && !flat;
     if (shadows) this.sizeShadows(options, detailed);
     const light = this.light(camera, options);
     if (shadows) this.drawShadows(shown, light);
-    const reflecting = options.reflections && !options.wireframe;
+    const reflecting = options.reflections && !options.wireframe && !flat;
     const shading = {
       toLight: light.direction,
       lightCamera: light.matrix,
@@ -84,7 +85,8 @@ export class Renderer {
       shadowTexel: 1 / this.map.size,
       shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
     };
-    const features = [shadows && "SHADOWED", detailed && "SOFT", detailed && "GLOSSY"].filter(Boolean);
+    const lit = [shadows && "SHADOWED", detailed && "SOFT", detailed && "GLOSSY"];
+    const features = flat ? ["FLAT", options.depth && "DEPTH"].filter(Boolean) : lit.filter(Boolean);
     if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading, features);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
@@ -95,10 +97,11 @@ export class Renderer {
     else {
       if (reflecting) features.push("MIRRORING");
       this.surfaces.begin(features, { ...common, ...shading, reflectionSize: [this.canvas.width, this.canvas.height] });
+      this.plain = flat;
       this.drawSurfaces(shown, scene, reflecting ? this.reflection.texture : null);
     }
     this.drawSky(camera, common);
-    if (options.grid) this.drawGrid(camera, common);
+    if (options.grid && !flat) this.drawGrid(camera, common);
     this.drawSigns(drawings.signs, scene, camera);
     if (!options.wireframe) this.drawClear(shown, scene, camera);
     this.drawPoints(drawings.clouds, scene, camera);
@@ -111,8 +114,9 @@ export class Renderer {
     return {
       eye: camera.eye,
       upward: camera.yUp ? [0, 1, 0] : [0, 0, 1],
-      backdrop: options.background ?? [0, 0, 0],
-      plainBackdrop: options.background ? 1 : 0,
+      backdrop: options.flat ? [1, 1, 1] : (options.background ?? [0, 0, 0]),
+      plainBackdrop: options.flat || options.background ? 1 : 0,
+      focus: camera.distance,
       haze: Math.max(HAZE, camera.distance * HAZE_BY_DISTANCE),
       camera: camera.matrix,
     };
@@ -208,7 +212,7 @@ export class Renderer {
   drawSolid(group, scene) {
     const gl = this.gl;
     const texture = scene.textures.get(group.texture);
-    this.surfaces.use(texture !== undefined);
+    this.surfaces.use(texture !== undefined && !this.plain);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, texture ?? null);
     this.drawGroup(group);

@@ -27,6 +27,8 @@ export class Scene {
     this.textures = new Map();
     this.bodies = new Map();
     this.dynamics = new Map();
+    /** Bodies that the user does not want to see. */
+    this.hidden = new Set();
     this.layout = { layout: 0, bodies: [] };
     this.groups = [];
     this.stale = true;
@@ -77,8 +79,16 @@ export class Scene {
 
   removeBody({ body }) {
     this.bodies.delete(body);
+    this.hidden.delete(body);
     this.starts.delete(body);
     this.stale = true;
+  }
+
+  /** Shows a body, or hides it. */
+  setHidden(body, hidden) {
+    if (hidden) this.hidden.add(body);
+    else this.hidden.delete(body);
+    this.version += 1;
   }
 
   /** Takes over where all links are; a frame that was made for other bodies is left alone. */

@@ -55,6 +55,8 @@ vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * positio
  *   GLOSSY: light is reflected as by something smooth
  *   ABOVE_GROUND: only what is above the ground is drawn
  *   MIRRORING: the ground shows the picture of what it mirrors
+ *   FLAT: it has its colour and no light
+ *   DEPTH: it is the brighter the farther it is
  */
 export function surface(features) {
   const head = ["#version 300 es", ...features.map((name) => `#define ${name}`)].join("\n");
@@ -100,6 +102,8 @@ uniform float shadowBias;
 // What the ground mirrors, and the size of that picture in pixels.
 uniform sampler2D reflection;
 uniform vec2 reflectionSize;
+// How far away that is what the camera turns about.
+uniform float focus;
 out vec4 result;
 
 float lit(float slope) {
@@ -121,6 +125,15 @@ float lit(float slope) {
 
 void main() {
   float level = dot(point, upward);
+#ifdef DEPTH
+  // What the camera turns about is grey; the horizon is white.
+  result = vec4(vec3(1.0 - exp(-0.7 * length(point - eye) / focus)), 1.0);
+  return;
+#endif
+#ifdef FLAT
+  result = vec4(colour.rgb, 1.0);
+  return;
+#endif
 #ifdef ABOVE_GROUND
   if (level < 0.002) discard;
 #endif

@@ -1,0 +1,108 @@
+"""What links get to know of soft bodies besides their pushes: who wakes up, and what sensors feel."""
+
+import warp as wp
+
+from carom.kernels.solver.activity import is_asleep
+from carom.kernels.structs import Model, Scratch, Settings, Shapes, SoftModel, SoftWork, State
+from carom.kernels.types import Int32, Vector3, func, real
+from carom.layouts.soft import ANCHORS, BODIES, TOUCHES_PER_NODE
+
+
+@func
+def wake(model: Model, state: State, world: Int32, tree: Int32):
+    """Have a tree that is asleep take part from the next substep on, unless it may not wake up."""
+    if model.tree[tree].can_wake != 0:
+        state.tree_wants_sleep[world, tree] = 0
+        state.tree_idle_time[world, tree] = 0.0
+
+
+@func
+def wake_touched(
+    model: Model,
+    state: State,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+    body: Int32,
+    node: Int32,
+    touch: Int32,
+    tree: Int32,
+    dt: real,
+):
+    """Wake a tree up that a node reaches within a substep at a speed at which the tree would not sleep.
+
+    Soft bodies at rest let what they touch sleep.
+    """
+    if tree >= 0 and model.tree[tree].dof_count > 0 and is_asleep(state, world, tree):
+        velocity = state.node_velocity[world, node]
+        reach = soft.soft[body].margin + wp.length(velocity) * dt
+        if work.touch_offset[world, touch] <= reach:
+            if wp.dot(velocity, velocity) >= model.tree[tree].sleep_threshold:
+                wake(model, state, world, tree)
+
+
+@func
+def wake_held(model: Model, state: State, soft: SoftModel, world: Int32):
+    """Wake trees up that hold nodes of soft bodies in motion."""
+    for anchor in range(soft.count_soft[ANCHORS]):
+        tree = soft.anchor[anchor].tree
+        if model.tree[tree].dof_count > 0 and is_asleep(state, world, tree):
+            for body in range(soft.count_soft[BODIES]):
+                first = soft.soft[body].first_node
+                last = first + soft.soft[body].node_count
+                if soft.anchor[anchor].node >= first and soft.anchor[anchor].node < last:
+                    for node in range(first, last):
+                        velocity = state.node_velocity[world, node]
+                        if wp.dot(velocity, velocity) >= model.tree[tree].sleep_threshold:
+                            wake(model, state, world, tree)
+
+
+@func
+def report_push(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    force: Vector3,
+):
+    """Add a force at a point of a link to what the sensors of its tree feel."""
+    if tree >= 0 and model.tree[tree].sensor_count > 0:
+        center = wp.transform_get_translation(state.link_pose[world, link])
+        scratch.link[world, link].constraint_force += force
+        scratch.link[world, link].constraint_torque += wp.cross(point - center, force)
+
+
+@func
+def report_pushes(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+):
+    """Report the pushes of a substep as forces: those on nodes, and on links with force-torque sensors."""
+    for body in range(soft.count_soft[BODIES]):
+        first = soft.soft[body].first_node
+        for node in range(first, first + soft.soft[body].node_count):
+            total = Vector3(0.0, 0.0, 0.0)
+            start = TOUCHES_PER_NODE * node
+            for touch in range(start, start + work.node_touches[world, node]):
+                force = work.touch_impulse[world, touch] / settings.time_step
+                total += force
+                shape = work.touch_shape[world, touch]
+                report_push(
+                    model, state, scratch, world, shapes.shape_tree[shape], shapes.shape_link[shape],
+                    work.touch_point[world, touch], -force,
+                )  # fmt: skip
+            state.node_push[world, node] = total
+    for anchor in range(soft.count_soft[ANCHORS]):
+        report_push(
+            model, state, scratch, world, soft.anchor[anchor].tree, soft.anchor[anchor].link,
+            work.anchor_point[world, anchor], -work.anchor_impulse[world, anchor] / settings.time_step,
+        )  # fmt: skip

@@ -1,0 +1,254 @@
+"""What queries find of soft bodies: their faces on the way of rays, and the nodes that touch shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.soft import TOUCHES_PER_NODE
+from carom.native.kernels import find_touches_kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.native.products import dots, length
+from carom.native.tables import ArrayTable
+from carom.queries.contact_search import ContactColumns
+from carom.queries.ray_cast import Points, RayHit
+
+if TYPE_CHECKING:
+    from carom.engine.contact_arrays import ContactArrays
+    from carom.model.soft_arrays import SoftRows
+
+_NOTHING: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_BASE = -1
+# The group that rays belong to, as shapes' masks see it.
+_RAY_GROUP = 1
+# Nodes touch up to this gap beyond their margin [m].
+_GAP = 1.0e-4
+# Rays by faces looked at at a time, for want of memory.
+_CHUNK = 1 << 20
+_TINY = 1.0e-300
+
+
+class SoftQueries:
+    """Questions about the soft bodies of a world.
+
+    Args:
+        structs: Structs by the name kernels give them.
+        contact_arrays: The shapes and the soft bodies.
+        state: The state of the world.
+        work: The workspace of soft bodies.
+        places: Body and link that each row of the link arrays stands for.
+        present_poses: `World.present_poses`.
+    """
+
+    def __init__(
+        self,
+        structs: KernelStructs,
+        contact_arrays: ContactArrays,
+        state: ArrayTable,
+        work: ArrayTable,
+        places: Sequence[tuple[int, int]],
+        present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
+    ) -> None:
+        self._structs = structs
+        self._soft = contact_arrays.soft
+        self._shapes = contact_arrays.shapes.table.numpy
+        self._state = state.numpy
+        self._work = work.numpy
+        self._places = places
+        self._present_poses = present_poses
+
+    @property
+    def any(self) -> bool:
+        """Whether there are soft bodies."""
+        return bool(self._soft.bodies)
+
+    @cached_property
+    def _find_touches(self) -> Launch:
+        return self._structs.launch(find_touches_kernel, world=0)
+
+    def _link_row(self, soft: SoftRows) -> int:
+        return soft.rows.first["link"]
+
+    def _nodes(self, soft: SoftRows) -> slice:
+        return slice(soft.first["node"], soft.first["node"] + soft.count["node"])
+
+    # Rays
+
+    def cast(self, starts: Points, ends: Points, mask: int) -> list[list[RayHit]]:
+        """All faces of soft bodies that each ray goes through, the nearest first.
+
+        Cloth is hit from both sides, solids from outside only: a ray that starts in one leaves it, as it
+        leaves shapes.
+
+        Args:
+            starts: Their starts in world axes [m], shape (n, 3).
+            ends: Their ends.
+            mask: Collision groups that are hit.
+        """
+        start = np.asarray(starts, dtype=np.float64).reshape(-1, 3)
+        way = np.asarray(ends, dtype=np.float64).reshape(-1, 3) - start
+        hits: list[list[RayHit]] = [[] for _ in range(len(start))]
+        for soft in self._soft.bodies:
+            link = self._link_row(soft)
+            if not (self._shapes["link_group"][link] & mask and self._shapes["link_mask"][link] & _RAY_GROUP):
+                continue
+            nodes = self._state["node_position"][0, self._nodes(soft)]
+            near = np.flatnonzero(_meets_box(start, way, nodes.min(axis=0), nodes.max(axis=0)))
+            corners = nodes[soft.spec.faces]
+            size = max(1, _CHUNK // max(1, len(corners)))
+            for at in range(0, len(near), size):
+                rays = near[at : at + size]
+                found = _crossings(start[rays], way[rays], corners, both_sides=not len(soft.spec.tetras))
+                for ray, fraction, normal in zip(*found, strict=True):
+                    number = int(rays[ray])
+                    x, y, z = (start[number] + fraction * way[number]).tolist()
+                    nx, ny, nz = normal.tolist()
+                    hits[number].append(
+                        (self._places[link][0], _BASE, float(fraction), (x, y, z), (nx, ny, nz))
+                    )
+        for of_ray in hits:
+            of_ray.sort(key=lambda hit: hit[2])
+        return hits
+
+    # Contacts
+
+    def contacts(self, body_a: int, link_a: int, body_b: int, link_b: int) -> ContactColumns:
+        """The nodes that touch shapes; the arguments are those of `Queries.contacts`.
+
+        The soft body is the first of the two unless the other one was asked for. A contact is at a node;
+        its distance is that to the surface less the margin, its forces are those of the last substep.
+        """
+        with self._present_poses():
+            self._find_touches()
+        rows = []
+        for soft in self._soft.bodies:
+            own = self._places[self._link_row(soft)][0]
+            for node, shape, distance, normal, force in self._touches(soft):
+                other, link = self._places[int(self._shapes["shape_link"][shape])]
+                a, b, sign = (own, _BASE), (other, link), 1.0
+                if body_a >= 0 and body_a == other and body_a != own:
+                    a, b, sign = b, a, -1.0
+                if _is_other(a, body_a, link_a) or _is_other(b, body_b, link_b):
+                    continue
+                place = self._state["node_position"][0, node]
+                ends = [place, place - (distance + soft.spec.margin) * normal]
+                on_a, on_b = ends if sign > 0.0 else ends[::-1]
+                along = float(dots(force, normal))
+                friction = force - along * normal
+                size = length(friction)
+                first = friction / size if size > 0.0 else _across(normal)
+                second = np.cross(normal, first)
+                rows.append(
+                    (a[0], b[0], a[1], b[1], _tuple(on_a), _tuple(on_b), _tuple(sign * normal), distance,
+                     along, size, _tuple(sign * first), 0.0, _tuple(sign * second))
+                )  # fmt: skip
+        return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
+
+    def _touches(self, soft: SoftRows) -> list[tuple[int, int, float, np.ndarray, np.ndarray]]:
+        """Node, shape, gap beyond the margin [m], normal towards the node, force on the node [N]."""
+        work, found = self._work, []
+        nodes = self._nodes(soft)
+        touching = np.flatnonzero(work["node_touches"][0, nodes]) + nodes.start
+        for node in touching.tolist():
+            first = TOUCHES_PER_NODE * node
+            rows = slice(first, first + int(work["node_touches"][0, node]))
+            gaps = work["touch_offset"][0, rows] - soft.spec.margin
+            normals = work["touch_normal"][0, rows]
+            push = self._state["node_push"][0, node]
+            along = dots(normals, push)
+            # Of several shapes the one that faces the force most gets all of it.
+            strongest = int(along.argmax())
+            for touch, gap in enumerate(gaps.tolist()):
+                force = push if touch == strongest and along[strongest] > 0.0 else np.zeros(3)
+                if gap <= _GAP or force.any():
+                    shape = int(work["touch_shape"][0, first + touch])
+                    found.append((node, shape, gap, normals[touch].copy(), force))
+        return found
+
+    # Bounds
+
+    def overlapping(self, lower: Sequence[float], upper: Sequence[float]) -> list[int]:
+        """Rows of the links that stand for soft bodies whose bounds, margins included, meet a box."""
+        found = []
+        for soft in self._soft.bodies:
+            nodes, margin = self._state["node_position"][0, self._nodes(soft)], soft.spec.margin
+            if (nodes.min(axis=0) - margin <= upper).all() and (nodes.max(axis=0) + margin >= lower).all():
+                found.append(self._link_row(soft))
+        return found
+
+
+def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separation: float) -> RayHit:
+    """The n-th of the hits of a ray, from 0.
+
+    Args:
+        rigid: Those on shapes, nearest first, as many as could matter.
+        soft: Those on soft bodies, nearest first.
+        number: n.
+        separation: Later hits on a soft body less than this fraction of the ray after one do not count.
+    """
+    last: dict[int, float] = {}
+    hits = [hit for hit in rigid if hit[0] >= 0]
+    for hit in soft:
+        if hit[0] not in last or hit[2] > last[hit[0]] + max(separation, 0.0):
+            hits.append(hit)
+            last[hit[0]] = hit[2]
+    hits.sort(key=lambda hit: hit[2])
+    return hits[number] if number < len(hits) else _NOTHING
+
+
+def _meets_box(start: np.ndarray, way: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """Whether each ray meets a box (the slab test)."""
+    # A ray along a slab has no crossing with it: its start is inside, or it misses.
+    step = np.where(np.abs(way) < _TINY, _TINY, way)
+    with np.errstate(over="ignore"):
+        enters, leaves = (lower - start) / step, (upper - start) / step
+    first, last = np.minimum(enters, leaves).max(axis=1), np.maximum(enters, leaves).min(axis=1)
+    return (first <= last) & (last >= 0.0) & (first <= 1.0)
+
+
+def _crossings(
+    start: np.ndarray, way: np.ndarray, corners: np.ndarray, *, both_sides: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where rays go through triangles (Möller and Trumbore, 1997).
+
+    Returns:
+        ((k,) rays; (k,) fractions; (k, 3) unit normals against them).
+    """
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    cross = np.cross(way[:, None], second[None])
+    determinant = (first[None] * cross).sum(axis=2)
+    # Positive where a ray comes from the side the face looks to.
+    usable = np.abs(determinant) > _TINY if both_sides else determinant > _TINY
+    scale = 1.0 / np.where(usable, determinant, 1.0)
+    offset = start[:, None] - corners[None, :, 0]
+    u = (offset * cross).sum(axis=2) * scale
+    turned = np.cross(offset, first[None])
+    v = (way[:, None] * turned).sum(axis=2) * scale
+    fraction = (second[None] * turned).sum(axis=2) * scale
+    hit = usable & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (fraction >= 0.0) & (fraction <= 1.0)
+    ray, face = np.nonzero(hit)
+    normal = np.cross(first, second)[face]
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal *= np.where(determinant[ray, face] > 0.0, 1.0, -1.0)[:, None]
+    return ray, fraction[ray, face], normal
+
+
+def _is_other(place: tuple[int, int], body: int, link: int) -> bool:
+    """Whether a body and link are not those asked for; negative bodies and links below -1 ask for any."""
+    return (body >= 0 and place[0] != body) or (link >= _BASE and place[1] != link)
+
+
+def _across(normal: np.ndarray) -> np.ndarray:
+    """Some unit vector across another one."""
+    aside = np.eye(3)[int(np.abs(normal).argmin())]
+    across = np.cross(normal, aside)
+    return across / length(across)
+
+
+def _tuple(vector: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return x, y, z

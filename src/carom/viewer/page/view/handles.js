@@ -1,0 +1,166 @@
+// Frames that scripts let the user move: arrows to shift them along their axes, knobs to turn them, a middle to carry
+// them in the plane that faces the viewer.
+
+import { add, dot, quaternionProduct, scale, subtract, turned } from "./maths.js";
+
+const AXES = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+const COLOURS = [
+  [0.86, 0.16, 0.14],
+  [0.13, 0.62, 0.22],
+  [0.16, 0.36, 0.86],
+];
+const MIDDLE = [0.95, 0.62, 0.1];
+/** Length of an arrow as part of the distance to the eye, and of a knob's arm as part of an arrow. */
+const REACH = 0.16;
+const ARM = 0.6;
+/** How near the mouse has to come to take hold of something [pixels]. */
+const NEAR = 14;
+
+export class Handles {
+  /**
+   * @param {Camera} camera
+   * @param {(message: object) => void} send
+   */
+  constructor(camera, send) {
+    Object.assign(this, { camera, send });
+    this.clear();
+  }
+
+  clear() {
+    this.items = new Map();
+    this.held = null;
+  }
+
+  /** A handle has come, or has been moved elsewhere. */
+  take(header) {
+    // While the user moves it, what comes back is where it was.
+    if (this.held?.item.handle !== header.handle) this.items.set(header.handle, { ...header });
+  }
+
+  remove({ handle }) {
+    this.items.delete(handle);
+    if (this.held?.item.handle === handle) this.held = null;
+  }
+
+  get busy() {
+    return this.held !== null;
+  }
+
+  /** Takes hold of what is at a pixel, if there is something. */
+  begin(x, y) {
+    let nearest = NEAR;
+    for (const item of this.items.values()) {
+      for (const knob of this.knobs(item)) {
+        const pixel = this.camera.pixel(knob.point);
+        const distance = pixel ? Math.hypot(pixel[0] - x, pixel[1] - y) : Infinity;
+        if (distance >= nearest) continue;
+        nearest = distance;
+        this.held = { item, ...knob, from: { position: item.position, orientation: item.orientation } };
+      }
+    }
+    if (this.held) this.held.start = this.grip(x, y);
+  }
+
+  move(x, y) {
+    const { item, kind, axis, from, start } = this.held;
+    const now = this.grip(x, y);
+    if (now === null || start === null) return;
+    if (kind === "turn") {
+      const half = 0.5 * (now - start);
+      const turn = [...scale(AXES[axis], Math.sin(half)), Math.cos(half)];
+      item.orientation = quaternionProduct(from.orientation, turn);
+    } else {
+      const shift = kind === "shift" ? scale(turned(from.orientation, AXES[axis]), now - start) : subtract(now, start);
+      item.position = add(from.position, shift);
+    }
+    const { handle, position, orientation } = item;
+    this.send({ type: "handle", handle, position, orientation });
+  }
+
+  end() {
+    this.held = null;
+  }
+
+  /** What the mouse has hold of: how far along the axis, at which angle about it, or where in the plane. */
+  grip(x, y) {
+    const { kind, axis, from } = this.held;
+    const { eye, forward } = this.camera;
+    const ray = this.camera.ray(x, y);
+    const offset = subtract(from.position, eye);
+    if (kind === "carry") return add(eye, scale(ray, dot(offset, forward) / dot(ray, forward)));
+    const along = turned(from.orientation, AXES[axis]);
+    if (kind === "shift") {
+      // Where the axis and the ray come nearest to each other.
+      const slant = dot(ray, along);
+      const room = 1 - slant * slant;
+      return room < 1e-4 ? null : (slant * dot(offset, ray) - dot(offset, along)) / room;
+    }
+    const steep = dot(ray, along);
+    if (Math.abs(steep) < 1e-3) return null;
+    const spoke = subtract(scale(ray, dot(offset, along) / steep), offset);
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3].map((i) => turned(from.orientation, AXES[i]));
+    return Math.atan2(dot(spoke, v), dot(spoke, u));
+  }
+
+  /** What there is to take hold of. */
+  knobs({ position, orientation }) {
+    const reach = REACH * Math.max(dot(subtract(position, this.camera.eye), this.camera.forward), 0.05);
+    const at = (vector) => add(position, turned(orientation, scale(vector, reach)));
+    const knobs = [{ kind: "carry", axis: null, point: position }];
+    AXES.forEach((along, axis) => {
+      const diagonal = scale(add(AXES[(axis + 1) % 3], AXES[(axis + 2) % 3]), ARM);
+      knobs.push({ kind: "shift", axis, point: at(along) }, { kind: "turn", axis, point: at(diagonal) });
+    });
+    return knobs;
+  }
+
+  /** Draws them. */
+  addLines(lines) {
+    for (const item of this.items.values()) {
+      for (const { kind, axis, point } of this.knobs(item)) {
+        const arm = subtract(point, item.position);
+        if (kind === "carry") lines.star(point, 0.02 * Math.hypot(...subtract(point, this.camera.eye)), MIDDLE, 4);
+        else if (kind === "shift") lines.arrow(item.position, arm, COLOURS[axis], 3);
+        else {
+          const along = turned(item.orientation, AXES[axis]);
+          lines.arc(item.position, along, scale(arm, 1 / Math.hypot(...arm)), Math.hypot(...arm), -0.35, 0.35, COLOURS[axis], 4);
+        }
+      }
+    }
+  }
+
+  /** Writes their names beside them. */
+  addLabels(labels) {
+    for (const { name, position } of this.items.values()) labels.add(this.camera, position, name, 12);
+  }
+}
+
+/** The first of several things to take hold of something holds it. */
+export class Hands {
+  constructor(...hands) {
+    this.hands = hands;
+  }
+
+  get busy() {
+    return this.hands.some((hand) => hand.busy);
+  }
+
+  begin(x, y) {
+    for (const hand of this.hands) {
+      hand.begin(x, y);
+      if (hand.busy) return;
+    }
+  }
+
+  move(x, y) {
+    this.hands.find((hand) => hand.busy).move(x, y);
+  }
+
+  end() {
+    for (const hand of this.hands) hand.end();
+  }
+}

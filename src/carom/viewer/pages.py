@@ -1,0 +1,76 @@
+"""The pages that are open, and what each has been told."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterator
+
+from carom.viewer.board import Board
+
+
+class Page:
+    """One page that is open.
+
+    Attributes:
+        number: What it is known by.
+        revision: What it has of the board.
+        news: Set when there may be something new.
+    """
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.revision = 0
+        self.news = asyncio.Event()
+        self._frame: bytes | None = None
+
+    def take_news(self, board: Board, frame: bytes | None) -> list[bytes]:
+        """What it has not been told; it counts as told from now on."""
+        messages, self.revision = board.since(self.revision)
+        if frame is not None and frame is not self._frame:
+            messages.append(frame)
+            self._frame = frame
+        return messages
+
+
+class Pages:
+    """The pages that are open.
+
+    Args:
+        gone: Called with the number of a page that has been closed.
+
+    Attributes:
+        somebody: Set while a page is open.
+    """
+
+    def __init__(self, gone: Callable[[int], None]) -> None:
+        self.somebody = asyncio.Event()
+        self._gone = gone
+        self._open: set[Page] = set()
+        self._numbers = 0
+
+    def __iter__(self) -> Iterator[Page]:
+        """Those that are open now; safe to use from all threads."""
+        return iter(tuple(self._open))
+
+    def __len__(self) -> int:
+        return len(self._open)
+
+    @property
+    def oldest_revision(self) -> int:
+        """What every page has of the board."""
+        return min((page.revision for page in self), default=0)
+
+    def join(self) -> Page:
+        """A page that has been opened."""
+        self._numbers += 1
+        page = Page(self._numbers)
+        self._open.add(page)
+        self.somebody.set()
+        return page
+
+    def leave(self, page: Page) -> None:
+        """A page has been closed."""
+        self._open.discard(page)
+        if not self._open:
+            self.somebody.clear()
+        self._gone(page.number)

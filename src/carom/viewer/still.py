@@ -1,0 +1,58 @@
+"""A picture of a world, for notebooks whose browser does not reach the page."""
+
+from __future__ import annotations
+
+import math
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+
+WIDTH, HEIGHT = 640, 420
+_FIELD_OF_VIEW = math.radians(50.0)
+# As pages look at a scene at first.
+_YAW, _PITCH = math.radians(50.0), math.radians(-35.0)
+# Room around the middles of links for the links themselves [m].
+_ROOM = 0.25
+_NEAR, _FAR = 0.02, 200.0
+
+
+def still(world: World) -> bytes | None:
+    """A PNG file of the bodies of a world as they are now, seen from where pages first look from.
+
+    Args:
+        world: The world; nobody else may step it meanwhile.
+
+    Returns:
+        The file; None if there are no bodies.
+    """
+    from PIL import Image
+
+    from carom.render.appearance import appearance_of
+    from carom.render.lights import Light
+    from carom.render.projection import look_at, pinhole_projection
+    from carom.render.renderer import renderer_of
+
+    bodies = list(world.bodies.values())
+    if not bodies:
+        return None
+    appearance_of(world)
+    places = np.array([link.pose.position for body in bodies for link in body.links])
+    lower, upper = places.min(axis=0), places.max(axis=0)
+    target = 0.5 * (lower + upper)
+    radius = 0.5 * float(np.linalg.norm(upper - lower)) + _ROOM
+    forward = np.array(
+        [-math.cos(_PITCH) * math.sin(_YAW), math.cos(_PITCH) * math.cos(_YAW), math.sin(_PITCH)]
+    )
+    eye = target - forward * radius / math.sin(0.5 * _FIELD_OF_VIEW)
+    focal = 0.5 * HEIGHT / math.tan(0.5 * _FIELD_OF_VIEW)
+    projection = pinhole_projection(
+        WIDTH, HEIGHT, focal, focal, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1), _NEAR, _FAR
+    )
+    image = renderer_of(world).draw(world, look_at(eye, target), projection, WIDTH, HEIGHT, Light())
+    file = BytesIO()
+    Image.fromarray(image.rgba[..., :3]).save(file, "png")
+    return file.getvalue()
