@@ -70,7 +70,9 @@ def _scene(client: int) -> None:
 
 def _state(client: int) -> list[bytes]:
     world = clients[client].world
-    return [
+    contacts, count = world.contact_arrays.contacts.numpy, world.contact_arrays.contact_count
+    starts = [contacts[name][0, :count].tobytes() for name in ("contact_impulse", "contact_warm_start")]
+    return starts + [
         memory.tobytes()
         for memory in (
             world.position_memory,

@@ -56,7 +56,7 @@ class QuickScene:
         self.record.surface_names[:] = [id(name) for name in _NAMES]
         self.record.damping[:] = [getattr(model, field).data for field in DAMPING]
         self.record.contact_count = contacts.count_contacts.data
-        self.record.warm_starts = contacts.contact_warm_start.data
+        self.record.contact_warm_starts = contacts.contact_warm_start.data
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]
         _know(self.record.find_poses, launch)
 

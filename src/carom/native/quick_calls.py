@@ -116,7 +116,7 @@ class Scene(ctypes.Structure):
         ("find_poses", Launch),
         ("find_twists", Launch),
         ("contact_count", ctypes.c_void_p),
-        ("warm_starts", ctypes.c_void_p),
+        ("contact_warm_starts", ctypes.c_void_p),
         ("contact_room", ctypes.c_int64),
         ("surface", ctypes.c_void_p * len(SURFACE)),
         ("surface_names", ctypes.c_void_p * len(SURFACE)),

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from carom.native.library import library
-
 
 def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
     """What a kernel gives for some numbers.
@@ -28,4 +26,7 @@ def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float
 
 @cache
 def _function(kernel: str) -> Any:
+    # Imported with the first of them: `import pybullet` works nothing out.
+    from carom.native.library import library
+
     return library().symbols[f"carom_{kernel}"]

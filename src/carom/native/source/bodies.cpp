@@ -107,7 +107,7 @@ CAROM_QUICK(place_base) {
         body.velocity[i] = 0.0;
     put(put(body.position, vector_at(in + 1)), Quaternion{q.x * scale, q.y * scale, q.z * scale, q.w * scale});
     for (int32_t i = 0; i < *scene.contact_count; ++i)
-        scene.warm_starts[i] = 0.0;
+        scene.contact_warm_starts[i] = 0.0;
     run(scene.find_poses, body.tree);
     return 1;
 }

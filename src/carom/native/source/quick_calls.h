@@ -70,7 +70,7 @@ struct Scene {
     Launch find_poses;
     Launch find_twists;
     int32_t* contact_count;
-    double* warm_starts;   // of each contact: where the solver starts
+    double* contact_warm_starts;  // where the solver starts, one for each contact
     int64_t contact_room;      // for so many contacts
     double* surface[6];  // by row of link: friction, restitution, softness; see `surfaces.cpp`
     PyObject* surface_names[6];
