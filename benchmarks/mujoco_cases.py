@@ -49,7 +49,8 @@ def cloth_model(side: int) -> mujoco.MjModel:
     Of the integrators only this one is stable at 1/240 s.
     """
     return mujoco.MjModel.from_xml_string(
-        f'''<mujoco><option timestep="{1 / 240}" gravity="0 0 -9.81" integrator="discrete"/><size memory="256M"/><worldbody>
+        f'''<mujoco><option timestep="{1 / 240}" gravity="0 0 -9.81" integrator="discrete"/>
+        <size memory="256M"/><worldbody>
         <geom type="sphere" size="0.3" pos="0 0 0.3" friction="{FRICTION}"/>
         <flexcomp name="cloth" type="grid" dim="2" count="{side} {side} 1" pos="0 0 0.63" mass="1"
                   spacing="{1 / (side - 1)} {1 / (side - 1)} 1" radius="0.01">
