@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pybullet as p
 
@@ -48,7 +49,7 @@ def cuboid_text(size: float, cells: Sequence[int]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def load(name: str, text: str, position: Sequence[float], **options: float) -> int:
+def load(name: str, text: str, position: Sequence[float], **options: Any) -> int:
     """A soft body of a mesh that is not in a file yet."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / name
@@ -94,7 +95,9 @@ def towel_in_a_gripper(panda_file: str, home: Sequence[float], joints: Sequence[
         p.resetJointState(panda, finger, 0.01)
         p.changeDynamics(panda, finger, lateralFriction=1.0)
         p.setJointMotorControl2(panda, finger, p.POSITION_CONTROL, 0.0, force=20, maxVelocity=0.1)
-    x, y, z = p.getLinkState(panda, _GRASP_TARGET)[0]
+    state = p.getLinkState(panda, _GRASP_TARGET)
+    assert state is not None
+    x, y, z = state[0]
     towel = load(
         "towel.obj", cloth_text(side, 0.16, down=True), [x, y, z + 0.02], mass=0.1, collisionMargin=0.003,
         useMassSpring=1, springElasticStiffness=100, springDampingStiffness=0.02, frictionCoeff=1,
