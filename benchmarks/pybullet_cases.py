@@ -15,6 +15,7 @@ from typing import Any
 
 import crowds
 import robots
+import soft_bodies
 
 import pybullet as p
 
@@ -115,6 +116,27 @@ def step_125_boxes(original_data: str) -> Prepared:
 def step_1000_balls(original_data: str) -> Prepared:
     _world()
     crowds.pile(1000)
+    return p.stepSimulation
+
+
+def step_cloth(original_data: str) -> Prepared:
+    _world()
+    soft_bodies.cloth_on_a_ball(32)
+    crowds.settle(120)
+    return p.stepSimulation
+
+
+def step_soft_cube(original_data: str) -> Prepared:
+    _world()
+    soft_bodies.soft_cube(PLANE, (5, 5, 7))
+    crowds.settle(120)
+    return p.stepSimulation
+
+
+def step_towel(original_data: str) -> Prepared:
+    _world()
+    soft_bodies.towel_in_a_gripper(PANDA, HOME, MOVABLE, 33)
+    crowds.settle(60)
     return p.stepSimulation
 
 

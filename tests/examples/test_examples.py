@@ -245,3 +245,18 @@ def test_soft_bodies_lie_give_way_and_hang(example):
     assert record["height"] == pytest.approx(0.2 * (20 + 5) / 0.04 / 1e4, rel=0.4)
     # A catenary of 1 m between hooks 80 cm apart, but for what is left of a swing.
     assert record["rope"][:, 2].min() == pytest.approx(-0.265, abs=0.03)
+
+
+def test_the_panda_takes_a_towel_and_squeezes_a_cube(example):
+    record = example("towel").main(duration=1.0)
+    towel, cube = record["towel"], record["cube"]
+    edge, hand = np.array(towel["edge"]), np.array(towel["hand"])
+    # Off its pins the towel goes where the hand goes, and does not slip between its fingers.
+    assert edge[4] > 0.55
+    assert (edge - hand)[3:] == pytest.approx(np.full(2, (edge - hand)[2]), abs=0.004)
+    assert towel["lowest"][4] > edge[4] - 0.25
+    # Each finger is pressed with 20 N.
+    assert towel["press"][4] == pytest.approx(40.0, rel=0.3)
+    assert cube["height"][4] == pytest.approx(0.25, abs=0.01)
+    assert cube["width"][4] < 0.99 * cube["width"][0]
+    assert cube["press"][4] > 5.0

@@ -91,6 +91,28 @@ def _soft(name: str) -> Any:
     )  # fmt: skip
 
 
+def _soft_urdf(name: str) -> Any:
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+    return p.loadURDF(name)
+
+
+def _soft_robots() -> list[bytes]:
+    """Files that say what soft bodies of our meshes are like."""
+    springs = '<spring elastic_stiffness="40" damping_stiffness="0.1" bending_stiffness="2"/>'
+    inertial = '<inertial><mass value="1"/></inertial><collision_margin value="0.01"/>'
+    lame = '<neohookean mu="100" lambda="100" damping="0.1"/><corotated mu="10" lambda="10"/>'
+    reduced = '<mass value="2"/><stiffness_scale value="10"/><damping_coefficient value="0.1"/>'
+    form = '<robot name="r"><{0} name="a">{1}<visual filename="{2}"/></{0}></robot>'
+    return [
+        form.format(tag, inside, _DATA / mesh).encode()
+        for tag, inside, mesh in (
+            ("deformable", inertial + springs, "cloth_z_up.obj"),
+            ("deformable", inertial + lame + '<gravity_factor value="0.5"/>', "reduced_cube/cube_mesh.vtk"),
+            ("reduced_deformable", reduced, "reduced_cube/cube_mesh.vtk"),
+        )
+    ]
+
+
 def _solids() -> list[bytes]:
     """Meshes of tetrahedra: one, cubes and a ball."""
     one = np.eye(4, 3, -1), np.arange(4, dtype=np.int32)[None]
@@ -114,6 +136,7 @@ SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "stl": lambda: _files("*.stl"),
     "dae": lambda: _files("*.dae"),
     "soft.obj": _cloths,
+    "soft.urdf": _soft_robots,
     "vtk": _solids,
     "png": lambda: _images("PNG"),
     "jpg": lambda: _images("JPEG"),
@@ -127,6 +150,7 @@ LOADERS: dict[str, Load] = {
     "stl": _mesh,
     "dae": _mesh,
     "soft.obj": _soft,
+    "soft.urdf": _soft_urdf,
     "vtk": _soft,
     "png": p.loadTexture,
     "jpg": p.loadTexture,

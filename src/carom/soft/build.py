@@ -20,6 +20,8 @@ from carom.soft.topology import bending_pairs, edges_of, surface_of
 
 MOST_NODES = 1_000_000
 """Most nodes of a soft body."""
+LEAST_MASS = 1.0e-30
+"""Least mass of a soft body [kg]; divided by less, numbers overflow."""
 FARTHEST = 1.0e6
 """Greatest coordinate of a node [m]."""
 # Tetrahedra of less than this share of the cube of their longest edge are flat.
@@ -120,6 +122,10 @@ def _check_parameters(
         }
     if solid is not None:
         others |= {"mu": solid.mu, "lambda": solid.lam, "the damping of the solid": solid.damping}
+    if 0.0 < mass < LEAST_MASS:
+        raise DescriptionError(
+            f"mass is {mass}; {LEAST_MASS:g} kg is the least that is accepted", file=source
+        )
     for name, value in {**positive, **others}.items():
         if not np.isfinite(value) or value < 0.0 or (value == 0.0 and name in positive):
             least = "greater than 0" if name in positive else "0 or more"

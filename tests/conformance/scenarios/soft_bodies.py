@@ -33,27 +33,33 @@ def _grid() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _cube(cells: int = 3, size: float = 0.4) -> str:
-    """A cube of tetrahedra, six in each cell, as a VTK file."""
-    count = cells + 1
-    points = [
-        f"{size * (i / cells - 0.5):.9g} {size * (j / cells - 0.5):.9g} {size * (k / cells - 0.5):.9g}"
-        for k in range(count)
-        for j in range(count)
-        for i in range(count)
-    ]
+def _cuboid(cells: tuple[int, int, int], size: tuple[float, float, float], *, ball: bool = False) -> str:
+    """A cuboid of tetrahedra, six in each cell, as a VTK file; one of equal sides may be made a ball."""
+    x, y, z = (count + 1 for count in cells)
+    points = []
+    for k in range(z):
+        for j in range(y):
+            for i in range(x):
+                place = np.array([i / cells[0], j / cells[1], k / cells[2]]) - 0.5
+                length = float(np.linalg.norm(place))
+                if ball and length > 0.0:
+                    place *= np.abs(place).max() / length
+                points.append(" ".join(f"{value:.9g}" for value in place * size))
     inside = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
     tetras = []
-    for k in range(cells):
-        for j in range(cells):
-            for i in range(cells):
-                corner = [((k + (b >> 2)) * count + j + (b >> 1 & 1)) * count + i + (b & 1) for b in range(8)]
+    for k in range(cells[2]):
+        for j in range(cells[1]):
+            for i in range(cells[0]):
+                corner = [((k + (b >> 2)) * y + j + (b >> 1 & 1)) * x + i + (b & 1) for b in range(8)]
                 tetras += [[corner[b] for b in four] for four in inside]
-    lines = ["# vtk DataFile Version 2.0", "cube", "ASCII", "DATASET UNSTRUCTURED_GRID"]
+    lines = ["# vtk DataFile Version 2.0", "cuboid", "ASCII", "DATASET UNSTRUCTURED_GRID"]
     lines += [f"POINTS {len(points)} double", *points, f"CELLS {len(tetras)} {5 * len(tetras)}"]
     lines += [" ".join(map(str, [4, *four])) for four in tetras]
     lines += [f"CELL_TYPES {len(tetras)}", *["10"] * len(tetras)]
     return "\n".join(lines) + "\n"
+
+
+_CUBE = _cuboid((3, 3, 3), (0.4, 0.4, 0.4))
 
 
 @contextmanager
@@ -75,9 +81,9 @@ def _cloth(p: Any, **options: Any) -> int:
         return p.loadSoftBody(path, **(arguments | options))
 
 
-def _solid(p: Any, **options: Any) -> int:
+def _solid(p: Any, mesh: str = _CUBE, **options: Any) -> int:
     arguments = {"mass": 4.0, "useNeoHookean": 1, "collisionMargin": 0.006}
-    with _file("cube.vtk", _cube()) as path:
+    with _file("cube.vtk", mesh) as path:
         return p.loadSoftBody(path, **(arguments | options))
 
 
@@ -124,6 +130,54 @@ def soft_cube_rests_on_a_box(p: Any) -> dict[str, Any]:
     cube = _solid(p, basePosition=[0, 0, 0.22], frictionCoeff=0.5, **options)
     rest = _after(p, cube, 3.0)
     return {"height": [np.sort(rest[:, 2])[-16:].mean()], "extent": np.ptp(rest, axis=0)}
+
+
+@scenario(tolerance=0.05)
+def soft_cantilever_bends(p: Any) -> dict[str, Any]:
+    """A short beam of tetrahedra held at one end: how far the other one hangs down."""
+    _start(p)
+    options = {"mass": 1.5, "NeoHookeanMu": 4000.0, "NeoHookeanLambda": 4000.0, "NeoHookeanDamping": 0.05}
+    beam = _solid(p, _cuboid((4, 2, 2), (0.4, 0.2, 0.2)), basePosition=[0, 0, 0], **options)
+    start = _nodes(p, beam)
+    for node in np.flatnonzero(start[:, 0] < -0.199):
+        p.createSoftBodyAnchor(beam, int(node), -1, -1)
+    end = start[:, 0] > 0.199
+    return {"sag": [-_after(p, beam, 4.0)[end, 2].mean()]}
+
+
+@scenario(tolerance=0.02)
+def soft_ball_rests_on_a_box(p: Any) -> dict[str, Any]:
+    """A ball of tetrahedra dropped on a box: how high it is at rest."""
+    _start(p)
+    p.loadURDF(str(ASSETS / "plane.urdf"))
+    options = {"NeoHookeanMu": 2000.0, "NeoHookeanLambda": 2000.0, "NeoHookeanDamping": 0.1}
+    mesh = _cuboid((4, 4, 4), (0.4, 0.4, 0.4), ball=True)
+    ball = _solid(p, mesh, basePosition=[0, 0, 0.22], frictionCoeff=0.5, **options)
+    rest = _after(p, ball, 3.0)
+    return {"height": [rest[:, 2].max(), rest[:, 2].mean()]}
+
+
+@scenario(tolerance=0.03)
+def cloth_swings(p: Any) -> dict[str, Any]:
+    """Cloth that hangs from its upper edge and is pushed a little: after how long it swings back."""
+    _start(p)
+    turned = p.getQuaternionFromEuler([np.pi / 2, 0, 0])
+    cloth = _cloth(p, baseOrientation=turned, springElasticStiffness=200.0, springDampingStiffness=0.0)
+    for node in np.flatnonzero(_nodes(p, cloth)[:, 2] > 0.49):
+        p.createSoftBodyAnchor(cloth, int(node), -1, -1)
+    # It is made to lie askew, for nodes cannot be given velocities.
+    p.stepSimulation()
+    places = _nodes(p, cloth)
+    places[:, 1] += 0.1 * (0.5 - places[:, 2])
+    p.resetMeshData(cloth, places.tolist())
+    crossings, last = [], 1.0
+    for step in range(600):
+        p.stepSimulation()
+        across = float(_nodes(p, cloth)[:, 1].mean())
+        if across * last < 0.0:
+            crossings.append((step + last / (last - across)) / 240.0)
+        last = across
+    return {"period": [2.0 * float(np.diff(crossings)[:2].mean())]}
 
 
 @scenario(tolerance=0.02)

@@ -13,6 +13,13 @@ from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 # Share of a gap that was there at the start of a small step that is closed within a second; as much as an
 # error reduction of 0.2 in each of 240 steps.
 _RECOVERY = real(48.0)
+# The same of a node between two shapes. They are held together by what answers pushes only afterwards, so it
+# is the share that is closed within a substep that tells how hard they can press without meeting.
+_PINCHED_RECOVERY = real(200.0)
+# Product of the normals of two touches from which on they face each other.
+_FACING = real(-0.5)
+# Determinant of what two impulses do, relative to what each does, from which on nothing gives way.
+_SINGULAR = real(1.0e-9)
 
 
 @func
@@ -21,6 +28,50 @@ def other_row(row: Int32, axis: Int32) -> Int32:
     if row < 0:
         return row
     return row + axis
+
+
+@func
+def lacking(
+    scratch: Scratch, pair_rows: PairRows, state: State, work: SoftWork, world: Int32, node: Int32,
+    touch: Int32, recovery: real, h: real,
+) -> real:  # fmt: skip
+    """How much farther from a shape a node has to be at the end of a small step [m]; negative: it is clear.
+
+    What overlapped at the start of the small step may go on to, but for a share, `recovery` [1/s] times `h`.
+    """
+    row = work.touch_row[world, touch]
+    normal = work.touch_normal[world, touch]
+    point = work.touch_point[world, touch]
+    offset = work.touch_offset[world, touch]
+    before = wp.dot(normal, work.node_before[world, node] - point) - offset
+    along = wp.dot(normal, work.touch_velocity[world, touch]) + row_velocity(scratch, pair_rows, world, row)
+    gap = wp.dot(normal, state.node_position[world, node] - point) - offset - h * along
+    return minimum(before, 0.0) * (1.0 - minimum(recovery * h, 1.0)) - gap
+
+
+@func
+def push_touch(
+    scratch: Scratch,
+    pair_rows: PairRows,
+    state: State,
+    work: SoftWork,
+    world: Int32,
+    node: Int32,
+    touch: Int32,
+    mass: real,
+    push: real,
+    h: real,
+):
+    """Push a node off a shape with an impulse [N s], and let friction hold it within Coulomb's cone."""
+    if push > 0.0:
+        row = work.touch_row[world, touch]
+        normal = work.touch_normal[world, touch]
+        state.node_position[world, node] += normal * (push * mass * h)
+        work.touch_impulse[world, touch] += normal * push
+        push_along(scratch, pair_rows, world, row, -push)
+        bound = push * work.touch_friction[world, touch]
+        if bound > 0.0:
+            relax_friction(scratch, pair_rows, state, work, world, node, touch, row, mass, bound, h)
 
 
 @func
@@ -35,29 +86,53 @@ def relax_touch(
     touch: Int32,
     h: real,
 ):
-    """Keep a node outside of a shape, and let friction hold it within Coulomb's cone.
-
-    The impulse along the normal is the one that leaves no overlap at the end of the small step, but for a
-    share of one that was there at its start. Friction stops the slip of the small step, if it can.
-    """
-    row = work.touch_row[world, touch]
-    normal = work.touch_normal[world, touch]
+    """Keep a node outside of a shape by the impulse that leaves it lacking nothing."""
     mass = soft.node_inverse_mass[node]
-    point = work.touch_point[world, touch]
-    velocity = work.touch_velocity[world, touch]
-    offset = work.touch_offset[world, touch]
-    gap_before = wp.dot(normal, work.node_before[world, node] - point) - offset
-    along = wp.dot(normal, velocity) + row_velocity(scratch, pair_rows, world, row)
-    gap = wp.dot(normal, state.node_position[world, node] - point) - offset - h * along
-    wanted = minimum(gap_before, 0.0) * (1.0 - minimum(_RECOVERY * h, 1.0))
-    if gap < wanted:
-        push = (wanted - gap) / (h * (mass + row_mass(pair_rows, world, row)))
-        state.node_position[world, node] += normal * (push * mass * h)
-        work.touch_impulse[world, touch] += normal * push
-        push_along(scratch, pair_rows, world, row, -push)
-        bound = push * work.touch_friction[world, touch]
-        if bound > 0.0:
-            relax_friction(scratch, pair_rows, state, work, world, node, touch, row, mass, bound, h)
+    weight = mass + row_mass(pair_rows, world, work.touch_row[world, touch])
+    lack = lacking(scratch, pair_rows, state, work, world, node, touch, _RECOVERY, h)
+    push_touch(scratch, pair_rows, state, work, world, node, touch, mass, lack / (h * weight), h)
+
+
+@func
+def relax_pinched(
+    scratch: Scratch,
+    pair_rows: PairRows,
+    soft: SoftModel,
+    state: State,
+    work: SoftWork,
+    world: Int32,
+    node: Int32,
+    a: Int32,
+    b: Int32,
+    h: real,
+):
+    """Keep a node outside of two shapes that face each other.
+
+    Both impulses are found at once. One after the other they would never be larger than what stops the node
+    alone, however hard the shapes are pressed together: a light node could not keep two heavy links apart.
+    """
+    mass = soft.node_inverse_mass[node]
+    weight_a = mass + row_mass(pair_rows, world, work.touch_row[world, a])
+    weight_b = mass + row_mass(pair_rows, world, work.touch_row[world, b])
+    cross = mass * wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
+    determinant = weight_a * weight_b - cross * cross
+    if determinant <= _SINGULAR * weight_a * weight_b:
+        # Neither gives way.
+        relax_touch(scratch, pair_rows, soft, state, work, world, node, a, h)
+        relax_touch(scratch, pair_rows, soft, state, work, world, node, b, h)
+    else:
+        lack_a = lacking(scratch, pair_rows, state, work, world, node, a, _PINCHED_RECOVERY, h)
+        lack_b = lacking(scratch, pair_rows, state, work, world, node, b, _PINCHED_RECOVERY, h)
+        push_a = (lack_a * weight_b - lack_b * cross) / (h * determinant)
+        push_b = (lack_b * weight_a - lack_a * cross) / (h * determinant)
+        if push_a < 0.0:
+            push_a = real(0.0)
+            push_b = lack_b / (h * weight_b)
+        elif push_b < 0.0:
+            push_b = real(0.0)
+            push_a = lack_a / (h * weight_a)
+        push_touch(scratch, pair_rows, state, work, world, node, a, mass, push_a, h)
+        push_touch(scratch, pair_rows, state, work, world, node, b, mass, push_b, h)
 
 
 @func
@@ -99,6 +174,26 @@ def relax_friction(
 
 
 @func
+def facing(work: SoftWork, world: Int32, first: Int32, count: Int32) -> Int32:
+    """Which two of up to three touches face each other: the one that is not among them, or -1 for none."""
+    if count == 2:
+        if wp.dot(work.touch_normal[world, first], work.touch_normal[world, first + 1]) < _FACING:
+            return 2
+        return -1
+    found = Int32(-1)
+    least = real(_FACING)
+    if count == 3:
+        for other in range(3):
+            a = first + (other + 1) % 3
+            b = first + (other + 2) % 3
+            along = wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
+            if along < least:
+                least = along
+                found = Int32(other)
+    return found
+
+
+@func
 def relax_touches(
     scratch: Scratch,
     pair_rows: PairRows,
@@ -109,11 +204,20 @@ def relax_touches(
     body: Int32,
     h: real,
 ):
-    """Relax all touches of a body, one after the other."""
+    """Relax all touches of a body, one after the other, but for those of a node between two shapes."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
-        for touch in range(TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]):
-            relax_touch(scratch, pair_rows, soft, state, work, world, node, touch, h)
+        start = TOUCHES_PER_NODE * node
+        count = work.node_touches[world, node]
+        left = facing(work, world, start, count)
+        for touch in range(count):
+            if left < 0 or touch == left:
+                relax_touch(scratch, pair_rows, soft, state, work, world, node, start + touch, h)
+        if left >= 0:
+            relax_pinched(
+                scratch, pair_rows, soft, state, work, world, node, start + (left + 1) % 3,
+                start + (left + 2) % 3, h,
+            )  # fmt: skip
 
 
 @func
