@@ -243,7 +243,49 @@ def meshes() -> list[float]:
     return numbers
 
 
-RUNS = (arm, stack, tied, questions, images, robots, meshes)
+def soft() -> list[float]:
+    """A cloth that falls onto a ball, and a soft solid that falls beside it."""
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+    p.setGravity(0, 0, -9.8125)
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.loadURDF("plane.urdf")
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_SPHERE, radius=0.25), -1, [0, 0, 0.25])
+    cloth = p.loadSoftBody(
+        "cloth_z_up.obj",
+        basePosition=[0, 0, 0.75],
+        baseOrientation=p.getQuaternionFromEuler([0.1, 0.2, 0.3]),
+        scale=0.5,
+        mass=0.5,
+        useMassSpring=1,
+        useBendingSprings=1,
+        springElasticStiffness=40,
+        springDampingStiffness=0.1,
+        frictionCoeff=0.5,
+        useFaceContact=1,
+    )
+    solid = p.loadSoftBody(
+        "ball.vtk",
+        basePosition=[2, 0, 1],
+        scale=0.5,
+        mass=1,
+        useNeoHookean=1,
+        NeoHookeanMu=180,
+        NeoHookeanLambda=600,
+        NeoHookeanDamping=0.01,
+        frictionCoeff=0.5,
+        useFaceContact=1,
+    )
+    numbers: list[float] = []
+    for step in range(240):
+        p.stepSimulation()
+        if step % 60 == 59:
+            for body in (cloth, solid):
+                _, nodes = p.getMeshData(body, -1, flags=p.MESH_DATA_SIMULATION_MESH)
+                numbers += [number for node in nodes for number in node]
+    return numbers
+
+
+RUNS = (arm, stack, tied, questions, images, robots, meshes, soft)
 
 
 def digests(*names: str) -> dict[str, str]:

@@ -14,12 +14,13 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "a1f1ac4cf25170f3",
+    "stack": "63e8838f8942bacb",
     "tied": "2a3a54cf08b535dd",
     "questions": "54d8874ff3d1bde4",
-    "images": "931f66db4e346426",
-    "robots": "a58187468ec669c6",
-    "meshes": "8d94107d9cf47c17",
+    "images": "d73a7cd7d7886fc4",
+    "robots": "ddb089f9206e801e",
+    "meshes": "75971d4db0801db0",
+    "soft": "6306db71c491c0cb",
 }
 """Of the bits of all numbers in `long_runs`; they change when what the kernels compute does."""
 
