@@ -9,6 +9,7 @@ from pybullet._calls.arguments import (
     Indices,
     Vector,
     Vectors,
+    check_rotation,
     indices,
     integer,
     quantities,
@@ -355,6 +356,6 @@ def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[floa
     if not position or len(position) != body.position_count[index]:
         return
     freedoms = body.velocity_count[index]
-    if len(position) != freedoms and not any(position):
-        fail("targetValue is a quaternion of length 0, which is no rotation.")
+    if len(position) != freedoms:
+        check_rotation(position, "expected a targetValue sequence.", "targetValue")
     body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)
