@@ -81,7 +81,7 @@ def _cloth(p: Any, **options: Any) -> int:
         return p.loadSoftBody(path, **(arguments | options))
 
 
-def _solid(p: Any, mesh: str = _CUBE, **options: Any) -> int:
+def _solid(p: Any, mesh: str = _CUBE, /, **options: Any) -> int:
     arguments = {"mass": 4.0, "useNeoHookean": 1, "collisionMargin": 0.006}
     with _file("cube.vtk", mesh) as path:
         return p.loadSoftBody(path, **(arguments | options))
