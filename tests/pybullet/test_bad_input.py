@@ -466,7 +466,7 @@ def test_quaternions_without_a_direction(arm: int, zoo: int, zero: list[float]) 
         lambda: p.getMatrixFromQuaternion(zero),
         lambda: p.getQuaternionSlerp(zero, TURN, 0.5),
     ):
-        with pytest.raises(p.error, match="quaternion of length (0|1e-300), which is no rotation"):
+        with pytest.raises(p.error, match=r"quaternion of length (0|1e-300), which is no rotation"):
             call()
 
 
