@@ -79,6 +79,13 @@ class Library:
         function.restype = None
         return function
 
+    def turn(self, kernel: str) -> Any:
+        """The C function of a kernel of `turns.cpp`: takes numbers, room for results, and None.
+
+        It returns whether there are results for such numbers.
+        """
+        return self.symbols[f"carom_{kernel}"]
+
     def _entry(self, kernel: str) -> Mapping[str, Any]:
         entry = self._kernels.get(kernel)
         if entry is None:

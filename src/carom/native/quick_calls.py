@@ -305,7 +305,10 @@ def quick_calls(vectorcall: int) -> QuickCalls | None:
         or sysconfig.get_config_var("Py_GIL_DISABLED")
     ):
         return None
-    symbols = library().symbols
+    symbols: ctypes.CDLL | None = library().symbols
+    if symbols is None:
+        # The library is in another process; see `tools.wheels.elsewhere`.
+        return None
     python, calls, clients = (ctypes.c_void_p() for _ in range(3))
     if not symbols.carom_claim_quick_calls(*map(ctypes.byref, (python, calls, clients))):
         return None

@@ -29,4 +29,4 @@ def _function(kernel: str) -> Any:
     # Imported with the first of them: `import pybullet` works nothing out.
     from carom.native.library import library
 
-    return library().symbols[f"carom_{kernel}"]
+    return library().turn(kernel)

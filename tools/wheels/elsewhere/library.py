@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import math
 import os
 import struct
 import subprocess
@@ -41,6 +42,9 @@ class Elsewhere:
         RuntimeError: The program does not start, or the library is made from something else.
     """
 
+    # Builtins of this process cannot call what is in another.
+    symbols = None
+
     def __init__(self, command: Sequence[str], path: Path, digest: str) -> None:
         self._layouts = Layouts(json.loads((path.parent / native.MANIFEST).read_text("utf-8")))
         self.path = path
@@ -76,6 +80,20 @@ class Elsewhere:
             self._call(f"carom_{name}_of", memory, address, address)
 
         return replace
+
+    def turn(self, kernel: str) -> Any:
+        """What works out a rotation; there is no result where the first number has not been written."""
+
+        def work_out(numbers: Any, results: Any, _: None) -> bool:
+            memory = Memory(self._layouts)
+            addresses = [ctypes.addressof(array) for array in (numbers, results)]
+            for address, array in zip(addresses, (numbers, results), strict=True):
+                memory.add(address, ctypes.sizeof(array))
+            results[0] = math.nan
+            self._call(f"carom_{kernel}", memory, *addresses)
+            return not math.isnan(results[0])
+
+        return work_out
 
     def close(self) -> None:
         """End the other program."""
