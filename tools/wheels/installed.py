@@ -27,7 +27,7 @@ _ROOT = Path(__file__).parents[2]
 _OLDEST = Path(__file__).with_name("oldest.txt")
 _MOST_INSTALLED_BYTES = 150_000_000
 # What the tests need beside what the wheel brings. The rest of them is skipped.
-_TEST_NEEDS = ("pytest", "pytest-rerunfailures", "pytest-xdist", "hypothesis", "scipy", "gymnasium")
+_TEST_NEEDS = ("pytest", "pytest-xdist", "hypothesis", "scipy", "gymnasium")
 # What tests read besides; `src` is what is installed.
 _COPIED = (
     "tests",
