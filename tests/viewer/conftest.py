@@ -18,10 +18,17 @@ def pytest_runtest_protocol(item: pytest.Function, nextitem: pytest.Item | None)
     if Path(item.path).parent != HERE:
         return None
     item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-    reports = runtestprotocol(item, log=False, nextitem=nextitem)
-    if any(report.failed for report in reports):
-        item._initrequest()
+    options = item.config.option
+    style = options.tbstyle
+    # Others parse sources, which Python 3.11 may refuse to do between greenlets of the driver.
+    options.tbstyle = "native"
+    try:
         reports = runtestprotocol(item, log=False, nextitem=nextitem)
+        if any(report.failed for report in reports):
+            item._initrequest()
+            reports = runtestprotocol(item, log=False, nextitem=nextitem)
+    finally:
+        options.tbstyle = style
     for report in reports:
         item.ihook.pytest_runtest_logreport(report=report)
     item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
