@@ -107,7 +107,8 @@ def test_fast_pictures_get_finer_again(replay: Page):
           };
           const first = pace.sharpness;
           const single = (told(15, 2), told(900, 1), told(30, 5));
-          const some = (told(30, 5), told(50, 3)), slow = told(50, 8), slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
+          const some = (told(30, 5), told(50, 3)), slow = told(50, 8);
+          const slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
           pace.wait(600);
           const still = (told(500, 50), pace.sharpness);
           pace.wait(0);
