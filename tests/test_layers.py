@@ -5,6 +5,7 @@ Imports for the type checker are none: a body may say of what type the world is 
 """
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -85,7 +86,13 @@ def module_name(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-MODULES = {module_name(path): path for path in sorted(SOURCE.rglob("*.py"))}
+# Where Carom is installed, `SOURCE` has the packages of others as well.
+PACKAGES = {room.partition(".")[0] for rooms in FLOORS for room in rooms}
+MODULES = {
+    module_name(path): path
+    for package in sorted(PACKAGES)
+    for path in sorted((SOURCE / package).rglob("*.py"))
+}
 
 
 def room_of(module: str) -> str | None:
@@ -155,6 +162,11 @@ def test_a_module_imports_only_rooms_on_lower_floors(module: str) -> None:
         assert imported <= KEPT_APART[room]
     if room not in LAUNCH_KERNELS:
         assert "carom.kernels" not in imported
+
+
+def test_all_packages_of_the_wheel_have_floors() -> None:
+    project = (SOURCE.parent / "pyproject.toml").read_text(encoding="utf-8")
+    assert set(re.findall(r'^    "src/(\w+)",$', project, flags=re.MULTILINE)) == PACKAGES
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:

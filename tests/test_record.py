@@ -142,7 +142,8 @@ def test_wrong_arguments_are_named(values, named, said):
 def test_help_shows_the_arguments():
     shown = [dict(inspect.signature(cls).parameters) for cls in classes()]
     # Only a default that is made anew for each object looks otherwise.
-    assert [one.pop("fourth").default for one in shown][0] is list
+    assert shown[0].pop("fourth").default is list
+    del shown[1]["fourth"]
     assert shown[0] == shown[1]
     assert list(inspect.signature(Point).parameters) == ["x", "y"]
 

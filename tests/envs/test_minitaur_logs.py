@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+pytest.importorskip("google.protobuf")
 from google.protobuf.message import DecodeError
 
 from pybullet_envs.minitaur.envs import MinitaurReactiveEnv

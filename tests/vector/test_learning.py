@@ -14,6 +14,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @pytest.fixture
 def train_ppo(monkeypatch):
+    pytest.importorskip("torch")
     monkeypatch.syspath_prepend(str(EXAMPLES))
     yield __import__("train_ppo")
     sys.modules.pop("train_ppo", None)
@@ -40,6 +41,7 @@ def test_ppo_takes_actions_that_are_numbers(train_ppo):
 
 
 def test_stable_baselines_trains_on_it():
+    pytest.importorskip("stable_baselines3")
     from stable_baselines3 import PPO
     from stable_baselines3.common.evaluation import evaluate_policy
 
@@ -54,6 +56,7 @@ def test_stable_baselines_trains_on_it():
 
 
 def test_stable_baselines_is_told_what_the_last_observation_was_and_why_it_ended():
+    pytest.importorskip("stable_baselines3")
     from carom.vector.stable_baselines import StableBaselinesEnv
 
     many = gymnasium.make_vec(
@@ -77,6 +80,7 @@ def test_stable_baselines_is_told_what_the_last_observation_was_and_why_it_ended
 
 
 def test_stable_baselines_needs_episodes_that_begin_in_the_same_step():
+    pytest.importorskip("stable_baselines3")
     from carom.vector.stable_baselines import StableBaselinesEnv
 
     with pytest.raises(ValueError, match="SameStep"):

@@ -38,6 +38,7 @@ _COPIED = (
     "pyproject.toml",
     "README.md",
     "CHANGELOG.md",
+    "CONTRIBUTING.md",
     "Makefile",
     "mkdocs.yml",
 )

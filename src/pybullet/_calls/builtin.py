@@ -137,4 +137,5 @@ def _plain_signature(function: Callable[..., Any]) -> str:
 
 def _documentation(function: Callable[..., Any]) -> str:
     """The docstring without the indentation of a function of a module, which Python strips from 3.13 on."""
-    return (function.__doc__ or "").replace("\n    ", "\n").strip()
+    text = function.__doc__ or ""
+    return (text if sys.version_info >= (3, 13) else text.replace("\n    ", "\n")).strip()
