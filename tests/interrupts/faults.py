@@ -13,7 +13,7 @@ from typing import Any
 import carom
 import pybullet
 
-# Python 3.13 does not report the instructions of a function's first call that is traced; it reports its lines.
+# Python 3.13 does not report the instructions of a function's first call that is traced, only its lines.
 _LINES = sys.version_info >= (3, 13)
 _OURS = tuple(str(Path(package.__path__[0])) for package in (carom, pybullet))
 
@@ -53,7 +53,9 @@ class Fuse:
         frame.f_trace_opcodes, frame.f_trace_lines = True, _LINES
         # Instructions without a line are those that end a `with` block or an exception.
         line: int | None = frame.f_lineno
-        if event in ("opcode", "line") and line and not _enters_or_leaves_a_context(frame.f_code.co_filename, line):
+        if event == "call" or not line:
+            return self._trace
+        if not _enters_or_leaves_a_context(frame.f_code.co_filename, line):
             self.count += 1
             if self.count == self._place:
                 self.where = f"{frame.f_code.co_filename}:{line}"
