@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from struct import Struct
 from typing import TYPE_CHECKING, TypeGuard
 
-from carom.layouts.motor_commands import PD, POSITION
+from carom.layouts.motor_commands import POSITION
 from carom.scene.joint_motor import AxisMotor, JointMotor, PlanarMotor, SphericalMotor
 
 if TYPE_CHECKING:
@@ -90,6 +90,7 @@ class JointAccess:
 
     def command_multi_dof(
         self,
+        mode: int,
         position: Sequence[float],
         velocity: Sequence[float],
         force: Sequence[float],
@@ -98,20 +99,10 @@ class JointAccess:
         clamp: float,
         damping: float | Sequence[float],
     ) -> None:
-        """Sets the motor by one number for each freedom, as `setJointMotorControlMultiDof` does.
+        """Sets the motor or the PD drive by one number for each freedom, as the calls for several do.
 
         A sequence of the wrong length counts as not given.
         """
-
-    def command_pd(
-        self,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float,
-        kd: float,
-    ) -> None:
-        """Sets the explicit PD drive."""
 
 
 class AxisJoint(JointAccess):
@@ -150,6 +141,7 @@ class AxisJoint(JointAccess):
 
     def command_multi_dof(
         self,
+        mode: int,
         position: Sequence[float],
         velocity: Sequence[float],
         force: Sequence[float],
@@ -161,7 +153,7 @@ class AxisJoint(JointAccess):
         has_position, has_velocity = len(position) == 1, len(velocity) == 1
         if has_position or has_velocity:
             self.motor.command(
-                POSITION,
+                mode,
                 position[0] if has_position else 0.0,
                 velocity[0] if has_velocity else 0.0,
                 force[0] if len(force) == 1 else _UNSTATED_FORCE,
@@ -171,26 +163,6 @@ class AxisJoint(JointAccess):
             )
         elif clamp > 0.0:
             self.motor.clamp(clamp)
-
-    def command_pd(
-        self,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float,
-        kd: float,
-    ) -> None:
-        has_position, has_velocity = len(position) == 1, len(velocity) == 1
-        if has_position or has_velocity:
-            self.motor.command(
-                PD,
-                position[0] if has_position else 0.0,
-                velocity[0] if has_velocity else 0.0,
-                force[0] if len(force) == 1 else _UNSTATED_FORCE,
-                kp,
-                kd,
-                0.0,
-            )
 
 
 class MultiDofJoint(JointAccess):
@@ -230,6 +202,7 @@ class MultiDofJoint(JointAccess):
 
     def command_multi_dof(
         self,
+        mode: int,
         position: Sequence[float],
         velocity: Sequence[float],
         force: Sequence[float],
@@ -239,7 +212,7 @@ class MultiDofJoint(JointAccess):
         damping: float | Sequence[float],
     ) -> None:
         motor = self.motor
-        if not isinstance(motor, SphericalMotor):
+        if mode != POSITION or not isinstance(motor, SphericalMotor):
             return
         has_position, has_velocity = len(position) == 4, len(velocity) == 3
         if not (has_position or has_velocity):
