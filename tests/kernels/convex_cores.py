@@ -123,7 +123,7 @@ def random_polytope(random: np.random.Generator, kind: int) -> Solid:
         HULL: lambda: hull(random.normal(size=(8, 3)) * size),
         TRIANGLES: lambda: triangle(random.normal(size=(3, 3)) * size),
     }[kind]()
-    return moved(solid, np.zeros(3), Rotation.random(rng=random))
+    return moved(solid, np.zeros(3), Rotation.from_quat(random.normal(size=4)))
 
 
 def differences(a: Solid, b: Solid) -> np.ndarray:

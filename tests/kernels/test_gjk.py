@@ -110,7 +110,7 @@ def test_closed_forms(
 def test_distances_are_those_of_all_simplices(seed: int, kinds: tuple[int, int], apart: float) -> None:
     random = np.random.default_rng(seed)
     a, b = (random_polytope(random, kind) for kind in kinds)
-    b = moved(b, random.normal(size=3) * apart, Rotation.random(rng=random))
+    b = moved(b, random.normal(size=3) * apart, Rotation.from_quat(random.normal(size=4)))
     distance, on_a, on_b = nearest(a, b)
     expected = hull_distance(differences(a, b))
     assert distance == pytest.approx(expected, abs=1e-9)
@@ -124,7 +124,7 @@ def test_distances_are_those_of_all_simplices(seed: int, kinds: tuple[int, int],
 @given(seeds, st.sampled_from(POLYTOPES))
 def test_a_slab_between_the_points_parts_the_cores(seed: int, kind: int) -> None:
     random = np.random.default_rng(seed)
-    a = moved(cylinder(*random.uniform(0.05, 0.3, 2)), np.zeros(3), Rotation.random(rng=random))
+    a = moved(cylinder(*random.uniform(0.05, 0.3, 2)), np.zeros(3), Rotation.from_quat(random.normal(size=4)))
     b = random_polytope(random, kind)
     direction = random.normal(size=3)
     direction /= np.linalg.norm(direction)
@@ -145,7 +145,7 @@ def test_a_slab_between_the_points_parts_the_cores(seed: int, kind: int) -> None
 def test_where_the_search_starts_makes_no_difference(seed: int, kind_a: int, kind_b: int) -> None:
     random = np.random.default_rng(seed)
     a, b = random_polytope(random, kind_a), random_polytope(random, kind_b)
-    b = moved(b, random.normal(size=3), Rotation.random(rng=random))
+    b = moved(b, random.normal(size=3), Rotation.from_quat(random.normal(size=4)))
     distances = [nearest(a, b, tuple(random.normal(size=3)))[0] for _ in range(3)]
     np.testing.assert_allclose(distances, distances[0], atol=1e-10)
 
@@ -155,7 +155,7 @@ def test_where_the_search_starts_makes_no_difference(seed: int, kind_a: int, kin
 def test_the_search_ends_where_the_cores_are_too_far_apart(seed: int, max_distance: float) -> None:
     random = np.random.default_rng(seed)
     a, b = random_polytope(random, BOX), random_polytope(random, HULL)
-    b = moved(b, random.normal(size=3), Rotation.random(rng=random))
+    b = moved(b, random.normal(size=3), Rotation.from_quat(random.normal(size=4)))
     distance = nearest(a, b)[0]
     bounded = nearest(a, b, max_distance=max_distance)[0]
     if distance > max_distance:
