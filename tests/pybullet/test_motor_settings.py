@@ -1,5 +1,7 @@
 """What motor calls set; what the settings then do is compared with PyBullet by the conformance suite."""
 
+from collections.abc import Callable, Sequence
+from functools import partial
 from math import inf
 from typing import Any
 
@@ -7,6 +9,7 @@ import numpy as np
 import pytest
 
 import pybullet as p
+from carom import Worlds
 from pybullet._clients.clients import clients
 
 POSITION, VELOCITY, KP, KD, IMPULSE, CLAMP, DAMPING, TARGET_W = range(8)
@@ -45,6 +48,66 @@ class BareSequence:
 def test_position_control(arm: int) -> None:
     p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, 0.3, 0.1, 20, 0.5, 0.8)
     assert motor(arm, 0)[:6].tolist() == [0.3, 0.1, 0.5, 0.8, 20 * TIME_STEP, inf]
+
+
+def rows_after(arm: int, calls: Sequence[Callable[[], object]]) -> list[list[float]]:
+    """What each call makes of a motor's row in which all was -1."""
+    rows = []
+    for call in calls:
+        body = clients[0].world.bodies[arm]
+        body.world.motor[body.velocity_index[0], :6] = -1.0
+        call()
+        rows.append(motor(arm, 0)[:6].tolist())
+    return rows
+
+
+@pytest.mark.parametrize(("target", "reached"), [(0.3, 0.3), (9.0, 2.0)])
+def test_position_control_means_the_same_in_every_call(arm: int, target: float, reached: float) -> None:
+    body = clients[0].world.bodies[arm]
+    single = partial(p.setJointMotorControl2, arm, 0, p.POSITION_CONTROL)
+    multi = partial(p.setJointMotorControlMultiDof, arm, 0, p.POSITION_CONTROL)
+    several = partial(p.setJointMotorControlArray, arm, [0], p.POSITION_CONTROL)
+    multi_array = partial(p.setJointMotorControlMultiDofArray, arm, [0], p.POSITION_CONTROL)
+    gains = {"gain": 0.5, "velocity": 0.1, "velocity_gain": 0.8, "max_force": 20.0, "max_velocity": 3.0}
+    expected = [reached, 0.1, 0.5, 0.8, 20.0 * TIME_STEP]
+    with_velocity = [
+        partial(single, target, 0.1, 20.0, 0.5, 0.8, maxVelocity=3.0),
+        partial(
+            multi, [target], [0.1], force=[20.0], positionGain=[0.5], velocityGain=[0.8], maxVelocity=3.0
+        ),
+        partial(body.joints[0].set_position_target, target, **gains),
+    ]
+    assert rows_after(arm, with_velocity) == [[*expected, 3.0]] * 3
+    # Lists of joints have no greatest velocity; that from before stays.
+    lists = [
+        partial(several, [target], [0.1], [20.0], [0.5], [0.8]),
+        partial(multi_array, [[target]], [[0.1]], [[20.0]], [0.5], [0.8]),
+    ]
+    assert rows_after(arm, lists) == [[*expected, -1.0]] * 2
+    worlds = Worlds(body.world, 2)
+    worlds[body].set_position_targets(
+        [target],
+        gains=0.5,
+        velocities=0.1,
+        velocity_gains=0.8,
+        max_forces=20.0,
+        max_velocities=3.0,
+        joints=[0],
+    )
+    copy = worlds.extract(1)
+    assert copy.motor[body.velocity_index[0], :6].tolist() == [*expected, 3.0]
+
+
+def test_velocity_control_means_the_same_in_every_call(arm: int) -> None:
+    joint = clients[0].world.bodies[arm].joints[0]
+    single = partial(p.setJointMotorControl2, arm, 0, p.VELOCITY_CONTROL)
+    several = partial(p.setJointMotorControlArray, arm, [0], p.VELOCITY_CONTROL)
+    calls = [
+        partial(single, 9.0, 0.2, 5.0, positionGain=0.4, velocityGain=0.7),
+        partial(several, [9.0], [0.2], [5.0], [0.4], [0.7]),
+        partial(joint.set_velocity_target, 0.2, gain=0.7, max_force=5.0),
+    ]
+    assert rows_after(arm, calls) == [[0.0, 0.2, 0.0, 0.7, 5.0 * TIME_STEP, inf]] * 3
 
 
 def test_targets_are_taken_to_the_limits(arm: int) -> None:

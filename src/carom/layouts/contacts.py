@@ -311,6 +311,7 @@ class PairRows:
     tree_rest: (
         IntRows  # of the root of an island: how much at rest that is, see `kernels.solver.warm_starting`
     )
+    tree_awake: IntRows  # of the root of an island: 1 if a tree of it is active, 0 if it may fall asleep
     constraint_next: IntRows
     contact_next: IntRows
     order_first: IntRows  # first contact of each manifold, in the order in which they are relaxed

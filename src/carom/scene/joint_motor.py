@@ -1,15 +1,22 @@
-"""What the drive of a joint is told, written into the motor rows of one world or of many.
+"""What POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL and PD_CONTROL mean for the rows of joint motors.
 
-The functions work on `motor` or `pd` of a world, shape (dofs, 8), or of many worlds at once,
-(worlds, dofs, 8), and there on `dofs`: a slice of the velocity coordinates, or their numbers. What is given
-is for all of these, or one number for each, or one for each world and each of these. Forces are in N m for
-revolute joints and in N for prismatic ones; a motor's bound is an impulse, the greatest force times
-`substep_time` [s].
+Targets, gains, greatest forces and velocities become columns of `motor` and `pd`, shape (dofs, 8); how the
+solver obeys them is in `kernels/dynamics/motors.py`. Forces are in N m for revolute joints and in N for
+prismatic ones; a motor's bound is an impulse, the greatest force times the time step.
+
+The functions write many rows, those of one world or of many, (worlds, dofs, 8), and there on `dofs`: a
+slice of the velocity coordinates, or their numbers. What is given is for all of these, or one number for
+each, or one for each world and each of these. The classes write the row of one joint, for loops that set
+motors one by one. `kernels/dynamics/motor_commands.py` does for a list of joints what `AxisMotor` does for
+one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from math import inf
+from struct import Struct
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,8 +37,25 @@ from carom.layouts.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
+from carom.layouts.motor_commands import PD, POSITION, TORQUE, VELOCITY
+
+if TYPE_CHECKING:
+    from carom.world.world import World
 
 Dofs = slice | np.ndarray
+
+MODES = (VELOCITY, TORQUE, POSITION, PD)
+_DOUBLE = 8
+_COLUMNS = 8
+# A PD drive weaker than this is taken away.
+_LEAST_PD_FORCE = 1.1920928955078125e-07
+
+# The first columns of a motor's row, as one write; those of a PD drive are alike, with a force as the bound.
+assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD) == (0, 1, 2, 3)
+assert (PD_POSITION, PD_VELOCITY, PD_KP, PD_KD) == (0, 1, 2, 3)
+assert (MOTOR_MAX_IMPULSE, PD_MAX_FORCE, MOTOR_VELOCITY_CLAMP) == (4, 4, 5)
+_write_target = Struct("5d").pack_into
+_write_target_and_clamp = Struct("6d").pack_into
 
 
 def aim_at_position(
@@ -126,3 +150,163 @@ def _write(rows: np.ndarray, dofs: Dofs, columns: Mapping[int, np.ndarray]) -> N
     fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
     for column, values in fitting.items():
         rows[..., dofs, column] = values
+
+
+class Clock(Protocol):
+    """What knows the time step."""
+
+    time_step: float
+
+
+class JointMotor:
+    """The motor of one joint of a world, written row by row; this one is of a joint that has none.
+
+    It is of use until bodies come or go.
+
+    Args:
+        world: The world.
+        clock: Its time step makes impulses of forces.
+        dof: Row of the joint's first velocity.
+
+    Attributes:
+        lower: Least target position [rad or m]; minus infinity where there are no limits.
+        upper: Greatest target position.
+    """
+
+    __slots__ = ("_clock", "_dof", "_motors", "_pd", "_row_at", "_torques", "lower", "upper")
+
+    def __init__(self, world: World, clock: Clock, dof: int) -> None:
+        self.lower, self.upper = -inf, inf
+        self._clock = clock
+        self._dof = dof
+        self._row_at = dof * _COLUMNS * _DOUBLE
+        self._motors = world.motor_memory
+        self._pd = world.pd_memory
+        self._torques = world.joint_torque_memory
+
+    def command(
+        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
+    ) -> None:
+        """Set the motor, the PD drive or the torque of the next step.
+
+        Args:
+            mode: Of `carom.layouts.motor_commands`. `POSITION` and `VELOCITY` set the motor, and `PD` the
+                explicit drive beside it; `TORQUE` adds `force` to the torques of the next step.
+            position: Target [rad or m].
+            velocity: Target [rad/s or m/s].
+            force: Greatest force, or the torque [N m or N].
+            kp: Share of the position error that a motor takes away; stiffness of a PD drive.
+            kd: Share of the velocity error likewise; damping of a PD drive.
+            clamp: Greatest velocity that a motor reaches for with `POSITION` [rad/s or m/s], until
+                `VELOCITY` is set; 0 or less leaves the one before.
+
+        Raises:
+            ValueError: There is no such mode.
+            struct.error: Something is not a number.
+        """
+        if mode not in MODES:
+            raise ValueError("there is no such mode")
+
+    def clamp(self, velocity: float) -> None:
+        """Set the greatest velocity that the motor reaches for [rad/s or m/s]."""
+        self._motors[self._dof * _COLUMNS + MOTOR_VELOCITY_CLAMP] = velocity
+
+    def add_torques(self, torques: Sequence[float]) -> None:
+        """Add to the torques of the next step [N m or N], one for each freedom."""
+        for axis, torque in enumerate(torques):
+            self._torques[self._dof + axis] += torque
+
+
+class AxisMotor(JointMotor):
+    """The motor of a revolute or prismatic joint, with its limits, if `lower` is not above `upper`."""
+
+    __slots__ = ()
+
+    def __init__(self, world: World, clock: Clock, dof: int, lower: float, upper: float) -> None:
+        super().__init__(world, clock, dof)
+        if lower <= upper:
+            self.lower, self.upper = lower, upper
+
+    def command(
+        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
+    ) -> None:
+        """Set the motor, the PD drive or the torque; targets beyond the limits become the nearest limit."""
+        if mode == POSITION:
+            if not self.lower <= position <= self.upper:
+                position = self._within_limits(position)
+            impulse = float(force) * self._clock.time_step
+            _write_target(self._motors, self._row_at, position, velocity, kp, kd, impulse)
+            if clamp > 0.0:
+                self._motors[self._dof * _COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
+        elif mode == VELOCITY:
+            impulse = float(force) * self._clock.time_step
+            _write_target_and_clamp(self._motors, self._row_at, 0.0, velocity, 0.0, kd, impulse, inf)
+        elif mode == TORQUE:
+            self._torques[self._dof] += force
+        elif mode == PD:
+            bound = force if force >= _LEAST_PD_FORCE else 0.0
+            _write_target(self._pd, self._row_at, self._within_limits(position), velocity, kp, kd, bound)
+        else:
+            super().command(mode, position, velocity, force, kp, kd, clamp)
+
+    def _within_limits(self, position: float) -> float:
+        return self.lower if position < self.lower else self.upper if position > self.upper else position
+
+
+class PlanarMotor(JointMotor):
+    """Torques of a joint of several freedoms; a number is about the first of them."""
+
+    __slots__ = ()
+
+    def command(
+        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
+    ) -> None:
+        """Add to the torque about the first freedom; there is no motor."""
+        super().command(mode, position, velocity, force, kp, kd, clamp)
+        if mode == TORQUE:
+            self._torques[self._dof] += force
+
+
+class SphericalMotor(PlanarMotor):
+    """The motor of a spherical joint."""
+
+    __slots__ = ()
+
+    def command(
+        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
+    ) -> None:
+        """Set the motor by numbers about the first axis, or add to the torque about it."""
+        super().command(mode, position, velocity, force, kp, kd, clamp)
+        if mode == POSITION:
+            # A number cannot say an orientation: it counts as the quaternion's x, as in PyBullet.
+            target = (position, 0.0, 0.0, 0.0) if position else (0.0, 0.0, 0.0, 1.0)
+            every = (force,) * 3, (kp,) * 3, (kd,) * 3, (1.0,) * 3
+            self.aim_at_orientation(target, (velocity, 0.0, 0.0), *every, clamp)
+
+    def aim_at_orientation(
+        self,
+        target: Sequence[float],
+        velocity: Sequence[float],
+        forces: Sequence[float],
+        kps: Sequence[float],
+        kds: Sequence[float],
+        dampings: Sequence[float],
+        clamp: float,
+    ) -> None:
+        """Turn the joint towards a quaternion (x, y, z, w); all else as for `command`, about each axis."""
+        motors, time_step = self._motors, self._clock.time_step
+        for axis in range(3):
+            row = self._dof + axis
+            _write_target(
+                motors,
+                row * _COLUMNS * _DOUBLE,
+                target[axis],
+                velocity[axis],
+                kps[axis],
+                kds[axis],
+                forces[axis] * time_step,
+            )
+            motors[row * _COLUMNS + MOTOR_DAMPING] = dampings[axis]
+            if clamp > 0.0:
+                motors[row * _COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
+        motors[self._dof * _COLUMNS + MOTOR_TARGET_W] = target[3]

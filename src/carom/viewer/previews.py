@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.viewer.board import Board
+
+if TYPE_CHECKING:
+    from carom.render.image_target import RawImage
 
 _WIDTH = 200
 # Scripts may take hundreds of images a second; people see less [s].
@@ -29,28 +32,20 @@ class Previews:
         self._due = 0.0
         self._corners: list[list[float]] | None = None
 
-    def show(
-        self,
-        rgba: NDArray[np.uint8],
-        depth: NDArray[np.float32],
-        labels: NDArray[np.int32],
-        camera: NDArray[np.float64],
-    ) -> None:
+    def show(self, image: RawImage, camera: NDArray[np.float64]) -> None:
         """Shows an image, unless the last one is very recent.
 
         Args:
-            rgba: (height, width, 4) colours.
-            depth: (height, width) depth from 0 to 1, as OpenGL has it.
-            labels: (height, width) numbers of bodies; -1 where there is nothing.
-            camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+            image: The image.
+            camera: (4, 4) what takes points of the world to it, as OpenGL has it.
         """
         now = monotonic()
         if now < self._due:
             return
         self._due = now + _PERIOD
-        every = -(-rgba.shape[1] // _WIDTH)
+        every = -(-image.rgba.shape[1] // _WIDTH)
         small = np.s_[::every, ::every]
-        pictures = [rgba[small][..., :3], _shades(depth[small]), _colours(labels[small])]
+        pictures = [image.rgba[small][..., :3], _shades(image.depth[small]), _colours(image.label[small])]
         height, width = pictures[0].shape[:2]
         header: dict[str, Any] = {"type": "previews", "width": width, "height": height}
         self._board.put("previews", header, b"".join(np.ascontiguousarray(p).tobytes() for p in pictures))

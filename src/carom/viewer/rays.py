@@ -13,7 +13,6 @@ from carom.viewer.board import Board
 if TYPE_CHECKING:
     from carom.queries.ray_cast import Points, RayHit
 
-RAY_COLUMNS = 10
 _MOST_RAYS = 5000
 
 

@@ -103,11 +103,6 @@ class JointReadings:
         # Steps clear what they have applied.
         self._applied = np.zeros(0)
 
-    @property
-    def any_wanted(self) -> bool:
-        """Whether joints are read."""
-        return bool(self._wanted)
-
     def watch(self, bodies: frozenset[int] | Literal["all"]) -> None:
         """Reads the joints of these bodies from now on. Nobody may step meanwhile."""
         observers = self._world.observers

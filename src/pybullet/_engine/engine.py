@@ -44,6 +44,40 @@ _LEAST_TIME_STEP = 1e-12
 _DEFORMABLE = RESET_USE_DEFORMABLE_WORLD | RESET_USE_REDUCED_DEFORMABLE_WORLD
 
 
+def _switch(value: Any, name: str) -> int:
+    """An integer of which only the sign, and whether it is 0, matter."""
+    number = integer(value, name)
+    return number if number < 0 else int(number != 0)
+
+
+# What arguments of `setPhysicsEngineParameter` set, how they are read, and from which number on.
+_PARAMETERS: dict[str, tuple[str, Callable[[Any, str], Any], int]] = {
+    "numSolverIterations": ("solver_iterations", integer, 0),
+    "useSplitImpulse": ("split_impulse", _switch, 0),
+    "splitImpulsePenetrationThreshold": ("split_impulse_penetration_threshold", real, 0),
+    "collisionFilterMode": ("collision_filter_mode", integer, 0),
+    "contactBreakingThreshold": ("contact_breaking_threshold", quantity, 0),
+    "restitutionVelocityThreshold": ("restitution_velocity_threshold", quantity, 0),
+    "erp": ("erp", quantity, 0),
+    "contactERP": ("contact_erp", quantity, 0),
+    "frictionERP": ("friction_erp", quantity, 0),
+    "enableConeFriction": ("cone_friction", _switch, 0),
+    "deterministicOverlappingPairs": ("deterministic_overlapping_pairs", _switch, 0),
+    "allowedCcdPenetration": ("allowed_ccd_penetration", quantity, 0),
+    "jointFeedbackMode": ("joint_feedback_mode", integer, 0),
+    "solverResidualThreshold": ("solver_residual_threshold", quantity, 0),
+    "contactSlop": ("contact_slop", quantity, 0),
+    "enableSAT": ("sat", _switch, 0),
+    "constraintSolverType": ("constraint_solver", integer, 0),
+    "globalCFM": ("global_cfm", quantity, 0),
+    "minimumSolverIslandSize": ("minimum_island_size", integer, 0),
+    "reportSolverAnalytics": ("report_solver_analytics", _switch, 0),
+    "warmStartingFactor": ("warm_starting_factor", quantity, 0),
+    "numNonContactInnerIterations": ("noncontact_inner_iterations", integer, 1),
+    "numSubSteps": ("substeps", integer, 0),
+}
+
+
 @exported
 def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ...]:
     """Advances time by `fixedTimeStep`, in `numSubSteps` equal parts if there are any.
@@ -342,60 +376,13 @@ def setPhysicsEngineParameter(
         >>> p.getPhysicsEngineParameters()["numSubSteps"]
         4
     """
+    given = locals()
     client = client_of(physicsClientId)
     changes: dict[str, Any] = {}
-
-    def take(field: str, value: Any, name: str, convert: Callable[[Any, str], Any], least: float = 0) -> None:
-        number = convert(value, name)
+    for name, (parameter, convert, least) in _PARAMETERS.items():
+        number = convert(given[name], name)
         if number >= least:
-            changes[field] = number
-
-    take("solver_iterations", numSolverIterations, "numSolverIterations", integer)
-    take("split_impulse", useSplitImpulse, "useSplitImpulse", _switch)
-    take(
-        "split_impulse_penetration_threshold",
-        splitImpulsePenetrationThreshold,
-        "splitImpulsePenetrationThreshold",
-        real,
-    )
-    take("collision_filter_mode", collisionFilterMode, "collisionFilterMode", integer)
-    take("contact_breaking_threshold", contactBreakingThreshold, "contactBreakingThreshold", quantity)
-    take(
-        "restitution_velocity_threshold",
-        restitutionVelocityThreshold,
-        "restitutionVelocityThreshold",
-        quantity,
-    )
-    take("erp", erp, "erp", quantity)
-    take("contact_erp", contactERP, "contactERP", quantity)
-    take("friction_erp", frictionERP, "frictionERP", quantity)
-    take("cone_friction", enableConeFriction, "enableConeFriction", _switch)
-    take(
-        "deterministic_overlapping_pairs",
-        deterministicOverlappingPairs,
-        "deterministicOverlappingPairs",
-        _switch,
-    )
-    take("allowed_ccd_penetration", allowedCcdPenetration, "allowedCcdPenetration", quantity)
-    take("joint_feedback_mode", jointFeedbackMode, "jointFeedbackMode", integer)
-    take("solver_residual_threshold", solverResidualThreshold, "solverResidualThreshold", quantity)
-    take("contact_slop", contactSlop, "contactSlop", quantity)
-    take("sat", enableSAT, "enableSAT", _switch)
-    take("constraint_solver", constraintSolverType, "constraintSolverType", integer)
-    take("global_cfm", globalCFM, "globalCFM", quantity)
-    take("minimum_island_size", minimumSolverIslandSize, "minimumSolverIslandSize", integer)
-    take("report_solver_analytics", reportSolverAnalytics, "reportSolverAnalytics", _switch)
-    take("warm_starting_factor", warmStartingFactor, "warmStartingFactor", quantity)
-    take(
-        "noncontact_inner_iterations",
-        numNonContactInnerIterations,
-        "numNonContactInnerIterations",
-        integer,
-        least=1,
-    )
-    substeps = integer(numSubSteps, "numSubSteps")
-    if substeps >= 0:
-        changes["substeps"] = substeps
+            changes[parameter] = number
     _check_work(client, changes)
     integer(maxNumCmdPer1ms, "maxNumCmdPer1ms")
     integer(enableFileCaching, "enableFileCaching")
@@ -419,12 +406,6 @@ def _check_work(client: Client, changes: dict[str, Any]) -> None:
     if product > _MOST_WORK:
         stated = " x ".join(argument for argument, _ in _WORK.values())
         fail(f"{stated} would be {product}; it has to be at most {_MOST_WORK}.")
-
-
-def _switch(value: Any, name: str) -> int:
-    """An integer of which only the sign, and whether it is 0, matter."""
-    number = integer(value, name)
-    return number if number < 0 else int(number != 0)
 
 
 def _set_time_step(client: Client, value: Any, name: str) -> None:

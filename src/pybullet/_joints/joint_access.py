@@ -7,28 +7,11 @@ commanding a motor is a few reads or writes of numbers. They live until bodies c
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
 from struct import Struct
 from typing import TYPE_CHECKING, TypeGuard
 
-from carom.layouts.codes import (
-    MOTOR_DAMPING,
-    MOTOR_KD,
-    MOTOR_KP,
-    MOTOR_MAX_IMPULSE,
-    MOTOR_POSITION,
-    MOTOR_TARGET_W,
-    MOTOR_VELOCITY,
-    MOTOR_VELOCITY_CLAMP,
-)
-from pybullet._calls.arguments import integer
-from pybullet._calls.constants import (
-    PD_CONTROL,
-    POSITION_CONTROL,
-    TORQUE_CONTROL,
-    VELOCITY_CONTROL,
-)
-from pybullet._calls.errors import fail
+from carom.layouts.motor_commands import POSITION
+from carom.scene.joint_motor import AxisMotor, JointMotor, PlanarMotor, SphericalMotor
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -38,31 +21,13 @@ Wrench = tuple[float, ...]
 JointState = tuple[float, float, Wrench, float]
 MultiDofState = tuple[tuple[float, ...], tuple[float, ...], Wrench, tuple[float, ...]]
 
-ILLEGAL_MODE = "Illegal control mode."
 NO_WRENCH = (0.0,) * 6
 _DOUBLE = 8
-_MOTOR_COLUMNS = 8
-_MOTOR_ROW = _MOTOR_COLUMNS * _DOUBLE
 _WRENCH_ROW = 6 * _DOUBLE
 # The greatest force of a motor that was given a target but no force [N or N m].
 _UNSTATED_FORCE = 1000000.0
 # The gains of a multi-dof motor whose gains were given in the wrong number.
 _UNSTATED_GAIN = 0.1
-# A PD drive weaker than this is taken away.
-_LEAST_PD_FORCE = 1.1920928955078125e-07
-
-# The first columns of a motor's row, as one write: target position, target velocity, kp, kd, greatest
-# impulse; then the velocity clamp. The row of a PD drive starts alike, with a force for the impulse.
-assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD, MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP) == (
-    0,
-    1,
-    2,
-    3,
-    4,
-    5,
-)
-write_target = Struct("5d").pack_into
-write_target_and_clamp = Struct("6d").pack_into
 _read_wrench = Struct("6d").unpack_from
 
 
@@ -73,6 +38,7 @@ class JointAccess:
         q: Row of its first position.
         u: Row of its first velocity.
         has_sensor: Its reaction is measured.
+        motor: Its motor.
     """
 
     __slots__ = (
@@ -81,13 +47,11 @@ class JointAccess:
         "has_sensor",
         "impulses",
         "index",
-        "motors",
-        "pd_drives",
+        "motor",
         "positions",
         "q",
         "reaction_at",
         "reactions",
-        "torques",
         "u",
         "velocities",
     )
@@ -102,10 +66,8 @@ class JointAccess:
         self.positions = world.position_memory
         self.velocities = world.velocity_memory
         self.impulses = world.motor_impulse_memory
-        self.motors = world.motor_memory
-        self.pd_drives = world.pd_memory
-        self.torques = world.joint_torque_memory
         self.reactions = world.joint_reaction_memory
+        self.motor: JointMotor = JointMotor(world, client, self.u)
         self.has_sensor = body.has_sensor(index)
         self.reaction_at = (body.first_link + 1 + index) * _WRENCH_ROW
 
@@ -120,22 +82,6 @@ class JointAccess:
     def reset(self, position: float, velocity: float) -> None:
         """Puts a joint of one freedom somewhere, without any physics; others stay where they are."""
 
-    def command(
-        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
-    ) -> None:
-        """Sets the motor by numbers, as `setJointMotorControl2` does.
-
-        Raises:
-            pybullet.error: The mode is none of velocity, torque, position and PD control.
-        """
-        if integer(mode, "controlMode") not in (
-            VELOCITY_CONTROL,
-            TORQUE_CONTROL,
-            POSITION_CONTROL,
-            PD_CONTROL,
-        ):
-            fail(ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
-
     def _reaction(self) -> Wrench:
         return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH
 
@@ -144,6 +90,7 @@ class JointAccess:
 
     def command_multi_dof(
         self,
+        mode: int,
         position: Sequence[float],
         velocity: Sequence[float],
         force: Sequence[float],
@@ -152,39 +99,22 @@ class JointAccess:
         clamp: float,
         damping: float | Sequence[float],
     ) -> None:
-        """Sets the motor by one number for each freedom, as `setJointMotorControlMultiDof` does.
+        """Sets the motor or the PD drive by one number for each freedom, as the calls for several do.
 
         A sequence of the wrong length counts as not given.
         """
 
-    def command_pd(
-        self,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float,
-        kd: float,
-    ) -> None:
-        """Sets the explicit PD drive."""
-
 
 class AxisJoint(JointAccess):
-    """A revolute or prismatic joint.
+    """A revolute or prismatic joint."""
 
-    Attributes:
-        lower: Least target position; minus infinity where there are no limits.
-        upper: Greatest target position.
-    """
-
-    __slots__ = ("lower", "row_at", "upper")
+    __slots__ = ()
 
     def __init__(self, client: Client, body: Body, index: int) -> None:
         super().__init__(client, body, index)
-        self.row_at = self.u * _MOTOR_ROW
         dynamics = body.dynamics(index)
-        limited = dynamics.joint_lower_limit <= dynamics.joint_upper_limit
-        self.lower = dynamics.joint_lower_limit if limited else -inf
-        self.upper = dynamics.joint_upper_limit if limited else inf
+        limits = dynamics.joint_lower_limit, dynamics.joint_upper_limit
+        self.motor = AxisMotor(client.world, client, self.u, *limits)
 
     def state(self) -> JointState:
         u = self.u
@@ -205,31 +135,13 @@ class AxisJoint(JointAccess):
         position, velocity, reaction, torque = self.state()
         return ((position,), (velocity,), reaction, (torque,))
 
-    def command(
-        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
-    ) -> None:
-        if mode == POSITION_CONTROL:
-            if not self.lower <= position <= self.upper:
-                position = self._within_limits(position)
-            impulse = float(force) * self.client.time_step
-            write_target(self.motors, self.row_at, position, velocity, kp, kd, impulse)
-            if clamp > 0.0:
-                self.motors[self.u * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
-        elif mode == VELOCITY_CONTROL:
-            impulse = float(force) * self.client.time_step
-            write_target_and_clamp(self.motors, self.row_at, 0.0, velocity, 0.0, kd, impulse, inf)
-        elif mode == TORQUE_CONTROL:
-            self.torques[self.u] += force
-        else:
-            super().command(mode, position, velocity, force, kp, kd, clamp)
-            self._drive(position, velocity, force, kp, kd)
-
     def add_torques(self, torques: Sequence[float]) -> None:
         if len(torques) == 1:
-            self.torques[self.u] += torques[0]
+            self.motor.add_torques(torques)
 
     def command_multi_dof(
         self,
+        mode: int,
         position: Sequence[float],
         velocity: Sequence[float],
         force: Sequence[float],
@@ -238,45 +150,19 @@ class AxisJoint(JointAccess):
         clamp: float,
         damping: float | Sequence[float],
     ) -> None:
-        if clamp > 0.0:
-            self.motors[self.u * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
-        has_position, has_velocity = len(position) == 1, len(velocity) == 1
-        if not (has_position or has_velocity):
-            return
-        write_target(
-            self.motors,
-            self.row_at,
-            self._within_limits(position[0] if has_position else 0.0),
-            velocity[0] if has_velocity else 0.0,
-            _first_gain(kp, 1, has_position),
-            _first_gain(kd, 1, has_velocity),
-            (force[0] if len(force) == 1 else _UNSTATED_FORCE) * self.client.time_step,
-        )
-
-    def command_pd(
-        self,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float,
-        kd: float,
-    ) -> None:
         has_position, has_velocity = len(position) == 1, len(velocity) == 1
         if has_position or has_velocity:
-            self._drive(
+            self.motor.command(
+                mode,
                 position[0] if has_position else 0.0,
                 velocity[0] if has_velocity else 0.0,
                 force[0] if len(force) == 1 else _UNSTATED_FORCE,
-                kp,
-                kd,
+                _first_gain(kp, 1, has_position),
+                _first_gain(kd, 1, has_velocity),
+                clamp,
             )
-
-    def _within_limits(self, position: float) -> float:
-        return self.lower if position < self.lower else self.upper if position > self.upper else position
-
-    def _drive(self, position: float, velocity: float, force: float, kp: float, kd: float) -> None:
-        greatest = force if force >= _LEAST_PD_FORCE else 0.0
-        write_target(self.pd_drives, self.row_at, self._within_limits(position), velocity, kp, kd, greatest)
+        elif clamp > 0.0:
+            self.motor.clamp(clamp)
 
 
 class MultiDofJoint(JointAccess):
@@ -290,6 +176,8 @@ class MultiDofJoint(JointAccess):
         # PyBullet reports two of the three coordinates of a planar joint.
         self.position_count = 4 if self.spherical else 2
         self.dofs = 3 if self.spherical else 2
+        kind = SphericalMotor if self.spherical else PlanarMotor
+        self.motor = kind(client.world, client, self.u)
 
     def state(self) -> JointState:
         return (
@@ -308,26 +196,13 @@ class MultiDofJoint(JointAccess):
             tuple([impulse / time_step for impulse in self.impulses[u : u + self.dofs].tolist()]),
         )
 
-    def command(
-        self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
-    ) -> None:
-        super().command(mode, position, velocity, force, kp, kd, clamp)
-        if mode == TORQUE_CONTROL:
-            self.torques[self.u] += force
-        elif mode == POSITION_CONTROL and self.spherical:
-            # A number cannot say an orientation: it counts as the quaternion's x.
-            target = (position, 0.0, 0.0, 0.0) if position else (0.0, 0.0, 0.0, 1.0)
-            self._set_motor(
-                target, (velocity, 0.0, 0.0), (force,) * 3, (kp,) * 3, (kd,) * 3, (1.0,) * 3, clamp
-            )
-
     def add_torques(self, torques: Sequence[float]) -> None:
         if len(torques) == self.body.velocity_count[self.index]:
-            for axis, torque in enumerate(torques):
-                self.torques[self.u + axis] += torque
+            self.motor.add_torques(torques)
 
     def command_multi_dof(
         self,
+        mode: int,
         position: Sequence[float],
         velocity: Sequence[float],
         force: Sequence[float],
@@ -336,7 +211,8 @@ class MultiDofJoint(JointAccess):
         clamp: float,
         damping: float | Sequence[float],
     ) -> None:
-        if not self.spherical:
+        motor = self.motor
+        if mode != POSITION or not isinstance(motor, SphericalMotor):
             return
         has_position, has_velocity = len(position) == 4, len(velocity) == 3
         if not (has_position or has_velocity):
@@ -352,34 +228,7 @@ class MultiDofJoint(JointAccess):
             kps = (_first_gain(kp, 3, has_position),) * 3
             kds = (_first_gain(kd, 3, has_velocity),) * 3
         dampings = damping if _is_triple(damping) else (_first_damping(damping),) * 3
-        self._set_motor(target, rate, forces, kps, kds, dampings, clamp)
-
-    def _set_motor(
-        self,
-        target: Sequence[float],
-        rate: Sequence[float],
-        forces: Sequence[float],
-        kps: Sequence[float],
-        kds: Sequence[float],
-        dampings: Sequence[float],
-        clamp: float,
-    ) -> None:
-        motors, time_step = self.motors, self.client.time_step
-        for axis in range(3):
-            row = self.u + axis
-            write_target(
-                motors,
-                row * _MOTOR_ROW,
-                target[axis],
-                rate[axis],
-                kps[axis],
-                kds[axis],
-                forces[axis] * time_step,
-            )
-            motors[row * _MOTOR_COLUMNS + MOTOR_DAMPING] = dampings[axis]
-            if clamp > 0.0:
-                motors[row * _MOTOR_COLUMNS + MOTOR_VELOCITY_CLAMP] = clamp
-        motors[self.u * _MOTOR_COLUMNS + MOTOR_TARGET_W] = target[3]
+        motor.aim_at_orientation(target, rate, forces, kps, kds, dampings, clamp)
 
 
 def joint_access(client: Client, body: Body, index: int) -> JointAccess:

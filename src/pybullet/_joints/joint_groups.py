@@ -66,7 +66,7 @@ class AxisGroup(JointGroup):
         return MotorGroup(
             self.client.world,
             [joint.u for joint in self._axes],
-            [(joint.lower, joint.upper) for joint in self._axes],
+            [(joint.motor.lower, joint.motor.upper) for joint in self._axes],
             DEFAULT_FORCE,
             DEFAULT_POSITION_GAIN,
             DEFAULT_VELOCITY_GAIN,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from struct import error as StructError
 from typing import Any, overload
 
+from carom.scene.joint_motor import MODES
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
     Indices,
@@ -19,7 +20,7 @@ from pybullet._calls.arguments import (
     sequence,
 )
 from pybullet._calls.builtin import exported_as
-from pybullet._calls.constants import PD_CONTROL, POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
+from pybullet._calls.constants import POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
 from pybullet._calls.errors import error, fail
 from pybullet._clients.clients import client_of, clients
 from pybullet._clients.lookup import joint_access
@@ -40,7 +41,6 @@ _WRONG_FORCES = "number of forces should match the joint indices"
 _WRONG_KPS = "number of kps should match the joint indices"
 _WRONG_KDS = "number of kds should match the number of joint indices"
 _NO_CLAMP = -1.0
-_MODES = (VELOCITY_CONTROL, TORQUE_CONTROL, POSITION_CONTROL, PD_CONTROL)
 
 
 @overload
@@ -130,7 +130,7 @@ def setJointMotorControl2(
         # Anything else, such as an array, would be noticed only when half of the motor is written.
         if isinstance(check, float) and -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
             joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
-            joint.command(
+            joint.motor.command(
                 controlMode, targetPosition, targetVelocity, force, positionGain, velocityGain, maxVelocity
             )
             return
@@ -139,15 +139,18 @@ def setJointMotorControl2(
     body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
     required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
     joint = joint_access(body, jointIndex, physicsClientId)
-    joint.command(
-        integer(controlMode, "controlMode"),
+    mode = integer(controlMode, "controlMode")
+    command = (
         quantity(targetPosition, "targetPosition"),
         quantity(targetVelocity, "targetVelocity"),
-        _force(force, controlMode, "force"),
+        _force(force, mode, "force"),
         quantity(positionGain, "positionGain"),
         quantity(velocityGain, "velocityGain"),
         bound(maxVelocity, "maxVelocity"),
     )
+    if mode not in MODES:
+        fail(_ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
+    joint.motor.command(mode, *command)
 
 
 @overload
@@ -244,7 +247,7 @@ def _set_array_carefully(
     required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
     client_of(physics_client_id)
     mode = integer(control_mode, "controlMode")
-    if mode not in _MODES:
+    if mode not in MODES:
         fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of joints can have.")
     requested = indices(joint_indices, NO_INDICES, "jointIndices")
     if not requested:
@@ -260,7 +263,7 @@ def _set_array_carefully(
         _one_each(kds, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
     ]
     for joint, velocity, position, force, kp, kd in zip(joints, *checked, strict=True):
-        joint.command(mode, position, velocity, force, kp, kd, _NO_CLAMP)
+        joint.motor.command(mode, position, velocity, force, kp, kd, _NO_CLAMP)
 
 
 @overload
@@ -337,7 +340,9 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
     joint = joint_access(body, index, physicsClientId)
     if mode not in (POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position, velocity nor torque control.")
-    joint.command(mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP)
+    joint.motor.command(
+        mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP
+    )
 
 
 def _force(value: Any, mode: int, name: str) -> float:

@@ -98,7 +98,7 @@ def setJointMotorControlMultiDof(
         joint.add_torques(forces)
     elif mode == POSITION_CONTROL:
         _check_rotation(position)
-        joint.command_multi_dof(position, velocity, forces, kp, kd, clamp, damped)
+        joint.command_multi_dof(mode, position, velocity, forces, kp, kd, clamp, damped)
     else:
         fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
 
@@ -181,10 +181,8 @@ def setJointMotorControlMultiDofArray(
     ):
         if mode == TORQUE_CONTROL:
             joint.add_torques(force)
-        elif mode == PD_CONTROL:
-            joint.command_pd(position, velocity, force, kp, kd)
         else:
-            joint.command_multi_dof(position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING)
+            joint.command_multi_dof(mode, position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING)
 
 
 def _stable_pd(

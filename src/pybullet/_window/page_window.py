@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.queries.ray_cast import Points, RayHit
+    from carom.render.image_target import RawImage
     from carom.viewer.viewer import Viewer
     from pybullet._clients.clients import Client
 
@@ -132,15 +133,9 @@ class PageWindow(RecordingWindow):
         if self._viewer.rays.wanted:
             self._viewer.rays.tell(starts, ends, hits)
 
-    def show_image(
-        self,
-        rgba: NDArray[np.uint8],
-        depth: NDArray[np.float32],
-        labels: NDArray[np.int32],
-        camera: NDArray[np.float64],
-    ) -> None:
+    def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
         if self._viewer.page_count:
-            self._viewer.previews.show(rgba, depth, labels, camera)
+            self._viewer.previews.show(image, camera)
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         orbit = self._viewer.camera.orbit

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from carom.render.image_target import RawImage
+
 
 class RecordingWindow(Window):
     """A window without a screen: it keeps what the script shows.
@@ -105,13 +107,7 @@ class RecordingWindow(Window):
         camera = self.camera
         camera.distance, camera.yaw, camera.pitch, camera.target = distance, yaw, pitch, target
 
-    def show_image(
-        self,
-        rgba: NDArray[np.uint8],
-        depth: NDArray[np.float32],
-        labels: NDArray[np.int32],
-        camera: NDArray[np.float64],
-    ) -> None:
+    def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
         """Nobody would see it."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:

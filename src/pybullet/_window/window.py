@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from carom.description.pose import Vector3
     from carom.queries.ray_cast import Points, RayHit
+    from carom.render.image_target import RawImage
     from carom.viewer.items import DebugItem, Slider
     from pybullet._window.options import VisualizerOptions
 
@@ -107,20 +108,12 @@ class Window(ABC):
         """Moves the camera; angles in degrees."""
 
     @abstractmethod
-    def show_image(
-        self,
-        rgba: NDArray[np.uint8],
-        depth: NDArray[np.float32],
-        labels: NDArray[np.int32],
-        camera: NDArray[np.float64],
-    ) -> None:
-        """Shows what a camera image of the script shows; see `getCameraImage` for the arrays.
+    def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
+        """Shows what a camera image of the script shows.
 
         Args:
-            rgba: Colours.
-            depth: Depth.
-            labels: Bodies.
-            camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+            image: The image.
+            camera: (4, 4) what takes points of the world to it, as OpenGL has it.
         """
 
     def show_rays(  # noqa: B027 (most windows do not show them)
@@ -184,13 +177,7 @@ class NoWindow(Window):
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """There is no camera."""
 
-    def show_image(
-        self,
-        rgba: NDArray[np.uint8],
-        depth: NDArray[np.float32],
-        labels: NDArray[np.int32],
-        camera: NDArray[np.float64],
-    ) -> None:
+    def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
         """Nobody would see it."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:

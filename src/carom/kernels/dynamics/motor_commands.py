@@ -64,6 +64,8 @@ def command_motors_kernel(
 ):
     """Set the motors of joints, or add to their torques; nothing if a number is not finite.
 
+    The same as `AxisMotor.command` of `carom.scene.joint_motor` for each.
+
     Args:
         state: The state of all worlds.
         commands: What the motors are told.

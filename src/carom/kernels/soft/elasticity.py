@@ -32,15 +32,15 @@ def relax_springs(soft: SoftModel, state: State, work: SoftWork, world: Int32, b
         b = soft.spring[spring].b
         inverse_a = soft.node_inverse_mass[a]
         inverse_b = soft.node_inverse_mass[b]
-        gain = soft.spring[spring].stiffness * h * h
-        stiffness = gain * (inverse_a + inverse_b)
+        mass = soft.spring[spring].stiffness * h * h  # k h² [kg]
+        stiffness = mass * (inverse_a + inverse_b)
         apart = work.node_before[world, b] - work.node_before[world, a]
         if stiffness > _EXPLICIT:
             apart = state.node_position[world, b] - state.node_position[world, a]
-            gain = gain / (1.0 + stiffness)
+            mass = mass / (1.0 + stiffness)
         length = wp.length(apart)
         if length > _SHORTEST:
-            push = apart * (gain * (length - soft.spring[spring].length) / length)
+            push = apart * (mass * (length - soft.spring[spring].length) / length)
             state.node_position[world, a] += push * inverse_a
             state.node_position[world, b] -= push * inverse_b
 

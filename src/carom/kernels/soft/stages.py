@@ -60,8 +60,8 @@ def move_freely(
         position = state.node_position[world, node]
         soft_work.node_before[world, node] = position
         if soft.node_inverse_mass[node] > 0.0:
-            gain = gravity + state.node_force[world, node] * soft.node_inverse_mass[node]
-            velocity = state.node_velocity[world, node] + gain * h
+            acceleration = gravity + state.node_force[world, node] * soft.node_inverse_mass[node]
+            velocity = state.node_velocity[world, node] + acceleration * h
             state.node_position[world, node] = position + velocity * h
 
 

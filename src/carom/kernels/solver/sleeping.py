@@ -127,7 +127,7 @@ def settle_kernel(
         return
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = tree
-        pair_rows.tree_contacts[world, tree] = 0
+        pair_rows.tree_awake[world, tree] = 0
     if touching != 0:
         unite_neighbours(settings, model, state, shapes, pairs, world)
         for contact in range(contacts.count_contacts[world, THERE]):
@@ -135,14 +135,13 @@ def settle_kernel(
             if link_moves(model, pair[2]) and link_moves(model, pair[3]):
                 unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
     unite_tied(settings, model, state, users, world)
-    # From here on `tree_contacts` of a root says that a tree of its island is active.
     for tree in range(settings.tree_count):
         if state.tree_activity[world, tree] == ACTIVE and has_moving_shapes(model, shapes, tree):
-            pair_rows.tree_contacts[world, island_of(state, world, tree)] = 1
+            pair_rows.tree_awake[world, island_of(state, world, tree)] = 1
     for tree in range(settings.tree_count):
         activity = state.tree_activity[world, tree]
         if activity != ACTIVE and has_moving_shapes(model, shapes, tree):
-            if pair_rows.tree_contacts[world, island_of(state, world, tree)] == 0:
+            if pair_rows.tree_awake[world, island_of(state, world, tree)] == 0:
                 state.tree_activity[world, tree] = ASLEEP
             elif activity == ASLEEP:
                 state.tree_activity[world, tree] = WOKEN

@@ -16,7 +16,6 @@ from zlib import compress
 from carom.viewer.page_files import page_files
 
 _PLACE = "RECORDING"
-_MAIN = "main.js"
 # What a module imports, by a path relative to itself.
 _IMPORT = re.compile(r'(\bfrom ")(\.[^"]+)(")')
 _STYLE = re.compile(r'<link rel="stylesheet"[^>]*>')
