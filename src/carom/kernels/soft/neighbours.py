@@ -126,6 +126,18 @@ def note_face(
 
 
 @func
+def near_at_rest(soft: SoftModel, node: Int32, face: Int32, reach: real) -> bool:
+    """Whether a node of the same body is this near a face when nothing pulls at either."""
+    nodes = soft.face_nodes[face]
+    p = soft.node_rest[nodes[0]]
+    q = soft.node_rest[nodes[1]]
+    r = soft.node_rest[nodes[2]]
+    corners = Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    point = soft.node_rest[node]
+    return wp.length(point - on_triangle(corners, point, face_normal(corners))) < reach
+
+
+@func
 def look_at_node(
     soft: SoftModel,
     state: State,
@@ -140,12 +152,17 @@ def look_at_node(
 ):
     """Let a node remember a face that it is near.
 
-    Of a closed surface the inside is known, so that a node that got there is put out again.
+    Of a closed surface the inside is known, so that a node that got there is put out again. Within a body,
+    nodes that the mesh has nearer to a face than they are kept from it may be there.
     """
     point = state.node_position[world, node]
     offset = point - on_triangle(corners, point, normal)
     distance = wp.length(offset)
-    if distance <= max_distance:
+    body = work.node_body[world, node]
+    usual = body == work.node_body[world, soft.face_nodes[face][0]]
+    if usual and distance <= max_distance:
+        usual = near_at_rest(soft, node, face, soft.soft[body].thickness)
+    if distance <= max_distance and not usual:
         side = sign_of(wp.dot(offset, normal))
         if closed:
             side = real(1.0)

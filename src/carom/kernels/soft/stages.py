@@ -31,7 +31,7 @@ from carom.layouts.status import OVERFLOW, STATUS
 # are not too many.
 _PHASE = real(1.0)
 _LEAST_STEPS = 4
-_MOST_STEPS = 40
+_MOST_STEPS = 128
 
 
 @func
