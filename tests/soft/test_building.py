@@ -111,7 +111,7 @@ def test_corners_in_one_place_stay_there() -> None:
     nodes, triangles = grid((0.2, 0.2), (2, 2))
     right, left = np.flatnonzero(nodes[:, 0] > 0.099), np.flatnonzero(nodes[:, 0] < -0.099) + len(nodes)
     seam = [[right[k], left[k], right[k + 1]] for k in range(2)] + [[right[2], left[2], left[1]]]
-    both = np.concatenate([nodes, nodes + [0.2, 0.0, 0.0]])
+    both = np.concatenate([nodes, nodes + np.array([0.2, 0.0, 0.0])])
     cells = np.concatenate([triangles, triangles + len(nodes), np.array(seam, dtype=np.int32)])
     world = World()
     world.gravity = (0.0, 0.0, -10.0)

@@ -140,6 +140,7 @@ class SoftWork:
     near_face: IntRows  # `FACES_PER_NODE` for each node
     near_side: RealRows  # 1: the node is where the normal of the face points; -1: behind
     near_distance: RealRows  # when it was found
+    near_impulse: Vector3Rows  # on the node, in this substep [N s]
     touch_row: IntRows  # the first of its rows over a tree, -1 if nothing moves the link
     touch_shape: IntRows
     touch_point: Vector3Rows

@@ -161,7 +161,7 @@ def _springs(
     same = np.flatnonzero(edges[:, 0] == edges[:, 1])
     if len(same):
         raise DescriptionError(f"a cell has node {edges[same[0], 0]} twice", file=source)
-    # Nodes in one place are kept together by springs of no length, as seams of garments are; a point is no body.
+    # Nodes in one place are kept together by springs of no length, as in seams of garments.
     size = float(np.ptp(nodes, axis=0).max())
     if not (np.linalg.norm(nodes[edges[:, 1]] - nodes[edges[:, 0]], axis=1) > SHORT * size).any():
         raise DescriptionError("all corners of its cells are in one place", file=source)

@@ -44,7 +44,7 @@ _SHORT = {
     "NeoHookeanDamping": "damping",
     "collisionMargin": "margin",
 }
-_UNSAID = {"useBendingSprings", "useMassSpring", "useNeoHookean", "ball"}
+_UNSAID = {"useBendingSprings", "useMassSpring", "useNeoHookean", "ball", "seconds"}
 
 
 def _mu(mu: float, lam: float) -> dict[str, Any]:
@@ -77,7 +77,7 @@ def _all() -> Iterator[Case]:
         *({"side": side} for side in (5, 13)),
         *({"mass": mass} for mass in (0.1, 0.3, 3.0)),
         *(_BENT | {"springBendingStiffness": bending} for bending in (2.0, 20.0, 100.0, 1000.0)),
-        *({"springDampingStiffness": damping} for damping in (0.1, 2.0, 20.0)),
+        *({"springDampingStiffness": damping} for damping in (0.1, 2.0)),
     )
     yield from _cases(
         "cloth by two corners",
@@ -105,7 +105,9 @@ def _all() -> Iterator[Case]:
         "cantilever",
         "cantilever",
         _SOLID | _mu(4000.0, 4000.0),
-        *(_mu(mu, mu) for mu in (2e3, 8e3, 1e5, 1e6, 1e7)),
+        *(_mu(mu, mu) for mu in (2e3, 8e3)),
+        *(_mu(mu, mu) | {"seconds": 1.5} for mu in (1e5, 1e6, 1e7)),
+        *(_mu(mu, mu) | {"seconds": 1.5, "NeoHookeanDamping": 5e-4} for mu in (1e5, 1e6)),
         *(_mu(*both) for both in ((2e3, 8e3), (8e3, 2e3))),
         _mu(1e3, 1e5) | {"NeoHookeanDamping": 0.01},
         *({"cells": cells} for cells in ((2, 1, 1), (6, 3, 3))),
@@ -126,7 +128,9 @@ def _all() -> Iterator[Case]:
             title,
             "dropped",
             _DROPPED | {"ball": ball} | _mu(1500.0, 1500.0),
-            *(_mu(mu, mu) for mu in (800.0, 4e3, 2e4, 1e6)),
+            *(_mu(mu, mu) for mu in (800.0, 4e3, 2e4)),
+            *(_mu(mu, mu) | {"seconds": 1.5} for mu in (1e5, 1e6)),
+            *(_mu(mu, mu) | {"seconds": 1.5, "NeoHookeanDamping": 5e-4} for mu in (1e5,)),
             *(_mu(*both) for both in ((1.5e3, 6e3), (6e3, 1.5e3))),
             {"cells": 5},
             *({"rate": rate} for rate in (60, 120, 480)),

@@ -98,14 +98,14 @@ _INTRODUCTION = """# Soft bodies
 
 <!-- Written by tests/soft/beside/compare.py. -->
 
-Cloth that hangs and swings, beams held at one end, cubes and balls dropped on a floor: around one choice of
-parameters for each, stiffness, damping, mass, resolution, margin and time step go their ways. Compared are how
-far cloth and beams sag [m], the height of what was dropped at rest [m], and the period of swings [s].
-`rate` is the number of time steps in a second, 240 if it is not named.
+Cloth that hangs and swings, beams held at one end, cubes and balls dropped on a floor: around one choice
+of parameters for each, stiffness, damping, mass, resolution, margin and time step go their ways. Compared
+are how far cloth and beams sag [m], the height of what was dropped at rest [m], and the period of swings
+[s]. `rate` is the number of time steps in a second, 240 if it is not named.
 
-PyBullet was asked for the same at four times the rate as well. Where the figures agree it is stable: in {stable}
-of {cases} cases. In {agree} of these Carom's sag is within 5 %, its height within 2 mm or 2 %, its period within
-3 %. What is left of a difference is mostly that neither has come to rest entirely.
+PyBullet was asked for the same at four times the rate as well. Where the figures agree it is stable: in
+{stable} of {cases} cases. In {agree} of these Carom's sag is within 5 %, its height within 2 mm or 2 %, its
+period within 3 %. What is left of a difference is mostly that one of the two has not come to rest entirely.
 
 | case | Carom | PyBullet | difference |
 |---|---:|---:|---:|"""
@@ -114,7 +114,7 @@ _UNSTABLE = """
 ## Where PyBullet is not stable
 
 In {others} cases PyBullet's bodies explode, or come to rest somewhere that depends on the time step. Carom
-stands in {stand} of them. With short enough time steps PyBullet is stable in most, which tells where the body
+stands in {stand} of them. With short enough time steps PyBullet is stable as well, which tells where the body
 should be; the difference is that from there.
 
 | case | Carom | PyBullet | with shorter steps | difference |

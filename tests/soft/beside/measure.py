@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-
 from tests.conformance.scenario import ASSETS
 from tests.conformance.soft_meshes import cuboid_text, mesh_file, square_text
 

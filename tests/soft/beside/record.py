@@ -55,10 +55,11 @@ def _short(value: float | None) -> float | None:
 
 
 def main() -> None:
-    """Record all cases, or do the experiment of one."""
+    """Record all cases or those that are missing, or do the experiment of one."""
     parser = argparse.ArgumentParser(description="Record what PyBullet makes of soft bodies.")
     parser.add_argument("--case", choices=CASES)
     parser.add_argument("--factor", type=int, default=1)
+    parser.add_argument("--missing", action="store_true", help="keep what is recorded of the other cases")
     arguments = parser.parse_args()
     if arguments.case:
         pybullet: Any = importlib.import_module("pybullet")
@@ -67,9 +68,11 @@ def main() -> None:
         result = perform(pybullet, case.experiment, case.options | {"rate": rate})
         print(json.dumps(_short(result.figure)))
         return
+    known = json.loads(RECORDED.read_text(encoding="utf-8")) if arguments.missing else {}
+    wanted = [case for name, case in CASES.items() if name not in known]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = dict(zip(CASES, pool.map(_record, CASES.values()), strict=True))
-    lines = [f"{json.dumps(name)}: {json.dumps(record)}" for name, record in found.items()]
+        found = known | {case.name: it for case, it in zip(wanted, pool.map(_record, wanted), strict=True)}
+    lines = [f"{json.dumps(name)}: {json.dumps(found[name])}" for name in CASES]
     RECORDED.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
 

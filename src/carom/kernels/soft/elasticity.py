@@ -19,8 +19,8 @@ from carom.kernels.types import Index4, Int32, Matrix3, Vector3Rows, func, real
 _SHORTEST = real(1.0e-12)
 # Stiffness by inertia of a tetrahedron, k h² w, from which on its stress is implicit: if it is deformed.
 _EXPLICIT = real(0.6)
-# Phase of the fastest vibration around a spring or tetrahedron that a small step can follow [rad]: with a margin
-# to 2, where symplectic Euler ends, for what is deformed and therefore stiffer.
+# Phase of the fastest vibration around a spring or tetrahedron that a small step can follow [rad]: with a
+# margin to 2, where symplectic Euler ends, for what is deformed and therefore stiffer.
 _LONGEST_PHASE = real(1.1)
 
 
@@ -154,9 +154,9 @@ def relax_tetras(soft: SoftModel, state: State, work: SoftWork, world: Int32, bo
     Its two parts are the squares of sqrt(I - log(I + 1)) and of the rest. At rest they are in balance, so
     they have to be relaxed together, as in Macklin and Müller (2021): two equations for each tetrahedron.
 
-    One sweep over stiff ones comes to rest far from where forces balance. So where a small step is too long for
-    what is around a tetrahedron at rest, its stiffness is what the step can follow; only the deformed are
-    implicit.
+    One sweep over stiff ones comes to rest far from where forces balance. So where a small step is too long
+    for what is around a tetrahedron at rest, its stiffness is what the step can follow; only the deformed
+    are implicit.
     """
     first = soft.soft[body].first_tetra
     for tetra in range(first, first + soft.soft[body].tetra_count):

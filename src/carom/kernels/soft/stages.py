@@ -108,7 +108,7 @@ def take_small_steps(
         relax_anchors(scratch, pair_rows, soft, state, soft_work, world, h)
         for body in range(soft.count_soft[BODIES]):
             if neighbours:
-                relax_neighbours(shapes, model, soft, state, soft_work, world, body)
+                relax_neighbours(shapes, model, soft, state, soft_work, world, body, h)
             relax_touches(scratch, pair_rows, soft, state, soft_work, world, body, h)
         move_anchors(scratch, pair_rows, soft, soft_work, world, h)
         for body in range(soft.count_soft[BODIES]):
