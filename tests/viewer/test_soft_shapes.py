@@ -54,4 +54,4 @@ def test_images_are_drawn_while_a_page_looks_on(monkeypatch) -> None:
     for _ in range(2):
         world.step(10)
         feed.frame({})
-        assert camera.render(world).mask(solid).any()
+        assert camera.capture(world).mask(solid).any()

@@ -139,7 +139,7 @@ class Assets:
 
 
 def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
-    """Everything a page has to know of a body but where its links are; soft bodies in the shape they have now.
+    """Everything a page has to know of a body but where its links are; of soft ones the shape they have now.
 
     Args:
         body: The body.
