@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -158,3 +159,21 @@ def test_bounds_meet_boxes_where_the_nodes_are() -> None:
     row = cloth.first_link
     assert row in where.queries().overlapping((0.4, 0.4, 0.2), (0.5, 0.5, 0.4))
     assert row not in where.queries().overlapping((0.6, 0.6, 0.2), (0.7, 0.7, 0.4))
+
+
+def test_contacts_are_asked_for_while_another_thread_steps(connection: None) -> None:
+    p.setGravity(0, 0, -GRAVITY)
+    p.loadURDF("plane.urdf")
+    for height in (0.1, 0.4):
+        p.loadSoftBody("cloth_z_up.obj", [0, 0, height], scale=0.5, useMassSpring=1, collisionMargin=0.02)
+
+    def steps() -> None:
+        for _ in range(400):
+            p.stepSimulation()
+
+    thread = Thread(target=steps)
+    thread.start()
+    while thread.is_alive():
+        p.getContactPoints()
+    thread.join()
+    assert p.getContactPoints()

@@ -81,11 +81,13 @@ def getContactPoints(
         ([0, 0, 1], True)
     """
     client = client_of(physicsClientId)
-    count, columns = client.world.queries().contacts(
+    asked = (
         integer(bodyA, "bodyA"),
         integer(linkIndexA, "linkIndexA"),
         integer(bodyB, "bodyB"),
         integer(linkIndexB, "linkIndexB"),
-        client.time_step,
     )
-    return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()
+    # Another thread may be stepping, and contacts are read from what a step works with.
+    with client.lock:
+        count, columns = client.world.queries().contacts(*asked, client.time_step)
+        return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()
