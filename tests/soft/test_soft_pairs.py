@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from tests.soft.scenes import GRAVITY, momentum, rigid, world
@@ -20,7 +22,7 @@ def stack(where: World, friction: float = 0.7) -> tuple[SoftBody, SoftBody]:
     """Two cubes of 40 cm, one above the other on a plane."""
     rigid(where, Plane(), friction=1.0)
     size, cells = (0.4, 0.4, 0.4), (3, 3, 3)
-    options = {"youngs_modulus": 5e4, "damping": 0.1, "friction": friction, "margin": 0.01}
+    options: dict[str, Any] = {"youngs_modulus": 5e4, "damping": 0.1, "friction": friction, "margin": 0.01}
     lower = where.load_soft_solid(size, cells, (0, 0, 0.211), mass=4.0, **options)
     upper = where.load_soft_solid(size, (2, 2, 2), (0.01, 0.02, 0.63), mass=2.0, **options)
     return lower, upper
