@@ -149,7 +149,7 @@ def dropped(
     """A cube or a ball of tetrahedra that falls on a floor: how high its top is at rest."""
     _world(p, rate)
     p.loadURDF(str(ASSETS / "plane.urdf"))
-    with mesh_file("solid.vtk", cuboid_text((cells,) * 3, (_SIZE,) * 3, ball=ball)) as path:
+    with mesh_file("solid.vtk", cuboid_text((cells, cells, cells), (_SIZE, _SIZE, _SIZE), ball=ball)) as path:
         arguments = {"frictionCoeff": 0.5, "useNeoHookean": 1, "collisionMargin": 0.006} | options
         solid = p.loadSoftBody(path, basePosition=[0, 0, 0.22], **arguments)
     return _rest(p, solid, rate, seconds, lambda nodes: float(nodes[:, 2].max()))
