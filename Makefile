@@ -159,6 +159,7 @@ types: $(VENV)/dev
 record: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.conformance.record
 	env -u PYTHONPATH .oracle/bin/python -m tests.first_contacts.record
+	env -u PYTHONPATH .oracle/bin/python -m tests.soft.beside.record
 
 surface: oracle
 	env -u PYTHONPATH .oracle/bin/python -m tests.surface.record
@@ -173,6 +174,7 @@ conformance: oracle $(VENV)/dev
 report: $(VENV)/dev
 	$(RUN) -m tests.conformance.report
 	$(RUN) -m tests.first_contacts.compare
+	$(RUN) -m tests.soft.beside.compare
 
 CLIENT_SOURCES ?= .clients/sources
 

@@ -21,6 +21,7 @@ MEASURED = {
     "ball.vtk": ((0.983, 0.982, 1.0), 3.941),
     "reduced_cube/cube_mesh.vtk": ((0.5, 0.5, 0.5), 1.0),
     "torus.vtk": ((0.75, 0.2475, 0.75), 0.5689),
+    "tube.vtk": ((0.433, 0.619, 0.431), 0.6503),
 }
 URDFS = sorted(str(path.relative_to(DATA)) for path in DATA.rglob("*.urdf"))
 

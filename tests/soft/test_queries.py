@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import pybullet_data
 from carom import World
 from carom.description import Box, Plane
 from carom.scene.soft_body import SoftBody
+from pybullet._clients.clients import clients
 
 
 @pytest.fixture
@@ -158,3 +160,13 @@ def test_bounds_meet_boxes_where_the_nodes_are() -> None:
     row = cloth.first_link
     assert row in where.queries().overlapping((0.4, 0.4, 0.2), (0.5, 0.5, 0.4))
     assert row not in where.queries().overlapping((0.6, 0.6, 0.2), (0.7, 0.7, 0.4))
+
+
+def test_contacts_wait_until_another_thread_has_stepped(connection: None) -> None:
+    p.loadSoftBody("cloth_z_up.obj", scale=0.5, useMassSpring=1)
+    question = Thread(target=p.getContactPoints)
+    with clients[0].lock:
+        question.start()
+        question.join(0.3)
+        assert question.is_alive()
+    question.join()

@@ -6,7 +6,7 @@ from threading import RLock
 
 import numpy as np
 
-from carom import World
+from carom import Camera, World
 from carom.viewer import scene_feed
 from carom.viewer.board import Board
 from carom.viewer.messages import decoded
@@ -41,3 +41,17 @@ def test_a_cloth_that_falls_together_is_shown_so(monkeypatch) -> None:
     revision = board.revision
     feed.frame({})
     assert board.revision == revision, "nothing has moved"
+
+
+def test_images_are_drawn_while_a_page_looks_on(monkeypatch) -> None:
+    """What pages are sent is no matter to the renderer, which has surfaces of its own."""
+    monkeypatch.setattr(scene_feed, "_SHAPE_INTERVAL", 0.0)
+    world = World()
+    world.gravity = (0, 0, -10)
+    solid = world.load_soft_solid(0.2, 4)
+    feed = scene_feed.SceneFeed(world, RLock(), Board())
+    camera = Camera(32, 32, fx=30.0).look_at((0.0, -1.0, 0.0), (0.0, 0.0, 0.0))
+    for _ in range(2):
+        world.step(10)
+        feed.frame({})
+        assert camera.capture(world).mask(solid).any()

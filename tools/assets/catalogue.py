@@ -264,6 +264,7 @@ MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
     "plane100.obj": partial(simple_meshes.square, 100.0, 100.0, ("floor", "plane.mtl")),
     "plane_transparent.obj": partial(simple_meshes.square, 15.0, 15.0, ("floor", "plane.mtl")),
     "bicycle/wheel.obj": rovers.wheel_disc,
+    "cloth.obj": partial(simple_meshes.sheet, 1.0, 4, upright=True),
     "cloth_z_up.obj": partial(simple_meshes.sheet, 1.0, 4),
     "cube.obj": partial(simple_meshes.textured_box, ("cube", "cube.mtl")),
     "domino/domino.obj": blocks_to_sort.domino_tile,

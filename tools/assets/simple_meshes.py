@@ -83,15 +83,17 @@ def ellipsoids(middles_and_halves: Sequence[tuple[Corner, Corner]]) -> ObjParts:
     )
 
 
-def sheet(half: float, cells: int) -> ObjMesh:
-    """A horizontal square around the origin, cut into cells of two triangles."""
+def sheet(half: float, cells: int, *, upright: bool = False) -> ObjMesh:
+    """A square around the origin, cut into cells of two triangles; its normal is z, or y if it is upright."""
     along = np.linspace(-half, half, cells + 1)
     y, x = np.meshgrid(along, along, indexing="ij")
     row = cells + 1
     faces: list[tuple[int, ...]] = []
     for corner in (j * row + i for j in range(cells) for i in range(cells)):
         faces += [(corner, corner + 1, corner + row + 1), (corner, corner + row + 1, corner + row)]
-    return ObjMesh(np.column_stack((x.ravel(), y.ravel(), np.zeros(x.size))), faces)
+    flat = np.zeros(x.size)
+    places = (x.ravel(), flat, -y.ravel()) if upright else (x.ravel(), y.ravel(), flat)
+    return ObjMesh(np.column_stack(places) + 0.0, faces)
 
 
 def ring(radius: float, thickness: float, segments: int, sides: int) -> ObjMesh:

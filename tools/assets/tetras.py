@@ -57,6 +57,17 @@ def ball(radius: float, cells: int) -> TetraMesh:
     return TetraMesh(round_nodes, oriented(round_nodes, tetras))
 
 
+def rod(radius: float, length: float, cells: int, layers: int) -> TetraMesh:
+    """A round rod along the y axis, around the origin: cells across it, layers along it."""
+    nodes, tetras = box((2.0, length, 2.0), (cells, layers, cells))
+    across = nodes[:, [0, 2]] ** 2
+    # A square becomes a disc.
+    x = radius * nodes[:, 0] * np.sqrt(1.0 - across[:, 1] / 2.0)
+    z = radius * nodes[:, 2] * np.sqrt(1.0 - across[:, 0] / 2.0)
+    places = np.stack([x, nodes[:, 1], z], axis=1)
+    return TetraMesh(places, oriented(places, tetras))
+
+
 def torus(radius: float, thickness: float, cells: int, segments: int) -> TetraMesh:
     """A ring around the y axis.
 
@@ -121,6 +132,7 @@ SOLIDS: dict[str, Callable[[], TetraMesh]] = {
     "ball.vtk": lambda: ball(1.0, 7),
     "reduced_cube/cube_mesh.vtk": lambda: cube(1.0, 5),
     "torus.vtk": lambda: torus(0.5, 0.25, 5, 28),
+    "tube.vtk": lambda: rod(0.418, 1.2375, 6, 11),
 }
 """Tetrahedra by the file they are written to."""
 SOFT_ROBOTS: dict[str, Callable[[], str]] = {

@@ -69,7 +69,6 @@ cube = p.loadURDF("cube_small.urdf", [0.5, 0, 0.025])
 """
 
 LIMITED = {
-    "getContactPoints": "those of soft bodies with each other are not among them",
     "configureDebugVisualizer": "the flags of virtual reality are recorded and have no effect",
     "setPhysicsEngineParameter": "all values of `constraintSolverType` are solved as 1, and "
     "`allowedCcdPenetration` and `enableSAT` have no effect",

@@ -56,7 +56,6 @@ class SoftBodyModel:
     lam: real
     damping: real  # viscosity of tetrahedra as a share of `mu` and `lam` [s]
     frequency: real  # bound of the angular frequencies at which it can vibrate [rad/s]
-    shear_frequency: real  # the same of its tetrahedra if they resisted to shear only [rad/s]
     gravity_factor: real  # share of the world's gravity that pulls it
 
 
@@ -70,6 +69,7 @@ class SpringModel:
     length: real  # at rest [m]
     stiffness: real  # [N/m]
     damping: real  # [N s/m]
+    frequency: real  # bound of the angular frequencies at which its ends can vibrate [rad/s]
 
 
 @struct
@@ -79,6 +79,7 @@ class TetraModel:
     nodes: Index4
     inverse: Matrix3  # of the edges from the first node, as columns, at rest [1/m]
     volume: real  # at rest [m³]
+    frequency: real  # as of a spring, at rest [rad/s]
 
 
 @struct
@@ -139,6 +140,7 @@ class SoftWork:
     near_face: IntRows  # `FACES_PER_NODE` for each node
     near_side: RealRows  # 1: the node is where the normal of the face points; -1: behind
     near_distance: RealRows  # when it was found
+    near_impulse: Vector3Rows  # on the node, in this substep [N s]
     touch_row: IntRows  # the first of its rows over a tree, -1 if nothing moves the link
     touch_shape: IntRows
     touch_point: Vector3Rows

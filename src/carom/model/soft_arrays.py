@@ -118,14 +118,15 @@ class SoftArrays:
         numpy["soft_mu"][row] = spec.mu
         numpy["soft_lam"][row] = spec.lam
         numpy["soft_damping"][row] = spec.damping
-        numpy["soft_frequency"][row] = spec.frequency()
-        numpy["soft_shear_frequency"][row] = spec.shear_frequency()
+        frequencies = spec.frequencies()
+        numpy["soft_frequency"][row] = frequencies.max(initial=0.0)
         rows = {axis: slice(first[axis], first[axis] + soft.count[axis]) for axis in _AXES}
         numpy["node_inverse_mass"][rows["node"]] = 1.0 / spec.masses
         numpy["node_anchored"][rows["node"]] = 0
         numpy["node_rest"][rows["node"]] = spec.nodes - np.average(spec.nodes, axis=0, weights=spec.masses)
         ends = spec.springs + first["node"]
         numpy["spring_a"][rows["spring"]], numpy["spring_b"][rows["spring"]] = ends[:, 0], ends[:, 1]
+        numpy["spring_frequency"][rows["spring"]] = frequencies[spec.springs].max(axis=1)
         numpy["spring_all_directions"][rows["spring"]] = spec.damps_all_directions
         for name, column in (("length", LENGTH), ("stiffness", STIFFNESS), ("damping", DAMPING)):
             numpy[f"spring_{name}"][rows["spring"]] = spec.spring_terms[:, column]
@@ -134,6 +135,7 @@ class SoftArrays:
             numpy["tetra_nodes"][rows["tetra"]] = spec.tetras + first["node"]
             numpy["tetra_inverse"][rows["tetra"]] = inverses(edges)
             numpy["tetra_volume"][rows["tetra"]] = determinants(edges) / 6.0
+            numpy["tetra_frequency"][rows["tetra"]] = frequencies[spec.tetras].max(axis=1)
         numpy["face_nodes"][rows["face"], :3] = spec.faces + first["node"]
 
     def write_anchors(self) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import TYPE_CHECKING
 
 from carom.record import record
@@ -15,6 +14,8 @@ if TYPE_CHECKING:
 LENGTH, STIFFNESS, DAMPING = 0, 1, 2
 # Thickness at most, relative to the shortest edge.
 _SHARE_OF_EDGE = 0.4
+SHORT = 1.0e-12
+"""Springs and edges shorter than this share of the size of the body have no length."""
 
 
 @record(frozen=False, eq=False)
@@ -78,7 +79,7 @@ class SoftSpec:
     def thickness(self) -> float:
         """Distance at which nodes of soft bodies are kept off its faces [m].
 
-        The margin; but less than what is between neighbouring nodes at rest.
+        The margin; but less than what is between neighbouring nodes at rest, those in one place left out.
         """
         import numpy as np
 
@@ -86,27 +87,25 @@ class SoftSpec:
         if not len(corners):
             return self.margin
         edges = corners - np.roll(corners, 1, axis=1)
-        return min(self.margin, _SHARE_OF_EDGE * float(np.linalg.norm(edges, axis=2).min()))
+        lengths = np.linalg.norm(edges, axis=2)
+        apart = lengths[lengths > SHORT * np.ptp(self.nodes, axis=0).max()]
+        return min(self.margin, _SHARE_OF_EDGE * float(apart.min())) if len(apart) else self.margin
 
-    def frequency(self) -> float:
-        """A bound of the angular frequencies at which it can vibrate [rad/s].
+    def frequencies(self) -> NDArray[np.float64]:
+        """(n,) bounds of the angular frequencies at which each node can vibrate [rad/s].
 
         For springs by Gershgorin's theorem: twice the stiffness at a node by its mass. For tetrahedra, which
         resist most to being stretched along one axis, likewise by the stiffness at each corner.
         """
         import numpy as np
 
-        stiffness = self._at_nodes(self.lam + 1.5 * self.mu)
+        stiffness = self._at_nodes()
         for end in range(2):
             np.add.at(stiffness, self.springs[:, end], self.spring_terms[:, STIFFNESS])
-        return self._fastest(stiffness)
+        return np.sqrt(2.0 * stiffness / self.masses)
 
-    def shear_frequency(self) -> float:
-        """The same if its tetrahedra resisted to shear only [rad/s]."""
-        return self._fastest(self._at_nodes(1.5 * self.mu))
-
-    def _at_nodes(self, modulus: float) -> NDArray[np.float64]:
-        """(n,) stiffness of the tetrahedra around each node [N/m], by their modulus [Pa]."""
+    def _at_nodes(self) -> NDArray[np.float64]:
+        """(n,) stiffness of the tetrahedra around each node [N/m]."""
         import numpy as np
 
         from carom.native.products import determinants, inverses
@@ -117,10 +116,7 @@ class SoftSpec:
             gradients = inverses(edges)
             gradients = np.concatenate([-gradients.sum(axis=1, keepdims=True), gradients], axis=1)
             volume = determinants(edges) / 6.0
-            at_corner = modulus * volume[:, None] * (gradients**2).sum(axis=2)
+            at_corner = (self.lam + 1.5 * self.mu) * volume[:, None] * (gradients**2).sum(axis=2)
             for corner in range(4):
                 np.add.at(stiffness, self.tetras[:, corner], at_corner[:, corner])
         return stiffness
-
-    def _fastest(self, stiffness: NDArray[np.float64]) -> float:
-        return sqrt(2.0 * float((stiffness / self.masses).max(initial=0.0)))

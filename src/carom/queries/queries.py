@@ -219,7 +219,7 @@ class Queries:
         rigid = self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
         if self._soft is None:
             return rigid
-        soft = self._soft.contacts(body_a, link_a, body_b, link_b)
+        soft = self._soft.contacts(body_a, link_a, body_b, link_b, time_step)
         return _one_after_the_other(rigid, soft)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:

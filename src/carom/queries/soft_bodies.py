@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from carom.native.products import dots, length
 from carom.native.tables import ArrayTable
 from carom.queries.contact_search import ContactColumns
 from carom.queries.ray_cast import Points, RayHit
+from carom.queries.soft_pairs import touching_pairs
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
@@ -116,36 +117,34 @@ class SoftQueries:
 
     # Contacts
 
-    def contacts(self, body_a: int, link_a: int, body_b: int, link_b: int) -> ContactColumns:
-        """The nodes that touch shapes; the arguments are those of `Queries.contacts`.
+    def contacts(
+        self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
+    ) -> ContactColumns:
+        """The nodes that touch shapes or other soft bodies; the arguments are those of `Queries.contacts`.
 
-        The soft body is the first of the two unless the other one was asked for. A contact is at a node;
-        its distance is that to the surface less the margin, its forces are those of the last substep.
+        The soft body is the first of the two, or that with the node, unless the other one was asked for. A
+        contact is at a node; its distance is that to the surface less what is kept between them, its forces
+        are those of the last substep.
         """
         with self._present_poses():
             self._find_touches()
-        rows = []
+        rows: list[tuple[Any, ...]] = []
         for soft in self._soft.bodies:
             own = self._places[self._link_row(soft)][0]
             for node, shape, distance, normal, force in self._touches(soft):
                 other, link = self._places[int(self._shapes["shape_link"][shape])]
-                a, b, sign = (own, _BASE), (other, link), 1.0
-                if body_a >= 0 and body_a == other and body_a != own:
-                    a, b, sign = b, a, -1.0
-                if _is_other(a, body_a, link_a) or _is_other(b, body_b, link_b):
-                    continue
                 place = self._state["node_position"][0, node]
-                ends = [place, place - (distance + soft.spec.margin) * normal]
-                on_a, on_b = ends if sign > 0.0 else ends[::-1]
-                along = float(dots(force, normal))
-                friction = force - along * normal
-                size = length(friction)
-                first = friction / size if size > 0.0 else _across(normal)
-                second = np.cross(normal, first)
-                rows.append(
-                    (a[0], b[0], a[1], b[1], _tuple(on_a), _tuple(on_b), _tuple(sign * normal), distance,
-                     along, size, _tuple(sign * first), 0.0, _tuple(sign * second))
-                )  # fmt: skip
+                on_b = place - (distance + soft.spec.margin) * normal
+                sides = _sides((own, _BASE), (other, link), body_a, link_a, body_b, link_b)
+                if sides is not None:
+                    rows.append(_row(sides, place, on_b, normal, distance, force))
+        places = self._state["node_position"][0]
+        for pair in touching_pairs(self._soft, places, self._work, _GAP):
+            own, other = (self._places[self._link_row(soft)] for soft in (pair.own, pair.other))
+            sides = _sides(own, other, body_a, link_a, body_b, link_b)
+            if sides is not None:
+                force = pair.impulse / time_step
+                rows.append(_row(sides, places[pair.node], pair.foot, pair.normal, pair.gap, force))
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
     def _touches(self, soft: SoftRows) -> list[tuple[int, int, float, np.ndarray, np.ndarray]]:
@@ -235,6 +234,43 @@ def _crossings(
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     normal *= np.where(determinant[ray, face] > 0.0, 1.0, -1.0)[:, None]
     return ray, fraction[ray, face], normal
+
+
+_Place = tuple[int, int]
+
+
+def _sides(
+    own: _Place, other: _Place, body_a: int, link_a: int, body_b: int, link_b: int
+) -> tuple[_Place, _Place, float] | None:
+    """First and second body with their links, and -1 if they are exchanged; None if others are asked for."""
+    a, b, sign = own, other, 1.0
+    if body_a >= 0 and body_a == other[0] and body_a != own[0]:
+        a, b, sign = b, a, -1.0
+    if _is_other(a, body_a, link_a) or _is_other(b, body_b, link_b):
+        return None
+    return a, b, sign
+
+
+def _row(
+    sides: tuple[_Place, _Place, float],
+    node: np.ndarray,
+    foot: np.ndarray,
+    normal: np.ndarray,
+    distance: float,
+    force: np.ndarray,
+) -> tuple[Any, ...]:
+    """A contact of `ContactColumns`, of a node with a surface; the force is on the node."""
+    a, b, sign = sides
+    on_a, on_b = (node, foot) if sign > 0.0 else (foot, node)
+    along = float(dots(force, normal))
+    friction = force - along * normal
+    size = length(friction)
+    first = friction / size if size > 0.0 else _across(normal)
+    second = np.cross(normal, first)
+    return (
+        a[0], b[0], a[1], b[1], _tuple(on_a), _tuple(on_b), _tuple(sign * normal), distance,
+        along, size, _tuple(sign * first), 0.0, _tuple(sign * second),
+    )  # fmt: skip
 
 
 def _is_other(place: tuple[int, int], body: int, link: int) -> bool:

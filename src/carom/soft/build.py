@@ -11,7 +11,7 @@ from carom.description import ContactParameters, TriangleMesh, Visual
 from carom.description.pose import Pose
 from carom.errors import DescriptionError
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.soft_spec import Skin, SoftSpec
+from carom.model.soft_spec import SHORT, Skin, SoftSpec
 from carom.native.products import determinants
 from carom.soft.materials import NeoHookean, Springs
 from carom.soft.shapes import oriented
@@ -26,8 +26,6 @@ FARTHEST = 1.0e6
 """Greatest coordinate of a node [m]."""
 # Tetrahedra of less than this share of the cube of their longest edge are flat.
 _FLAT = 1.0e-9
-# Springs shorter than this share of the size of the body have no length.
-_SHORT = 1.0e-12
 
 
 def soft_body(
@@ -60,8 +58,8 @@ def soft_body(
         source: The file it comes from, for errors.
 
     Raises:
-        DescriptionError: A node is not finite or far away, a cell names a node that does not exist, has no
-            volume, or has two corners in one place; or a parameter makes no sense.
+        DescriptionError: A node is not finite or far away, a cell names a node that does not exist or one
+            twice, or has no volume; all nodes are in one place; or a parameter makes no sense.
     """
     _check_parameters(mass, springs, solid, margin, friction, source)
     nodes = np.array(nodes, dtype=np.float64).reshape(-1, 3)
@@ -161,11 +159,12 @@ def _springs(
     """Pairs of nodes, and length, stiffness and damping of the springs between them."""
     edges = edges_of(cells)
     same = np.flatnonzero(edges[:, 0] == edges[:, 1])
-    length = np.linalg.norm(nodes[edges[:, 1]] - nodes[edges[:, 0]], axis=1)
-    short = np.flatnonzero(length <= _SHORT * np.ptp(nodes, axis=0).max())
-    if len(same) or len(short):
-        a, b = edges[(same if len(same) else short)[0]].tolist()
-        raise DescriptionError(f"a cell has two corners in one place, nodes {a} and {b}", file=source)
+    if len(same):
+        raise DescriptionError(f"a cell has node {edges[same[0], 0]} twice", file=source)
+    # Nodes in one place are kept together by springs of no length, as in seams of garments.
+    size = float(np.ptp(nodes, axis=0).max())
+    if not (np.linalg.norm(nodes[edges[:, 1]] - nodes[edges[:, 0]], axis=1) > SHORT * size).any():
+        raise DescriptionError("all corners of its cells are in one place", file=source)
     if springs is None:
         return np.empty((0, 2), dtype=np.int32), np.empty((0, 3))
     pairs, stiffness = [edges], [np.full(len(edges), springs.stiffness)]

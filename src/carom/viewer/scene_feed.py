@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
-from carom.render.soft_surfaces import surface_mesh
 from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
 from carom.viewer.messages import encoded
@@ -133,8 +132,6 @@ class SceneFeed:
             if appearance is None or self._shapes.get(body.id) == shape:
                 continue
             self._shapes[body.id] = shape
-            for look in appearance.shapes(body, BASE):
-                look.mesh = surface_mesh(body)
             facts = described(body, appearance, self._assets, collisions=self.collisions)
             self._described[body.id] = facts
             self._board.put(("body", body.id), facts)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from colorsys import hsv_to_rgb
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,10 @@ from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
 from carom.render.render_mesh import RenderMesh
+from carom.render.soft_surfaces import surface_mesh
 from carom.render.textures import NO_TEXTURE
 from carom.scene.joint_constraints import moving_links
+from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
 
 if TYPE_CHECKING:
@@ -137,7 +139,7 @@ class Assets:
 
 
 def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
-    """Everything a page has to know of a body but where its links are.
+    """Everything a page has to know of a body but where its links are; of soft ones the shape they have now.
 
     Args:
         body: The body.
@@ -149,7 +151,8 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
-            shapes.append(_shape(look, link, to_inertial, appearance, assets))
+            seen = replace(look, mesh=surface_mesh(body)) if isinstance(body, SoftBody) else look
+            shapes.append(_shape(seen, link, to_inertial, appearance, assets))
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
     return {

@@ -66,7 +66,8 @@ def getContactPoints(
         For each contact (0, bodyA, bodyB, linkIndexA, linkIndexB, point on A, point on B, normal on B
         towards A, distance, normal force, friction force 1, its direction, friction force 2, its
         direction). Points and directions are in the world frame; a negative distance is penetration. Of a
-        soft body there is one for each node that touches, its margin taken off the distance.
+        soft body there is one for each node that touches a link or another soft body, the distance that is
+        kept between them taken off.
         The friction is that on the body that is listed first when no body is asked for.
 
     Raises:
@@ -80,11 +81,13 @@ def getContactPoints(
         ([0, 0, 1], True)
     """
     client = client_of(physicsClientId)
-    count, columns = client.world.queries().contacts(
+    asked = (
         integer(bodyA, "bodyA"),
         integer(linkIndexA, "linkIndexA"),
         integer(bodyB, "bodyB"),
         integer(linkIndexB, "linkIndexB"),
-        client.time_step,
     )
-    return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()
+    # Another thread may be stepping, and contacts are read from what a step works with.
+    with client.lock:
+        count, columns = client.world.queries().contacts(*asked, client.time_step)
+        return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()

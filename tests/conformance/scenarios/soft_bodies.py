@@ -7,67 +7,18 @@ compared where it can be foreseen: at rest, in the first swing, and while slidin
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..scenario import ASSETS, Kind, scenario
+from ..soft_meshes import cuboid_text, mesh_file, square_text
 
 _GRAVITY = 10.0
 _CORNERS, _SIDE = (0, 8), 9
 
 
-def _grid() -> str:
-    """A square of 1 m, 9 nodes along each side, as an OBJ file."""
-    lines = [
-        f"v {i / (_SIDE - 1) - 0.5} {j / (_SIDE - 1) - 0.5} 0" for j in range(_SIDE) for i in range(_SIDE)
-    ]
-    for j in range(_SIDE - 1):
-        for i in range(_SIDE - 1):
-            a = j * _SIDE + i + 1
-            lines += [f"f {a} {a + 1} {a + _SIDE + 1}", f"f {a} {a + _SIDE + 1} {a + _SIDE}"]
-    return "\n".join(lines) + "\n"
-
-
-def _cuboid(cells: tuple[int, int, int], size: tuple[float, float, float], *, ball: bool = False) -> str:
-    """A cuboid of tetrahedra, six in each cell, as a VTK file; one of equal sides may be made a ball."""
-    x, y, z = (count + 1 for count in cells)
-    points = []
-    for k in range(z):
-        for j in range(y):
-            for i in range(x):
-                place = np.array([i / cells[0], j / cells[1], k / cells[2]]) - 0.5
-                length = float(np.linalg.norm(place))
-                if ball and length > 0.0:
-                    place *= np.abs(place).max() / length
-                points.append(" ".join(f"{value:.9g}" for value in place * size))
-    inside = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
-    tetras = []
-    for k in range(cells[2]):
-        for j in range(cells[1]):
-            for i in range(cells[0]):
-                corner = [((k + (b >> 2)) * y + j + (b >> 1 & 1)) * x + i + (b & 1) for b in range(8)]
-                tetras += [[corner[b] for b in four] for four in inside]
-    lines = ["# vtk DataFile Version 2.0", "cuboid", "ASCII", "DATASET UNSTRUCTURED_GRID"]
-    lines += [f"POINTS {len(points)} double", *points, f"CELLS {len(tetras)} {5 * len(tetras)}"]
-    lines += [" ".join(map(str, [4, *four])) for four in tetras]
-    lines += [f"CELL_TYPES {len(tetras)}", *["10"] * len(tetras)]
-    return "\n".join(lines) + "\n"
-
-
-_CUBE = _cuboid((3, 3, 3), (0.4, 0.4, 0.4))
-
-
-@contextmanager
-def _file(name: str, text: str) -> Iterator[str]:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / name
-        path.write_text(text)
-        yield str(path)
+_CUBE = cuboid_text((3, 3, 3), (0.4, 0.4, 0.4))
 
 
 def _start(p: Any, gravity: tuple[float, float, float] = (0.0, 0.0, -_GRAVITY)) -> None:
@@ -77,13 +28,13 @@ def _start(p: Any, gravity: tuple[float, float, float] = (0.0, 0.0, -_GRAVITY)) 
 
 def _cloth(p: Any, **options: Any) -> int:
     arguments = {"mass": 1.0, "useMassSpring": 1, "springElasticStiffness": 40.0, "collisionMargin": 0.01}
-    with _file("cloth.obj", _grid()) as path:
+    with mesh_file("cloth.obj", square_text(_SIDE)) as path:
         return p.loadSoftBody(path, **(arguments | options))
 
 
 def _solid(p: Any, mesh: str = _CUBE, /, **options: Any) -> int:
     arguments = {"mass": 4.0, "useNeoHookean": 1, "collisionMargin": 0.006}
-    with _file("cube.vtk", mesh) as path:
+    with mesh_file("cube.vtk", mesh) as path:
         return p.loadSoftBody(path, **(arguments | options))
 
 
@@ -137,7 +88,7 @@ def soft_cantilever_bends(p: Any) -> dict[str, Any]:
     """A short beam of tetrahedra held at one end: how far the other one hangs down."""
     _start(p)
     options = {"mass": 1.5, "NeoHookeanMu": 4000.0, "NeoHookeanLambda": 4000.0, "NeoHookeanDamping": 0.05}
-    beam = _solid(p, _cuboid((4, 2, 2), (0.4, 0.2, 0.2)), basePosition=[0, 0, 0], **options)
+    beam = _solid(p, cuboid_text((4, 2, 2), (0.4, 0.2, 0.2)), basePosition=[0, 0, 0], **options)
     start = _nodes(p, beam)
     for node in np.flatnonzero(start[:, 0] < -0.199):
         p.createSoftBodyAnchor(beam, int(node), -1, -1)
@@ -151,7 +102,7 @@ def soft_ball_rests_on_a_box(p: Any) -> dict[str, Any]:
     _start(p)
     p.loadURDF(str(ASSETS / "plane.urdf"))
     options = {"NeoHookeanMu": 2000.0, "NeoHookeanLambda": 2000.0, "NeoHookeanDamping": 0.1}
-    mesh = _cuboid((4, 4, 4), (0.4, 0.4, 0.4), ball=True)
+    mesh = cuboid_text((4, 4, 4), (0.4, 0.4, 0.4), ball=True)
     ball = _solid(p, mesh, basePosition=[0, 0, 0.22], frictionCoeff=0.5, **options)
     rest = _after(p, ball, 3.0)
     return {"height": [rest[:, 2].max(), rest[:, 2].mean()]}
@@ -221,7 +172,7 @@ def a_falling_triangle_is_damped(p: Any) -> dict[str, Any]:
     """A triangle of hardly any stiffness, held by a corner, whose fall is damped in all directions."""
     _start(p, (0.0, 0.0, -1.0))
     options = {"springElasticStiffness": 1e-9, "springDampingStiffness": 1.0, "springDampingAllDirections": 1}
-    with _file("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") as path:
+    with mesh_file("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") as path:
         cloth = p.loadSoftBody(path, mass=3.0, useMassSpring=1, collisionMargin=0.001, **options)
     p.createSoftBodyAnchor(cloth, 0, -1, -1)
     return {"way": [_after(p, cloth, 0.5)[1, 2] for _ in range(4)]}

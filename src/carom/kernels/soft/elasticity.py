@@ -17,10 +17,11 @@ from carom.kernels.types import Index4, Int32, Matrix3, Vector3Rows, func, real
 
 # Shorter springs have no direction [m].
 _SHORTEST = real(1.0e-12)
-# Stiffness by inertia of a spring or tetrahedron, k h² w, from which on its force is implicit.
+# Stiffness by inertia of a tetrahedron, k h² w, from which on its stress is implicit: if it is deformed.
 _EXPLICIT = real(0.6)
-# Phase of the fastest vibration in shear that a small step can follow [rad].
-_LONGEST_PHASE = real(2.0)
+# Phase of the fastest vibration around a spring or tetrahedron that a small step can follow [rad]: with a
+# margin to 2, where symplectic Euler ends, for what is deformed and therefore stiffer.
+_LONGEST_PHASE = real(1.1)
 
 
 @func
@@ -33,11 +34,10 @@ def relax_springs(soft: SoftModel, state: State, work: SoftWork, world: Int32, b
         inverse_a = soft.node_inverse_mass[a]
         inverse_b = soft.node_inverse_mass[b]
         mass = soft.spring[spring].stiffness * h * h  # k h² [kg]
-        stiffness = mass * (inverse_a + inverse_b)
         apart = work.node_before[world, b] - work.node_before[world, a]
-        if stiffness > _EXPLICIT:
+        if soft.spring[spring].frequency * h > _LONGEST_PHASE:
             apart = state.node_position[world, b] - state.node_position[world, a]
-            mass = mass / (1.0 + stiffness)
+            mass = mass / (1.0 + mass * (inverse_a + inverse_b))
         length = wp.length(apart)
         if length > _SHORTEST:
             push = apart * (mass * (length - soft.spring[spring].length) / length)
@@ -154,16 +154,16 @@ def relax_tetras(soft: SoftModel, state: State, work: SoftWork, world: Int32, bo
     Its two parts are the squares of sqrt(I - log(I + 1)) and of the rest. At rest they are in balance, so
     they have to be relaxed together, as in Macklin and Müller (2021): two equations for each tetrahedron.
 
-    What resists to shear are the stresses of that balance, which these equations do not see change. So both
-    parameters give way together where a small step is too long for them.
+    One sweep over stiff ones comes to rest far from where forces balance. So where a small step is too long
+    for what is around a tetrahedron at rest, its stiffness is what the step can follow; only the deformed
+    are implicit.
     """
-    phase = soft.soft[body].shear_frequency * h
-    share = h * h
-    if phase > _LONGEST_PHASE:
-        share = share * (_LONGEST_PHASE * _LONGEST_PHASE / (phase * phase))
     first = soft.soft[body].first_tetra
     for tetra in range(first, first + soft.soft[body].tetra_count):
-        volume = soft.tetra[tetra].volume * share
+        phase = soft.tetra[tetra].frequency * h
+        volume = soft.tetra[tetra].volume * (h * h)
+        if phase > _LONGEST_PHASE:
+            volume = volume * (_LONGEST_PHASE * _LONGEST_PHASE / (phase * phase))
         shear_gain = soft.soft[body].mu * volume
         bulk_gain = soft.soft[body].lam * volume
         done = relax_tetra(soft, state, work.node_before, world, tetra, shear_gain, bulk_gain, False)

@@ -17,6 +17,8 @@ from carom.layouts.soft import BODIES, BUCKETS, FACES_PER_NODE
 _TINY = real(1.0e-12)
 # Faces that go across more cells have been torn apart; looking through all of these would take forever.
 _WIDEST = real(32.0)
+# What moves across more cells in a substep may be seen too late.
+_FARTHEST = real(4.0)
 # Faces go on a little beyond their edges, so that a node right above a node is above some face.
 _BESIDE = real(-0.05)
 # Factors of the coordinates of a cell in its hash: large primes, as in Teschner et al. (2003).
@@ -37,8 +39,9 @@ def bucket_of(x: Int32, y: Int32, z: Int32) -> Int32:
 
 
 @func
-def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size: real):
-    """Put the nodes of all bodies that have faces into the cells of a grid."""
+def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size: real) -> real:
+    """Put the nodes of all bodies into the cells of a grid; returns the greatest speed of any [m/s]."""
+    top_speed = real(0.0)
     for bucket in range(BUCKETS):
         work.bucket_first[world, bucket] = -1
     for body in range(soft.count_soft[BODIES]):
@@ -50,6 +53,8 @@ def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size
             work.node_body[world, node] = body
             work.node_next[world, node] = work.bucket_first[world, bucket]
             work.bucket_first[world, bucket] = node
+            top_speed = maximum(top_speed, wp.length(state.node_velocity[world, node]))
+    return top_speed
 
 
 @func
@@ -123,6 +128,19 @@ def note_face(
         work.near_face[world, place] = face
         work.near_side[world, place] = side
         work.near_distance[world, place] = distance
+        work.near_impulse[world, place] = Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def near_at_rest(soft: SoftModel, node: Int32, face: Int32, reach: real) -> bool:
+    """Whether a node of the same body is this near a face when nothing pulls at either."""
+    nodes = soft.face_nodes[face]
+    p = soft.node_rest[nodes[0]]
+    q = soft.node_rest[nodes[1]]
+    r = soft.node_rest[nodes[2]]
+    corners = Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    point = soft.node_rest[node]
+    return wp.length(point - on_triangle(corners, point, face_normal(corners))) < reach
 
 
 @func
@@ -140,12 +158,17 @@ def look_at_node(
 ):
     """Let a node remember a face that it is near.
 
-    Of a closed surface the inside is known, so that a node that got there is put out again.
+    Of a closed surface the inside is known, so that a node that got there is put out again. Within a body,
+    nodes that the mesh has nearer to a face than they are kept from it may be there.
     """
     point = state.node_position[world, node]
     offset = point - on_triangle(corners, point, normal)
     distance = wp.length(offset)
-    if distance <= max_distance:
+    body = work.node_body[world, node]
+    usual = body == work.node_body[world, soft.face_nodes[face][0]]
+    if usual and distance <= max_distance:
+        usual = near_at_rest(soft, node, face, soft.soft[body].thickness)
+    if distance <= max_distance and not usual:
         side = sign_of(wp.dot(offset, normal))
         if closed:
             side = real(1.0)
@@ -164,7 +187,7 @@ def find_neighbours(
 ):
     """Note which faces nodes are near: of other soft bodies, and of their own where that is asked for."""
     size = grid_size(soft, state, world)
-    list_nodes(soft, state, work, world, size)
+    top_speed = list_nodes(soft, state, work, world, size)
     for body in range(soft.count_soft[BODIES]):
         closed = soft.soft[body].tetra_count > 0
         first = soft.soft[body].first_face
@@ -182,8 +205,9 @@ def find_neighbours(
                     wp.length(state.node_velocity[world, nodes[2]]),
                 ),
             )
-            # Others may come as fast; what comes faster is seen in the next substep.
-            max_distance = 2.0 * soft.soft[body].thickness + minimum(2.0 * fastest * settings.time_step, size)
+            # A node may come towards it as fast as any moves.
+            reach = minimum((fastest + top_speed) * settings.time_step, _FARTHEST * size)
+            max_distance = 2.0 * soft.soft[body].thickness + reach
             lower = lower_corner(lower_corner(a, b), c) - Vector3(max_distance, max_distance, max_distance)
             upper = upper_corner(upper_corner(a, b), c) + Vector3(max_distance, max_distance, max_distance)
             if greatest_entry(upper - lower) > _WIDEST * size:
@@ -234,6 +258,7 @@ def relax_neighbour(
     world: Int32,
     node: Int32,
     near: Int32,
+    h: real,
 ):
     """Keep a node on its side of a face, at a distance, with friction between them."""
     nodes = soft.face_nodes[work.near_face[world, near]]
@@ -271,6 +296,7 @@ def relax_neighbour(
                 if length > _TINY:
                     bound = friction * wp.length(push)
                     push -= slip * (minimum(bound, length / total) / length)
+                work.near_impulse[world, near] += push / h
                 state.node_position[world, node] += push * mass
                 for i in range(3):
                     state.node_position[world, nodes[i]] -= push * (
@@ -280,10 +306,17 @@ def relax_neighbour(
 
 @func
 def relax_neighbours(
-    shapes: Shapes, model: Model, soft: SoftModel, state: State, work: SoftWork, world: Int32, body: Int32
+    shapes: Shapes,
+    model: Model,
+    soft: SoftModel,
+    state: State,
+    work: SoftWork,
+    world: Int32,
+    body: Int32,
+    h: real,
 ):
     """Keep the nodes of a body off the faces they are near, one after the other."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
         for near in range(FACES_PER_NODE * node, FACES_PER_NODE * node + work.node_faces[world, node]):
-            relax_neighbour(shapes, model, soft, state, work, world, node, near)
+            relax_neighbour(shapes, model, soft, state, work, world, node, near, h)

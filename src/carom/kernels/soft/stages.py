@@ -31,7 +31,7 @@ from carom.layouts.status import OVERFLOW, STATUS
 # are not too many.
 _PHASE = real(1.0)
 _LEAST_STEPS = 4
-_MOST_STEPS = 40
+_MOST_STEPS = 128
 
 
 @func
@@ -108,7 +108,7 @@ def take_small_steps(
         relax_anchors(scratch, pair_rows, soft, state, soft_work, world, h)
         for body in range(soft.count_soft[BODIES]):
             if neighbours:
-                relax_neighbours(shapes, model, soft, state, soft_work, world, body)
+                relax_neighbours(shapes, model, soft, state, soft_work, world, body, h)
             relax_touches(scratch, pair_rows, soft, state, soft_work, world, body, h)
         move_anchors(scratch, pair_rows, soft, soft_work, world, h)
         for body in range(soft.count_soft[BODIES]):

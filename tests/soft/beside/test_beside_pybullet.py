@@ -1,0 +1,22 @@
+"""Soft bodies sag, rest and swing as in PyBullet where that is stable, and stand where it is not."""
+
+from __future__ import annotations
+
+import pytest
+from tests.soft.beside.cases import CASES
+from tests.soft.beside.compare import outcome, recordings
+
+RECORDED = recordings()
+
+
+def test_every_case_is_recorded() -> None:
+    assert list(RECORDED) == list(CASES), "run `make record`"
+    # There is something to compare with, and something to stand.
+    assert sum(record["stable"] for record in RECORDED.values()) > 60
+    assert sum(record["figure"] is None for record in RECORDED.values()) > 5
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_figure(name: str) -> None:
+    found = outcome(CASES[name], RECORDED[name])
+    assert found.holds, found
