@@ -224,7 +224,8 @@ def _dynamics(client: int) -> list[Any]:
     shapes, model = world.contact_arrays.shapes.table.numpy, world.arrays.model.numpy
     surfaces = [shapes[field].tobytes() for field in SURFACE.values()]
     infos = [p.getDynamicsInfo(0, link, client) for link in range(-1, 7)]
-    return [infos, surfaces, [model[field].tobytes() for field in OF_BODY]]
+    infos += [p.getDynamicsInfo(body, -1, client) for body in (1, 2)]
+    return [infos, surfaces, [model[field].tobytes() for field in (*OF_BODY, "link_mass", "link_inertia")]]
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -234,7 +235,8 @@ def _dynamics(client: int) -> list[Any]:
     st.dictionaries(st.sampled_from(SOFTNESS), st.floats(-1.0, 1e4)),
     st.dictionaries(st.sampled_from(DAMPING), st.floats(-1.0, 1.0)),
     st.dictionaries(st.sampled_from(["jointDamping", "mass", "frictionAnchor"]), st.integers(0, 1)),
-    st.integers(0, 3),
+    st.fixed_dictionaries({"mass": st.floats(-1.0, 1e3)}, optional={"localInertiaDiagonal": vectors}),
+    st.integers(0, 5),
 )
 def test_dynamics_are_changed_as_python_changes_them(
     two: tuple[int, int],
@@ -243,12 +245,17 @@ def test_dynamics_are_changed_as_python_changes_them(
     softness: dict[str, float],
     damping: dict[str, float],
     others: dict[str, float],
+    weight: dict[str, Any],
     which: int,
 ) -> None:
-    changes = [friction | softness, damping, friction | damping, friction | others][which]
+    changes = [
+        *(friction | softness, damping, friction | damping, friction | others),
+        *(weight, weight | friction),
+    ][which]
     first, second = two
-    ours = _outcome(p.changeDynamics, 0, link, **changes, physicsClientId=first)
-    assert ours == _outcome(_in_python("changeDynamics"), 0, link, **changes, physicsClientId=second)
+    for body in (0, 1, 2):
+        ours = _outcome(p.changeDynamics, body, link, **changes, physicsClientId=first)
+        assert ours == _outcome(_in_python("changeDynamics"), body, link, **changes, physicsClientId=second)
     assert _dynamics(first) == _dynamics(second)
 
 

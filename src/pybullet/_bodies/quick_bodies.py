@@ -12,9 +12,10 @@ from collections.abc import Collection
 from ctypes import Array, addressof, c_void_p
 from typing import TYPE_CHECKING, Any
 
-from carom.native.quick_calls import Body, Client, Joint, Link
+from carom.native.quick_calls import Body, Client, Joint, Link, Moments
 
 if TYPE_CHECKING:
+    from carom.model.inertia import MassTerms
     from carom.native.quick_calls import QuickCalls
     from carom.scene.body import Body as Handle
     from pybullet._bodies.body_access import BodyAccess
@@ -89,11 +90,13 @@ class QuickBodies:
             tree=body.rows.tree,
             first_link=row,
             dynamics=id(body.all_dynamics),
+            handle=id(body),
+            derived=id(body.derived),
         )
         access.record = record
         if body.id >= len(self._places):
             self._make_room(body.id + 1)
-        self._shown[body.id] = record, access, state, joints, body.all_dynamics
+        self._shown[body.id] = record, access, state, joints, body.all_dynamics, body.derived
         self._places[body.id] = addressof(record)
 
     def hide(self, body_id: int) -> None:
@@ -142,3 +145,11 @@ def link_records(links: Collection[LinkAccess]) -> Array[Link]:
         record.from_inertial_frame[:] = (*back.position, *back.orientation)
         record.is_turned = link.rotated
     return records
+
+
+def write_moments(record: Moments, terms: MassTerms) -> None:
+    """Show the library how the moments of inertia of a link depend on its mass."""
+    for shown, of_axis in zip(record.terms, terms, strict=True):
+        for term, given in zip(shown, of_axis, strict=True):
+            term.divisor, term.factors[:] = given.divisor, given.factors
+    record.is_known = True

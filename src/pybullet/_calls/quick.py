@@ -40,7 +40,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
     "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
-    "changeDynamics": ("change_surface", "birrrrrrrrri3rrir3rrrrrrc", ()),
+    "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),
 }
 """Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the
