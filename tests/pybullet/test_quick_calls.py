@@ -43,6 +43,7 @@ MATHS = [name for name, (_, kinds, _) in quick._KERNELS.items() if "c" not in ki
 READING = [
     *("getBasePositionAndOrientation", "getBaseVelocity", "getLinkState", "getLinkStates"),
     *("getContactPoints", "getClosestPoints", "getOverlappingObjects"),
+    *("getAABB", "getNumBodies", "getBodyUniqueId", "getNumJoints", "getBodyInfo"),
 ]
 WRITING = [name for name in quick._KERNELS if name not in (*MATHS, *READING)]
 
@@ -151,6 +152,11 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "setJointMotorControlArray": (0, [3, 1, 2], p.POSITION_CONTROL, [0.5, 0.25, 0.125], None, (5, 6.0, 7)),
     "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
     "resetJointState": (0, 3, 0.5),
+    "getAABB": (0, 3),
+    "getNumBodies": (),
+    "getBodyUniqueId": (1,),
+    "getNumJoints": (0,),
+    "getBodyInfo": (0,),
 }
 
 
@@ -188,7 +194,7 @@ def test_worlds_are_left_as_python_leaves_them(name: str, data: st.DataObject, t
     assert _state(first) == _state(second)
 
 
-@pytest.mark.parametrize("name", quick._KERNELS)
+@pytest.mark.parametrize("name", [name for name in quick._KERNELS if CALLS[name]])
 def test_odd_arguments_meet_what_they_meet_in_python(name: str, two: tuple[int, int]) -> None:
     random = Random(SEED)
     first, second = two
@@ -263,6 +269,37 @@ def test_friction_and_damping_need_no_python(one: int) -> None:
     p.resetBaseVelocity(1, [0, 0, 0], physicsClientId=one)
     for changes in ({"lateralFriction": 0.5, "restitution": 1}, {"linearDamping": 0.0, "angularDamping": 0}):
         assert _takes_no_python("changeDynamics", 1, -1, **changes, physicsClientId=one)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        {"shapeType": p.GEOM_SPHERE, "radius": 0.3},
+        {"shapeType": p.GEOM_SPHERE, "radius": 0.3, "collisionFramePosition": [0.1, 0.2, 0.3]},
+        {"shapeType": p.GEOM_PLANE},
+        {"shapeType": p.GEOM_CAPSULE, "radius": 0.1, "height": 0.5},
+    ],
+)
+def test_boxes_are_those_of_python(one: int, shape: dict[str, Any]) -> None:
+    shape_id = p.createCollisionShape(**shape, physicsClientId=one)
+    for mass in (0.0, 1.0):
+        body = p.createMultiBody(mass, shape_id, basePosition=[0, 0, 5], physicsClientId=one)
+        for turn in ([0.1, 0.2, 0.3, 0.4], [0, 0, 0, 1], [1, 0, 0, 0]):
+            p.resetBasePositionAndOrientation(body, [0.1, 7.0, 3.0], turn, one)
+            seen = _in_python("getAABB")(body, -1, one)
+            assert _takes_no_python("getAABB", body, physicsClientId=one)
+            assert p.getAABB(body, physicsClientId=one) == seen
+
+
+def test_bodies_are_told_as_they_come_and_go(one: int) -> None:
+    for number in (1, 0, 2):
+        p.removeBody(number, one)
+        names = ("getNumBodies", "getBodyUniqueId", "getNumJoints", "getBodyInfo")
+        for name in names:
+            for place in (-1, 0, 1, 2, 3):
+                arguments = (one,) if name == "getNumBodies" else (place, one)
+                assert _outcome(getattr(p, name), *arguments) == _outcome(_in_python(name), *arguments)
+    assert p.getNumBodies(one) == 0
 
 
 class _Rude(float):

@@ -149,6 +149,17 @@ class Moments(ctypes.Structure):
     _fields_ = (("terms", _MassTerm * 2 * 3), ("is_known", ctypes.c_int64))
 
 
+class Box(ctypes.Structure):
+    """The box around the shapes of a link, in its inertial frame."""
+
+    _fields_ = (
+        ("center", ctypes.c_double * 3),
+        ("half", ctypes.c_double * 3),
+        ("is_moved", ctypes.c_int64),
+        ("is_turned", ctypes.c_int64),
+    )
+
+
 class Joint(ctypes.Structure):
     """Where the coordinates of a joint of one freedom are among those of its body; -1 for other joints."""
 
@@ -170,7 +181,8 @@ class MotorGroup(ctypes.Structure):
 class Body(ctypes.Structure):
     """Where the state of a body is.
 
-    Its links are null as long as nobody has asked for one, its moments as long as nobody has changed a mass.
+    Its links and boxes are null as long as nobody has asked for one, its moments as long as nobody has
+    changed a mass.
     """
 
     _fields_ = (
@@ -189,6 +201,7 @@ class Body(ctypes.Structure):
         ("handle", ctypes.c_void_p),
         ("derived", ctypes.c_void_p),
         ("moments", ctypes.c_void_p),
+        ("boxes", ctypes.c_void_p),
     )
 
 
@@ -204,6 +217,9 @@ class Client(ctypes.Structure):
         ("without_waiting", ctypes.c_void_p),
         ("connection", ctypes.c_void_p),
         ("time_step_name", ctypes.c_void_p),
+        ("world_bodies", ctypes.c_void_p),
+        ("joint_count_name", ctypes.c_void_p),
+        ("encoded_names_name", ctypes.c_void_p),
     )
 
 

@@ -94,7 +94,13 @@ class BodyAccess:
 
         if self.body.spec.soft is not None:
             return {-1: SoftBox(self.body)}
-        return {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
+        boxes = {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
+        if self.record is not None:
+            from pybullet._bodies.quick_bodies import box_records
+
+            self._box_records = box_records(boxes.values())
+            self.record.boxes = addressof(self._box_records)
+        return boxes
 
     @cached_property
     def tree(self) -> MovingTree | None:

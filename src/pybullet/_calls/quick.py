@@ -42,6 +42,11 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
     "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),
+    "getAABB": ("link_box", "bic", (3, 3)),
+    "getNumBodies": ("body_count", "c", None),
+    "getBodyUniqueId": ("body_at", "ic", None),
+    "getNumJoints": ("joint_count", "ic", None),
+    "getBodyInfo": ("body_names", "ic", None),
 }
 """Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the
 result), by the name of the function. What the letters mean is in `carom.native.quick_calls.Parameter`."""

@@ -96,6 +96,13 @@ struct Moments {
     int64_t is_known;
 };
 
+// The box around the shapes of a link, in its inertial frame.
+struct Box {
+    double center[3], half[3];
+    int64_t is_moved;   // with the link
+    int64_t is_turned;  // likewise
+};
+
 struct Joint {
     int32_t position, velocity;  // places among those of the body; -1 for all but joints of one freedom
 };
@@ -128,6 +135,7 @@ struct Body {
     PyObject* handle;    // which says whether the base is held
     PyObject* derived;   // a dictionary with what follows from masses
     const Moments* moments;  // of the links, the base's first; null where nobody has changed a mass yet
+    const Box* boxes;        // likewise; null where nobody has asked yet
 };
 
 struct Client {
@@ -138,6 +146,8 @@ struct Client {
     PyObject *acquire, *release, *without_waiting;
     // What has the duration of a step as an attribute of a name.
     PyObject *connection, *time_step_name;
+    // A dictionary with what the host keeps of the bodies, by number, and names of attributes of these.
+    PyObject *world_bodies, *joint_count_name, *encoded_names_name;
 };
 
 struct Call {
