@@ -44,6 +44,7 @@ READING = [
     *("getBasePositionAndOrientation", "getBaseVelocity", "getLinkState", "getLinkStates"),
     *("getContactPoints", "getClosestPoints", "getOverlappingObjects"),
     *("getAABB", "getNumBodies", "getBodyUniqueId", "getNumJoints", "getBodyInfo"),
+    "isConnected",
 ]
 WRITING = [name for name in quick._KERNELS if name not in (*MATHS, *READING)]
 
@@ -153,6 +154,7 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
     "resetJointState": (0, 3, 0.5),
     "getAABB": (0, 3),
+    "isConnected": (),
     "getNumBodies": (),
     "getBodyUniqueId": (1,),
     "getNumJoints": (0,),

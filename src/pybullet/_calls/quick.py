@@ -43,6 +43,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),
     "getAABB": ("link_box", "bic", (3, 3)),
+    "isConnected": ("is_connected", "c", None),
     "getNumBodies": ("body_count", "c", None),
     "getBodyUniqueId": ("body_at", "ic", None),
     "getNumJoints": ("joint_count", "ic", None),

@@ -31,6 +31,11 @@ PyObject* attribute(const Client& client, double body, PyObject* name) {
 
 }  // namespace
 
+// Connection: one that is known is there.
+extern "C" CAROM_EXPORT PyObject* carom_is_connected(const double* in, const Call* call) {
+    return python.PyLong_FromLong(1);
+}
+
 // Connection.
 extern "C" CAROM_EXPORT PyObject* carom_body_count(const double* in, const Call* call) {
     return python.PyLong_FromLong(static_cast<long>(python.PyDict_Size(call->client->world_bodies)));
