@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cache
-from math import inf
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -300,11 +299,12 @@ class ArrayTable:
                 if start + count < end:
                     moves.append((rows[start : end - count], rows[start + count : end].copy()))
                 freed.append(rows[end - count : end])
+        # Axes whose last rows go: what is before these names no row behind those.
+        last = {axis for axis, cut in cuts.items() if sum(cut) == used.get(axis)}
         for name, target in targets.items():
-            # Nothing is a row beyond the last ones.
-            if target in cuts and sum(cuts[target]) < used.get(target, inf):
-                axis = name.partition("_")[0]
-                first, gone = cuts.get(axis, (0, 0))
+            axis = name.partition("_")[0]
+            first, gone = cuts.get(axis, (0, 0))
+            if target in cuts and not (axis in last and target in last):
                 rows = self.numpy[name][: used[axis]]
                 kept = np.concatenate((rows[:first], rows[first + gone :]))
                 start, count = cuts[target]
