@@ -48,7 +48,11 @@ class JointTarget(NamedTuple):
     kd: float
 
 
-def stable_pd_torques(body: Body, targets: Mapping[int, JointTarget], time_step: float) -> np.ndarray:
+# Named tuples take long to make, and whoever controls a robot makes many.
+_Target = tuple[Sequence[float], Sequence[float], Sequence[float], float, float]
+
+
+def stable_pd_torques(body: Body, targets: Mapping[int, _Target], time_step: float) -> np.ndarray:
     """Torques that lead joints to their targets.
 
     With a floating base the equations of motion are those PyBullet solves, see `extended_nodes`; with a
@@ -56,7 +60,7 @@ def stable_pd_torques(body: Body, targets: Mapping[int, JointTarget], time_step:
 
     Args:
         body: The body.
-        targets: By joint index; other joints get no torque.
+        targets: By joint index, as `JointTarget` has them; other joints get no torque.
         time_step: Of the step to come [s].
 
     Returns:
@@ -108,7 +112,7 @@ class _Controller:
         self._launch = Launch(stable_pd_kernel, 1, arguments)
         self._time_step_at = stable_pd_kernel.indices["time_step"]
 
-    def torques(self, targets: Mapping[int, JointTarget], time_step: float) -> np.ndarray:
+    def torques(self, targets: Mapping[int, _Target], time_step: float) -> np.ndarray:
         self._take_state()
         self._take_targets(targets)
         self._launch.replace(self._time_step_at, time_step)
@@ -125,20 +129,21 @@ class _Controller:
         self._position[:] = world.position_memory[q + BASE_POSITIONS :][: self._tree.coordinates]
         self._rate[:] = world.velocity_memory[u + BASE_VELOCITIES :][: self._tree.joint_dofs]
 
-    def _take_targets(self, targets: Mapping[int, JointTarget]) -> None:
+    def _take_targets(self, targets: Mapping[int, _Target]) -> None:
         for numbers in self._given:
             numbers.fill(0.0)
-        self._target[: len(self._unaimed)] = self._unaimed
+        aims, target_rates, kps, kds, most = self._target, self._target_rate, self._kp, self._kd, self._most
+        aims[: len(self._unaimed)] = self._unaimed
         for joint, (position, velocity, force, kp, kd) in targets.items():
             q, u, count, freedoms = self._places[joint]
             if count and len(position) == count:
                 for k in range(count):
-                    self._target[q + k] = position[k]
+                    aims[q + k] = position[k]
             if len(velocity) == freedoms:
                 for k in range(freedoms):
-                    self._target_rate[u + k] = velocity[k]
+                    target_rates[u + k] = velocity[k]
             stated = len(force)
             for k in range(freedoms):
-                self._kp[u + k] = kp
-                self._kd[u + k] = kd
-                self._most[u + k] = force[k] if k < stated else _UNSTATED_FORCE
+                kps[u + k] = kp
+                kds[u + k] = kd
+                most[u + k] = force[k] if k < stated else _UNSTATED_FORCE

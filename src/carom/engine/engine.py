@@ -80,6 +80,10 @@ class Engine:
         # What an interpreter would do when the one launch of a step goes wrong that is run without one.
         self._abandon: list[Launch] = []
         self._plan: Plan | None = None
+        # The plan before, where only constraints have changed since.
+        self._plan_before: Plan | None = None
+        # What the launches of steps were made for, and over.
+        self._loaded_for: tuple[Any, ...] | None = None
         self._watched = False
         self.growths = 0
         self.changes = 0
@@ -97,9 +101,15 @@ class Engine:
 
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or what can happen has changed."""
-        self._plan = None
+        self._plan = self._plan_before = None
+        self._loaded_for = None
         self._detection_ready = False
         self.changes += 1
+
+    def constraints_changed(self) -> None:
+        """Look at the launches before the next step: the constraints have changed, and nothing else."""
+        self._plan_before = self._plan or self._plan_before
+        self._plan = None
 
     # Structs
 
@@ -134,7 +144,14 @@ class Engine:
         """
         self._watched = watched
         plan = self._find_plan()
-        self.load(self._steppers, lambda structs: self._make_program(structs, plan))
+        bound = self._bind(self._workspaces)
+        loading_for = (plan, *(struct for structs in bound for struct in structs.values()))
+        # Structs are the same as long as the arrays are.
+        if self._loaded_for == loading_for:
+            return
+        self._loaded_for = None
+        self._load(self._steppers, bound, lambda structs: self._make_program(structs, plan))
+        self._loaded_for = loading_for
         self.run_prepared = self._steppers[0].run
         self._abandon = []
         whole = self._steppers[0].program.whole
@@ -149,7 +166,10 @@ class Engine:
 
     def _find_plan(self) -> Plan:
         """What steps have to look for now."""
-        touching, sleeping = can_collide(self.arrays, self.contact_arrays), can_sleep(self.arrays)
+        if self._plan_before is not None:
+            touching, sleeping = self._plan_before.touching, self._plan_before.sleeping
+        else:
+            touching, sleeping = can_collide(self.arrays, self.contact_arrays), can_sleep(self.arrays)
         if not touching:
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
@@ -296,12 +316,21 @@ class Engine:
 
     def sleep_changed(self) -> None:
         """Let steps look for sleeping bodies again, after a world with some was restored."""
-        if self._plan is not None and not self._plan.sleeping and can_sleep(self.arrays):
+        plan = self._plan or self._plan_before
+        if plan is not None and not plan.sleeping and can_sleep(self.arrays):
             self.changed()
 
     def load(self, interpreters: list[Stepper], program: Callable[[KernelStructs], Program]) -> None:
         """Give a program to the interpreter of each thread, over the structs of that."""
-        for interpreter, structs in zip(interpreters, self._bind(self._workspaces), strict=True):
+        self._load(interpreters, self._bind(self._workspaces), program)
+
+    def _load(
+        self,
+        interpreters: list[Stepper],
+        bound: list[KernelStructs],
+        program: Callable[[KernelStructs], Program],
+    ) -> None:
+        for interpreter, structs in zip(interpreters, bound, strict=True):
             interpreter.load(program(structs))
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:

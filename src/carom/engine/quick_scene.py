@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 # Names of attributes are interned.
 _NAMES = [intern(name) for name in SURFACE]
+_MASS, _INERTIA, _FIXED_BASE = intern("mass"), intern("inertia"), intern("fixed_base")
 
 
 class QuickScene:
@@ -55,6 +56,9 @@ class QuickScene:
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
         self.record.surface_names[:] = [id(name) for name in _NAMES]
         self.record.damping[:] = [getattr(model, field).data for field in DAMPING]
+        self.record.mass, self.record.inertia = model.link_mass.data, model.link_inertia.data
+        self.record.mass_name, self.record.inertia_name = id(_MASS), id(_INERTIA)
+        self.record.fixed_base_name = id(_FIXED_BASE)
         self.record.contact_count = contacts.count_contacts.data
         self.record.contact_warm_starts = contacts.contact_warm_start.data
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]

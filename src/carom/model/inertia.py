@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import reduce
 from math import sqrt
 
@@ -72,12 +73,64 @@ def inertia_from_shapes(
     Raises:
         DescriptionError: The file of a mesh cannot be used.
     """
+    return moments_at(
+        mass,
+        mass_terms(
+            collisions, inertial_frame, implicit_cylinder=implicit_cylinder, compound_margin=compound_margin
+        ),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MassTerm:
+    """A moment of inertia by mass: the mass over a divisor times each factor, in this order.
+
+    What is divided and what is multiplied decides the last digit.
+
+    Attributes:
+        divisor: Of the mass.
+        factors: Their product with the mass over the divisor is the moment; its unit is m².
+    """
+
+    divisor: float
+    factors: Vector3
+
+    def at(self, mass: float) -> float:
+        """The moment [kg m²] at a mass [kg]."""
+        first, second, third = self.factors
+        return mass / self.divisor * first * second * third
+
+
+MassTerms = tuple[tuple[MassTerm, MassTerm], tuple[MassTerm, MassTerm], tuple[MassTerm, MassTerm]]
+"""For each axis two terms, whose sum is the moment about it."""
+
+_NO_TERM = MassTerm(1.0, (0.0, 0.0, 0.0))
+
+
+def moments_at(mass: float, terms: MassTerms) -> Vector3:
+    """Moments of inertia [kg m²] at a mass [kg]."""
+    x, y, z = (first.at(mass) + second.at(mass) for first, second in terms)
+    return (x, y, z)
+
+
+def mass_terms(
+    collisions: Sequence[Collision],
+    inertial_frame: Pose,
+    *,
+    implicit_cylinder: bool,
+    compound_margin: float = MARGIN,
+) -> MassTerms:
+    """How the moments of `inertia_from_shapes`, which has the same arguments, depend on the mass.
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
     if is_in_place(collisions, inertial_frame):
-        return _shape_moments(mass, collisions[0].geometry, implicit_cylinder)
+        return _shape_terms(collisions[0].geometry, implicit_cylinder)
     bounds = link_bounds(
         collisions, inertial_frame, implicit_cylinder=implicit_cylinder, compound_margin=compound_margin
     )
-    return box_moments(mass / 12.0, bounds)
+    return _box_terms(12.0, 1.0, bounds)
 
 
 def link_bounds(
@@ -160,34 +213,46 @@ def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3
     return matrix_product(back, rotation_matrix(shape_frame.orientation)), (px + ox, py + oy, pz + oz)
 
 
-def _shape_moments(mass: float, geometry: Geometry, implicit_cylinder: bool) -> Vector3:
+def _shape_terms(geometry: Geometry, implicit_cylinder: bool) -> MassTerms:
     """Moments of one shape about the axes of its own frame."""
     match geometry:
         case Sphere(radius):
-            moment = 0.4 * mass * radius * radius
-            return (moment, moment, moment)
+            ball = MassTerm(1.0, (0.4, radius, radius)), _NO_TERM
+            return (ball, ball, ball)
         case Plane() | SignedDistanceField() | Mesh(concave=True) | TriangleMesh() | Heightfield():
-            return (0.0, 0.0, 0.0)
+            nothing = _NO_TERM, _NO_TERM
+            return (nothing, nothing, nothing)
         case Cylinder(radius, length) if implicit_cylinder:
-            across = mass / 12.0 * length * length + mass / 4.0 * radius * radius
-            return (across, across, mass / 2.0 * radius * radius)
+            across = MassTerm(12.0, (length, length, 1.0)), MassTerm(4.0, (radius, radius, 1.0))
+            return (across, across, (MassTerm(2.0, (radius, radius, 1.0)), _NO_TERM))
     bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder)
     match geometry:
         case Box():
-            return box_moments(mass / 12.0, bounds)
+            return _box_terms(12.0, 1.0, bounds)
         case Mesh(path) if path.suffix.lower() == ".obj":
-            return box_moments(mass / 12.0, bounds)
+            return _box_terms(12.0, 1.0, bounds)
         case Capsule():
-            return box_moments(mass * TWELFTH, bounds)
+            return _box_terms(1.0, TWELFTH, bounds)
         case _:
-            return box_moments(mass * TWELFTH, bounds.grown(MARGIN))
+            return _box_terms(1.0, TWELFTH, bounds.grown(MARGIN))
+
+
+def _box_terms(divisor: float, factor: float, bounds: Bounds) -> MassTerms:
+    x, y, z = ((MassTerm(divisor, (factor, square, 1.0)), _NO_TERM) for square in _squares(bounds))
+    return (x, y, z)
 
 
 def box_moments(twelfth_mass: float, bounds: Bounds) -> Vector3:
     """Moments of a box about the axes of its frame, from a twelfth of its mass."""
+    xx, yy, zz = _squares(bounds)
+    return (twelfth_mass * xx, twelfth_mass * yy, twelfth_mass * zz)
+
+
+def _squares(bounds: Bounds) -> Vector3:
+    """The squared diagonals [m²] of a box's faces across x, y and z."""
     x, y, z = (2.0 * half for half in bounds.half)
     xx, yy, zz = x * x, y * y, z * z
-    return (twelfth_mass * (yy + zz), twelfth_mass * (xx + zz), twelfth_mass * (xx + yy))
+    return (yy + zz, xx + zz, xx + yy)
 
 
 def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose]:

@@ -82,9 +82,12 @@ class PairFilters:
         return partial(self._write_all, kept, np.array(enabled))
 
     def _write_all(self, pairs: list[tuple[int, int]], enabled: np.ndarray) -> None:
-        self._pairs = pairs.copy()
+        if not pairs and not self._pairs:
+            return
         columns = (*np.array(pairs).reshape(-1, 2).T, enabled)
         for name, column in zip(_FIELDS, columns, strict=True):
             rows = self._table.numpy[name]
             rows[: len(pairs)] = column
             rows[len(pairs) :] = 0
+        # Last, so that what was broken off is done again.
+        self._pairs = pairs.copy()

@@ -80,6 +80,8 @@ class IslandTags:
 
     def __init__(self) -> None:
         self._objects: list[tuple[Hashable, bool]] = []
+        # `tags`, once somebody has asked, until objects come or go.
+        self._tags: dict[Hashable, int] | None = None
 
     @property
     def links(self) -> list[tuple[Hashable, int]]:
@@ -94,9 +96,11 @@ class IslandTags:
         """
         moves = dict(self._objects)
         self._objects = [(link, moves[link]) for link in links]
+        self._tags = None
 
     def add(self, body: Hashable, moving: Sequence[bool]) -> None:
         """Append the links of a body, base first; `moving` tells those that are not static."""
+        self._tags = None
         self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))
 
     def way_back(self) -> Callable[[], None]:
@@ -104,6 +108,7 @@ class IslandTags:
         objects, count = self._objects, len(self._objects)
 
         def go_back() -> None:
+            self._tags = None
             del objects[count:]
             self._objects = objects
 
@@ -125,6 +130,7 @@ class IslandTags:
                 index[last_key] = i
 
         def remove() -> None:
+            self._tags = None
             self._objects = kept
 
         return remove
@@ -141,10 +147,13 @@ class IslandTags:
             owner, link = key  # type: ignore[misc]
             if owner == body:
                 objects[i] = (key, moving[link])
+        self._tags = None
         self._objects = objects
 
     def tags(self) -> dict[Hashable, int]:
         """Island number of each body that has a moving link."""
+        if self._tags is not None:
+            return self._tags
         numbers: dict[Hashable, tuple[int, int]] = {}
         number = 0
         for key, moves in self._objects:
@@ -154,4 +163,5 @@ class IslandTags:
             if body not in numbers or link > numbers[body][0]:
                 numbers[body] = (link, number)
             number += 1
-        return {body: tag for body, (_, tag) in numbers.items()}
+        self._tags = {body: tag for body, (_, tag) in numbers.items()}
+        return self._tags

@@ -121,6 +121,8 @@ class Scene(ctypes.Structure):
         ("surface", ctypes.c_void_p * len(SURFACE)),
         ("surface_names", ctypes.c_void_p * len(SURFACE)),
         ("damping", ctypes.c_void_p * len(DAMPING)),
+        *((name, ctypes.c_void_p) for name in ("mass", "inertia")),
+        *((name, ctypes.c_void_p) for name in ("mass_name", "inertia_name", "fixed_base_name")),
         ("report", ContactReport),
         ("placement", Placement),
         ("nearest", PairSearch),
@@ -133,6 +135,27 @@ class Link(ctypes.Structure):
     _fields_ = (
         ("inertial_frame", ctypes.c_double * 7),
         ("from_inertial_frame", ctypes.c_double * 7),
+        ("is_turned", ctypes.c_int64),
+    )
+
+
+class _MassTerm(ctypes.Structure):
+    _fields_ = (("divisor", ctypes.c_double), ("factors", ctypes.c_double * 3))
+
+
+class Moments(ctypes.Structure):
+    """The moments of inertia that a link's shapes have at a mass, see `carom.model.inertia.MassTerm`."""
+
+    _fields_ = (("terms", _MassTerm * 2 * 3), ("is_known", ctypes.c_int64))
+
+
+class Box(ctypes.Structure):
+    """The box around the shapes of a link, in its inertial frame."""
+
+    _fields_ = (
+        ("center", ctypes.c_double * 3),
+        ("half", ctypes.c_double * 3),
+        ("is_moved", ctypes.c_int64),
         ("is_turned", ctypes.c_int64),
     )
 
@@ -156,7 +179,11 @@ class MotorGroup(ctypes.Structure):
 
 
 class Body(ctypes.Structure):
-    """Where the state of a body is; its links are null as long as nobody has asked for one."""
+    """Where the state of a body is.
+
+    Its links and boxes are null as long as nobody has asked for one, its moments as long as nobody has
+    changed a mass.
+    """
 
     _fields_ = (
         ("position", ctypes.c_void_p),
@@ -171,6 +198,10 @@ class Body(ctypes.Structure):
         ("tree", ctypes.c_int64),
         ("first_link", ctypes.c_int64),
         ("dynamics", ctypes.c_void_p),
+        ("handle", ctypes.c_void_p),
+        ("derived", ctypes.c_void_p),
+        ("moments", ctypes.c_void_p),
+        ("boxes", ctypes.c_void_p),
     )
 
 
@@ -186,6 +217,9 @@ class Client(ctypes.Structure):
         ("without_waiting", ctypes.c_void_p),
         ("connection", ctypes.c_void_p),
         ("time_step_name", ctypes.c_void_p),
+        ("world_bodies", ctypes.c_void_p),
+        ("joint_count_name", ctypes.c_void_p),
+        ("encoded_names_name", ctypes.c_void_p),
     )
 
 

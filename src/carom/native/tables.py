@@ -141,6 +141,7 @@ class ArrayTable:
         self.numpy: dict[str, np.ndarray] = {}
         self._made: Any = None
         self._bytes: dict[str, memoryview[int]] = {}
+        self._by_axis: dict[str, list[np.ndarray]] = {}
         self._replace({name: self._allocate(name, first_capacity) for name in self._fields})
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
@@ -168,6 +169,7 @@ class ArrayTable:
         self.replacements += 1
         self._made = None
         self._bytes.clear()
+        self._by_axis.clear()
         for name, array in self._memory.items():
             field = self._fields[name]
             self.capacity[field.axis] = array.shape[int(field.per_world)]
@@ -196,13 +198,17 @@ class ArrayTable:
             needed: Rows by axis.
             growth: An axis that grows becomes at least so many times as long.
         """
-        grown = {
-            axis: max(count, int(growth * self.capacity[axis]))
-            for axis, count in needed.items()
-            if axis in self.capacity and count > self.capacity[axis]
-        }
-        if not grown:
+        capacity = self.capacity
+        for axis, count in needed.items():
+            if count > capacity.get(axis, count):
+                break
+        else:
             return False
+        grown = {
+            axis: max(count, int(growth * capacity[axis]))
+            for axis, count in needed.items()
+            if count > capacity.get(axis, count)
+        }
         # All of them are there before the first is put in place: memory may be short, or the user in a hurry.
         self._replace(
             {
@@ -244,6 +250,7 @@ class ArrayTable:
         other = ArrayTable.__new__(ArrayTable)
         other.__dict__.update(self.__dict__)
         other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
+        other._by_axis = {}
         other._world_counts = self._world_counts.copy()
         other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
         arrays = {}
@@ -286,17 +293,18 @@ class ArrayTable:
             What does it. It can be called again, after it was broken off.
         """
         moves, freed, values = [], [], []
-        for name, field in self._fields.items():
-            if field.axis in cuts:
-                start, count = cuts[field.axis]
-                end, rows = used[field.axis], self._rows(name)
+        for axis, (start, count) in cuts.items():
+            for rows in self._rows_along(axis):
+                end = used[axis]
                 if start + count < end:
                     moves.append((rows[start : end - count], rows[start + count : end].copy()))
                 freed.append(rows[end - count : end])
+        # Axes whose last rows go: what is before these names no row behind those.
+        last = {axis for axis, cut in cuts.items() if sum(cut) == used.get(axis)}
         for name, target in targets.items():
-            if target in cuts:
-                axis = name.partition("_")[0]
-                first, gone = cuts.get(axis, (0, 0))
+            axis = name.partition("_")[0]
+            first, gone = cuts.get(axis, (0, 0))
+            if target in cuts and not (axis in last and target in last):
                 rows = self.numpy[name][: used[axis]]
                 kept = np.concatenate((rows[:first], rows[first + gone :]))
                 start, count = cuts[target]
@@ -311,11 +319,19 @@ class ArrayTable:
 
         return remove
 
+    def _rows_along(self, axis: str) -> list[np.ndarray]:
+        """All arrays of an axis, with their rows in front."""
+        found = self._by_axis.get(axis)
+        if found is None:
+            found = [self._rows(name) for name, field in self._fields.items() if field.axis == axis]
+            self._by_axis[axis] = found
+        return found
+
     def clear_beyond(self, used: Mapping[str, int]) -> None:
         """Set all rows to zero but the first ones of the named axes."""
-        for name, field in self._fields.items():
-            if field.axis in used:
-                self._rows(name)[used[field.axis] :].fill(0)
+        for axis, count in used.items():
+            for rows in self._rows_along(axis):
+                rows[count:].fill(0)
 
     def _rows(self, name: str) -> np.ndarray:
         """An array with its rows in front."""

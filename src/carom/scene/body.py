@@ -72,6 +72,7 @@ class Body:
         self.position_index: tuple[int, ...] = ()
         self.velocity_index: tuple[int, ...] = ()
         self.fixed_base: bool = spec.fixed_base
+        self._encoded_names: tuple[bytes, bytes] | None = None
         self.derived: dict[Any, Any] = {}
         self._dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
         if spec.fixed_base:
@@ -96,6 +97,12 @@ class Body:
     def name(self) -> str:
         """Name of the robot."""
         return self.spec.name
+
+    def encoded_names(self) -> tuple[bytes, bytes]:
+        """Names of the base link and of the robot: always the same tuple."""
+        if self._encoded_names is None:
+            self._encoded_names = self.spec.base.name.encode(), self.spec.name.encode()
+        return self._encoded_names
 
     @cached_property
     def joints(self) -> Joints:

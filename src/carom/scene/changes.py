@@ -17,7 +17,7 @@ from carom.native.undo import Undo
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import change_base_freedom, set_base_freedom
 from carom.scene.soft_body import SoftBody
-from carom.scene.undoing import begin
+from carom.scene.undoing import begin, begin_with_constraints
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -109,25 +109,25 @@ def remove_body(world: World, body: Body) -> None:
 
 def tie(world: World, make: Callable[[], UserConstraint]) -> UserConstraint:
     """Add the user constraint that a function makes."""
-    with begin(world) as undo:
+    with begin_with_constraints(world) as undo:
         undo.note(world.user_constraints.way_back())
         undo.note(world.constraints.way_back())
         constraint = make()
         world.constraints.add_user(constraint)
-        world.scene_changed()
+        world.constraints_changed()
         undo.done()
     return constraint
 
 
 def untie(world: World, constraint: UserConstraint) -> None:
     """Remove a user constraint."""
-    with begin(world) as undo:
+    with begin_with_constraints(world) as undo:
         remove_constraint = world.constraints.user_removal(constraint)
 
         def remove() -> None:
             world.user_constraints.discard(constraint.id)
             remove_constraint()
-            world.scene_changed()
+            world.constraints_changed()
 
         undo.at_once(remove)
 

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
-from carom.model.inertia import inertia_from_shapes
+from carom.model.inertia import mass_terms, moments_at
 
 if TYPE_CHECKING:
     import numpy as np
 
     from carom.description.pose import Vector3
+    from carom.model.inertia import MassTerms
     from carom.scene.body import Body
     from carom.scene.link_dynamics import LinkDynamics
     from carom.world.world import World
@@ -206,9 +207,13 @@ def set_base_freedom(world: World, body: Body, *, free: bool) -> None:
 
 def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
     """Principal moments [kg m²] that the collision shapes of a link have at a mass [kg]."""
+    return moments_at(mass, shape_terms(body, link))
+
+
+def shape_terms(body: Body, link: int) -> MassTerms:
+    """How the principal moments that the collision shapes of a link have depend on its mass."""
     spec = body.link_spec(link)
-    return inertia_from_shapes(
-        mass,
+    return mass_terms(
         spec.collisions,
         spec.inertial_frame,
         implicit_cylinder=bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER),

@@ -201,23 +201,25 @@ class JointConstraints:
         arrays.used.update(constraint=count, row=count * MAX_ROWS_PER_CONSTRAINT)
         model = arrays.model.numpy
         trees = [constraint.moving_body.rows.tree for constraint in ordered]
-        model["constraint_kind"][:count] = [constraint.kind for constraint in ordered]
-        model["constraint_tree"][:count] = trees
-        model["constraint_link"][:count] = [
-            constraint.body.first_link + 1 + constraint.joint
-            if constraint.user is None
-            else user_rows[constraint.user.id]
-            for constraint in ordered
-        ]
-        numbers = np.array([(c.lower, c.upper, c.twist, c.max_impulse) for c in ordered]).reshape(count, 4)
-        for column, name in enumerate(("lower", "upper", "twist", "max_impulse")):
-            model[f"constraint_{name}"][:, :count] = numbers[:, column]
+        if ordered:
+            model["constraint_kind"][:count] = [constraint.kind for constraint in ordered]
+            model["constraint_tree"][:count] = trees
+            model["constraint_link"][:count] = [
+                constraint.body.first_link + 1 + constraint.joint
+                if constraint.user is None
+                else user_rows[constraint.user.id]
+                for constraint in ordered
+            ]
+            model["constraint_lower"][:, :count] = [constraint.lower for constraint in ordered]
+            model["constraint_upper"][:, :count] = [constraint.upper for constraint in ordered]
+            model["constraint_twist"][:, :count] = [constraint.twist for constraint in ordered]
+            model["constraint_max_impulse"][:, :count] = [constraint.max_impulse for constraint in ordered]
 
         tree_count = arrays.used["tree"]
-        model["tree_constraint_count"][:tree_count] = np.bincount(
-            [*trees, *(user.child.rows.tree for user in users if user.child is not None)],
-            minlength=tree_count,
-        )
+        counts = model["tree_constraint_count"]
+        counts[:tree_count] = 0
+        for tree in (*trees, *(user.child.rows.tree for user in users if user.child is not None)):
+            counts[tree] += 1
         model["tree_batch"][:tree_count] = np.arange(tree_count)
         model["tree_batch_constraints"][:tree_count] = 0
         for first, length in islands:

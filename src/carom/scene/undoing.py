@@ -16,3 +16,11 @@ def begin(world: World) -> Undo:
     world.undo.note(world.scene_changed)
     world.scene_changed()
     return world.undo
+
+
+def begin_with_constraints(world: World) -> Undo:
+    """Begin a change of nothing but constraints."""
+    world.undo.settle()
+    world.undo.note(world.scene_changed)
+    world.constraints_changed()
+    return world.undo

@@ -349,6 +349,11 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             self.view(self.arrays.state)
             self._viewed, self._replacements = self.arrays.state, self.arrays.state.replacements
 
+    def constraints_changed(self) -> None:
+        """Let the next step look at the constraints anew; nothing else has changed."""
+        self._derived.step = None
+        self.engine.constraints_changed()
+
     # Time
 
     def step(self, count: int = 1) -> None:

@@ -89,8 +89,7 @@ def getBodyInfo(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[bytes, byt
         >>> base.decode(), name.decode()
         ('lbr_iiwa_link_0', 'lbr_iiwa')
     """
-    body = body_of(client_of(physicsClientId), bodyUniqueId, "Couldn't get body info")
-    return body.spec.base.name.encode(), body.spec.name.encode()
+    return body_of(client_of(physicsClientId), bodyUniqueId, "Couldn't get body info").encoded_names()
 
 
 @exported

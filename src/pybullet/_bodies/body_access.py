@@ -64,6 +64,20 @@ class BodyAccess:
             self.record.links = addressof(self._link_records)
         return links
 
+    def weighed(self, link: int) -> None:
+        """Lets the native library see to the next changes of the mass of a link, -1 for the base."""
+        if self.record is None:
+            return
+        from carom.native.quick_calls import Moments
+        from carom.scene.dynamics_changes import shape_terms
+        from pybullet._bodies.quick_bodies import write_moments
+
+        if not self.record.moments:
+            self._moments = (Moments * (self.body.joint_count + 1))()
+            self.record.moments = addressof(self._moments)
+        if not self._moments[link + 1].is_known:
+            write_moments(self._moments[link + 1], shape_terms(self.body, link))
+
     def commanded(self, group: JointGroup) -> None:
         """Lets the native library see to the next commands to joints that have been commanded together."""
         if self.record is not None and group.record is not None:
@@ -80,7 +94,13 @@ class BodyAccess:
 
         if self.body.spec.soft is not None:
             return {-1: SoftBox(self.body)}
-        return {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
+        boxes = {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
+        if self.record is not None:
+            from pybullet._bodies.quick_bodies import box_records
+
+            self._box_records = box_records(boxes.values())
+            self.record.boxes = addressof(self._box_records)
+        return boxes
 
     @cached_property
     def tree(self) -> MovingTree | None:

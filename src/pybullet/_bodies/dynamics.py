@@ -235,7 +235,9 @@ def changeDynamics(
             client.bodies.forget_inertia(body.id)
         body.change_dynamics(link, **changes.values)
         # So that the native library can see to it next time.
-        client.bodies[body.id]
+        access = client.bodies[body.id]
+        if "mass" in changes.values:
+            access.weighed(link)
         client.world.be_quick()
 
 

@@ -23,25 +23,35 @@ _DOUBLE = 8
 
 
 class LinkBox:
-    """The box around one link, wherever it is when it is asked for."""
+    """The box around one link, wherever it is when it is asked for.
 
-    __slots__ = ("_at", "_bounds", "_lone", "_poses")
+    Attributes:
+        center: Its centre in the inertial frame of the link [m].
+        half: Half its size along the axes of that [m].
+        is_moved: It moves with the link; that around a plane does not.
+        is_turned: It turns with the link; that around a ball does not.
+    """
+
+    __slots__ = ("_at", "_poses", "center", "half", "is_moved", "is_turned")
 
     def __init__(self, client: Client, body: Body, link: int) -> None:
         row, world, spec = body.first_link + 1 + link, client.world, body.link_spec(link)
         alone = is_in_place(spec.collisions, spec.inertial_frame)
-        self._lone = type(spec.collisions[0].geometry) if alone else None
-        self._bounds = world.contact_arrays.shapes.bounds(row)
+        lone = type(spec.collisions[0].geometry) if alone else None
+        self.is_moved = lone is not Plane
+        self.is_turned = self.is_moved and lone is not Sphere
+        bounds = world.contact_arrays.shapes.bounds(row)
+        self.center, self.half = bounds.center, bounds.half
         # The base is where its coordinates say, also after a step.
         self._poses = world.position_memory if link == BASE else world.link_pose_memory
         self._at = body.first_position * _DOUBLE if link == BASE else row * _POSE.size
 
     def corners(self) -> tuple[Vector3, Vector3]:
         """The lowest and the highest corner, in the world frame [m]."""
-        center, half = self._bounds.center, self._bounds.half
-        if self._lone is not Plane:
+        center, half = self.center, self.half
+        if self.is_moved:
             x, y, z, qx, qy, qz, qw = _read_pose(self._poses, self._at)
-            rotation = NO_ROTATION if self._lone is Sphere else rotation_matrix((qx, qy, qz, qw))
+            rotation = rotation_matrix((qx, qy, qz, qw)) if self.is_turned else NO_ROTATION
             center, half = turned_box(center, half, rotation, (x, y, z))
         (cx, cy, cz), (hx, hy, hz) = center, half
         return (cx - hx, cy - hy, cz - hz), (cx + hx, cy + hy, cz + hz)

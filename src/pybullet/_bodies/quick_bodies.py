@@ -12,19 +12,21 @@ from collections.abc import Collection
 from ctypes import Array, addressof, c_void_p
 from typing import TYPE_CHECKING, Any
 
-from carom.native.quick_calls import Body, Client, Joint, Link
+from carom.native.quick_calls import Body, Box, Client, Joint, Link, Moments
 
 if TYPE_CHECKING:
+    from carom.model.inertia import MassTerms
     from carom.native.quick_calls import QuickCalls
     from carom.scene.body import Body as Handle
     from pybullet._bodies.body_access import BodyAccess
     from pybullet._bodies.link_access import LinkAccess
+    from pybullet._bodies.link_box import LinkBox
     from pybullet._clients.clients import Client as Connection
 
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW = 7 * _DOUBLE, 6 * _DOUBLE
 # Names of attributes are interned.
-_TIME_STEP = sys.intern("time_step")
+_TIME_STEP, _JOINT_COUNT, _NAMES = map(sys.intern, ("time_step", "joint_count", "_encoded_names"))
 _FIRST_ROOM = 16
 # Bodies of greater numbers are left to Python.
 _MOST_ROOM = 1 << 20
@@ -48,7 +50,7 @@ class QuickBodies:
         # What addresses point to, by the number of the body.
         self._shown: dict[int, Any] = {}
         lock = client.lock
-        self._kept = (client.world.quick, lock.acquire, lock.release, (False,))
+        self._kept = (client.world.quick, lock.acquire, lock.release, (False,), client.world.bodies)
         self._record = Client(
             scene=client.world.quick.address,
             bodies=addressof(self._places),
@@ -58,6 +60,9 @@ class QuickBodies:
             without_waiting=id(self._kept[3]),
             connection=id(client),
             time_step_name=id(_TIME_STEP),
+            world_bodies=id(client.world.bodies),
+            joint_count_name=id(_JOINT_COUNT),
+            encoded_names_name=id(_NAMES),
         )
         self._clients[number] = addressof(self._record)
 
@@ -89,11 +94,13 @@ class QuickBodies:
             tree=body.rows.tree,
             first_link=row,
             dynamics=id(body.all_dynamics),
+            handle=id(body),
+            derived=id(body.derived),
         )
         access.record = record
         if body.id >= len(self._places):
             self._make_room(body.id + 1)
-        self._shown[body.id] = record, access, state, joints, body.all_dynamics
+        self._shown[body.id] = record, access, state, joints, body.all_dynamics, body.derived
         self._places[body.id] = addressof(record)
 
     def hide(self, body_id: int) -> None:
@@ -142,3 +149,16 @@ def link_records(links: Collection[LinkAccess]) -> Array[Link]:
         record.from_inertial_frame[:] = (*back.position, *back.orientation)
         record.is_turned = link.rotated
     return records
+
+
+def write_moments(record: Moments, terms: MassTerms) -> None:
+    """Show the library how the moments of inertia of a link depend on its mass."""
+    for shown, of_axis in zip(record.terms, terms, strict=True):
+        for term, given in zip(shown, of_axis, strict=True):
+            term.divisor, term.factors[:] = given.divisor, given.factors
+    record.is_known = True
+
+
+def box_records(boxes: Collection[LinkBox]) -> Array[Box]:
+    """What the library is shown of the boxes around the links of a body, the base's first."""
+    return (Box * len(boxes))(*[Box(box.center, box.half, box.is_moved, box.is_turned) for box in boxes])

@@ -15,6 +15,7 @@ from typing import Any, NoReturn, SupportsFloat
 
 from pybullet._calls.errors import fail
 
+_ONLY_INTEGERS = frozenset((int,))
 _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
 # Squared lengths of quaternions that have a direction: their products are still ordinary numbers.
 _LEAST_SQUARE, _GREATEST_SQUARE = 1e-60, 1e60
@@ -273,7 +274,10 @@ def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:
     Raises:
         pybullet.error: It is not a sequence, or an item is no index.
     """
-    return tuple([_as_index(item, name) for item in sequence(values, problem, name)])
+    items = sequence(values, problem, name)
+    if _ONLY_INTEGERS.issuperset(map(type, items)):
+        return items
+    return tuple([_as_index(item, name) for item in items])
 
 
 def _as_index(item: Any, name: str) -> int:

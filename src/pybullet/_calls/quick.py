@@ -40,8 +40,14 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
     "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
-    "changeDynamics": ("change_surface", "birrrrrrrrri3rrir3rrrrrrc", ()),
+    "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),
+    "getAABB": ("link_box", "bic", (3, 3)),
+    "isConnected": ("is_connected", "c", None),
+    "getNumBodies": ("body_count", "c", None),
+    "getBodyUniqueId": ("body_at", "ic", None),
+    "getNumJoints": ("joint_count", "ic", None),
+    "getBodyInfo": ("body_names", "ic", None),
 }
 """Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the
 result), by the name of the function. What the letters mean is in `carom.native.quick_calls.Parameter`."""

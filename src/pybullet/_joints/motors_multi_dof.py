@@ -28,7 +28,7 @@ from pybullet._joints.joints import NO_INDICES
 from pybullet._joints.motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
-    from pybullet._joints.joint_access import JointAccess
+    from carom.scene.body import Body
 
 __all__ = [
     "setJointMotorControlMultiDof",
@@ -39,6 +39,7 @@ _ILLEGAL_MODE = "Illegal control mode."
 _NO_CLAMP = -1.0
 _NO_DAMPING = 1.0
 _USUAL_LISTS = frozenset((list, tuple))
+_QUATERNION = 4
 _USUAL_NUMBERS = frozenset((float, int))
 
 
@@ -97,7 +98,8 @@ def setJointMotorControlMultiDof(
     if mode == TORQUE_CONTROL:
         joint.add_torques(forces)
     elif mode == POSITION_CONTROL:
-        _check_rotation(position)
+        if len(position) == _QUATERNION:
+            _check_rotation(position)
         joint.command_multi_dof(mode, position, velocity, forces, kp, kd, clamp, damped)
     else:
         fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
@@ -161,10 +163,10 @@ def setJointMotorControlMultiDofArray(
     if count == 0 or any(entries and len(entries) != count for entries in lists.values()):
         return
     access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
-    for index in requested:
-        if index not in access.joints:
-            fail(OUT_OF_RANGE, no_joint(access.body, index))
-    joints = [access.joints[index] for index in requested]
+    try:
+        joints = [access.joints[index] for index in requested]
+    except KeyError as missing:
+        fail(OUT_OF_RANGE, no_joint(access.body, missing.args[0]))
     positions, velocities, bounds = (
         _lists(lists[name], name, most) or [()] * count
         for name, most in (("targetPositions", 4), ("targetVelocities", 3), ("forces", 3))
@@ -172,9 +174,10 @@ def setJointMotorControlMultiDofArray(
     kps = _gains(lists["positionGains"], "positionGains") or [DEFAULT_POSITION_GAIN] * count
     kds = _gains(lists["velocityGains"], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
     for position in positions:
-        _check_rotation(position)
+        if len(position) == _QUATERNION:
+            _check_rotation(position)
     if mode == STABLE_PD_CONTROL:
-        _stable_pd(joints, positions, velocities, bounds, kps, kds, client.time_step)
+        _stable_pd(access.body, requested, positions, velocities, bounds, kps, kds, client.time_step)
         return
     for joint, position, velocity, force, kp, kd in zip(
         joints, positions, velocities, bounds, kps, kds, strict=True
@@ -186,7 +189,8 @@ def setJointMotorControlMultiDofArray(
 
 
 def _stable_pd(
-    joints: Sequence[JointAccess],
+    body: Body,
+    joints: Sequence[int],
     positions: Sequence[Sequence[float]],
     velocities: Sequence[Sequence[float]],
     forces: Sequence[Sequence[float]],
@@ -195,12 +199,10 @@ def _stable_pd(
     time_step: float,
 ) -> None:
     """Adds the torques of a stable PD controller to those of the next step."""
-    from carom.algorithms.stable_pd import JointTarget, stable_pd_torques
+    from carom.algorithms.stable_pd import stable_pd_torques
 
     columns = zip(positions, velocities, forces, kps, kds, strict=True)
-    targets = zip([joint.index for joint in joints], map(JointTarget._make, columns), strict=True)
-    body = joints[0].body
-    torques = stable_pd_torques(body, dict(targets), time_step)
+    torques = stable_pd_torques(body, dict(zip(joints, columns, strict=True)), time_step)
     first = body.first_velocity
     body.world.joint_torque[first : first + len(torques)] += torques
 
@@ -243,6 +245,8 @@ def _entries(values: Any, name: str) -> tuple[Any, ...]:
 
 def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
     """A number, or at most three of them; no number at all stands for the default of each use."""
+    if type(value) is float or type(value) is int:
+        return quantity(value, name)
     # Arrays of one number can be floats, too, but are lists.
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
         return quantity(value, name)
@@ -250,5 +254,4 @@ def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
 
 
 def _check_rotation(position: Sequence[float]) -> None:
-    if len(position) == 4:
-        check_rotation(position, "expected a targetPosition sequence", "targetPosition")
+    check_rotation(position, "expected a targetPosition sequence", "targetPosition")

@@ -32,6 +32,9 @@ struct PyBuffer {
     F(int, PyTuple_SetItem, (PyObject*, intptr_t, PyObject*))                         \
     F(intptr_t, PyList_Size, (PyObject*))                                             \
     F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                               \
+    F(intptr_t, PyDict_Size, (PyObject*))                                             \
+    F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))                     \
+    F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**))               \
     F(intptr_t, PySequence_Size, (PyObject*))                                         \
     F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))                           \
     F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))                            \

@@ -127,9 +127,7 @@ bool find(const QuickCall& made, const double* numbers, Call* call) {
         if (kind == 'b')
             body = numbers;
         if (kind == 'c') {
-            if (carom_quick_calls_paused || !(*numbers >= 0.0 && *numbers < MOST_CLIENTS))
-                return false;
-            call->client = clients[static_cast<int>(*numbers)];
+            call->client = find_client(*numbers);
             if (!call->client)
                 return false;
         }
@@ -276,6 +274,11 @@ PyObject* tuple_of(const double* numbers, int count) {
         python.PyTuple_SetItem(tuple, i, number);
     }
     return tuple;
+}
+
+const Client* find_client(double number) {
+    const bool is_known = !carom_quick_calls_paused && number >= 0.0 && number < MOST_CLIENTS;
+    return is_known ? clients[static_cast<int>(number)] : nullptr;
 }
 
 const Body* find_body(const Client& client, double number) {

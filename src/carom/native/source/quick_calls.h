@@ -72,9 +72,11 @@ struct Scene {
     int32_t* contact_count;
     double* contact_warm_starts;  // where the solver starts, one for each contact
     int64_t contact_room;      // for so many contacts
-    double* surface[6];  // by row of link: friction, restitution, softness; see `surfaces.cpp`
+    double* surface[6];  // by row of link: friction, restitution, softness; see `dynamics.cpp`
     PyObject* surface_names[6];
     double* damping[2];  // by row of tree
+    double *mass, *inertia;  // by row of link: one number, three
+    PyObject *mass_name, *inertia_name, *fixed_base_name;
     ContactReport report;
     Placement placement;
     PairSearch nearest;
@@ -84,6 +86,21 @@ struct Link {
     double inertial_frame[7];       // in the link frame
     double from_inertial_frame[7];  // the link frame in the inertial frame
     int64_t is_turned;              // the axes of these differ
+};
+
+// Moments of inertia that a link's shapes have at a mass: for each axis two terms, mass / divisor * factors.
+struct Moments {
+    struct {
+        double divisor, factors[3];
+    } terms[3][2];
+    int64_t is_known;
+};
+
+// The box around the shapes of a link, in its inertial frame.
+struct Box {
+    double center[3], half[3];
+    int64_t is_moved;   // with the link
+    int64_t is_turned;  // likewise
 };
 
 struct Joint {
@@ -115,6 +132,10 @@ struct Body {
     int64_t tree;
     int64_t first_link;
     PyObject* dynamics;  // a list with what the host keeps of the links, the base's first
+    PyObject* handle;    // which says whether the base is held
+    PyObject* derived;   // a dictionary with what follows from masses
+    const Moments* moments;  // of the links, the base's first; null where nobody has changed a mass yet
+    const Box* boxes;        // likewise; null where nobody has asked yet
 };
 
 struct Client {
@@ -125,6 +146,8 @@ struct Client {
     PyObject *acquire, *release, *without_waiting;
     // What has the duration of a step as an attribute of a name.
     PyObject *connection, *time_step_name;
+    // A dictionary with what the host keeps of the bodies, by number, and names of attributes of these.
+    PyObject *world_bodies, *joint_count_name, *encoded_names_name;
 };
 
 struct Call {
@@ -152,6 +175,9 @@ bool read_numbers(PyObject* value, int count, double* numbers);
 
 // The duration of a step [s]; false if it is not known.
 bool read_time_step(const Client& client, double* seconds);
+
+// A connection by its number; null if Python has to see to it.
+const Client* find_client(double number);
 
 // A body by its number; null if there is none, or it is not known.
 const Body* find_body(const Client& client, double number);

@@ -1,0 +1,61 @@
+// Boxes around links: a kernel of quick calls.
+
+#include "export.h"
+#include "quick_calls.h"
+#include "turns.h"
+
+namespace {
+
+enum { POSE = 7 };
+
+// The matrix of a quaternion that need not be of unit length, and the order of operations of
+// `carom.description.transform.rotation_matrix`.
+struct Matrix {
+    explicit Matrix(Quaternion q) {
+        const double s = 2.0 / dot(q, q);
+        const double xs = q.x * s, ys = q.y * s, zs = q.z * s;
+        const double wx = q.w * xs, wy = q.w * ys, wz = q.w * zs;
+        const double xx = q.x * xs, xy = q.x * ys, xz = q.x * zs;
+        const double yy = q.y * ys, yz = q.y * zs, zz = q.z * zs;
+        rows[0] = {1.0 - (yy + zz), xy - wz, xz + wy};
+        rows[1] = {xy + wz, 1.0 - (xx + zz), yz - wx};
+        rows[2] = {xz - wy, yz + wx, 1.0 - (xx + yy)};
+    }
+    Vector rows[3];
+};
+
+double along(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+Vector magnitudes(Vector v) { return {__builtin_fabs(v.x), __builtin_fabs(v.y), __builtin_fabs(v.z)}; }
+
+}  // namespace
+
+// Body, link, connection.
+extern "C" CAROM_EXPORT int carom_link_box(const double* in, double* out, const Call* call) {
+    const Body& body = *call->body;
+    if (!body.boxes || !(-1.0 <= in[1] && in[1] < body.link_count))
+        return 0;
+    const int64_t link = static_cast<int64_t>(in[1]);
+    const Box& box = body.boxes[link + 1];
+    const double* pose = link < 0 ? body.position : body.pose + (link + 1) * POSE;
+    const Quaternion q = quaternion_at(pose + 3);
+    if (!(dot(q, q) > 0.0))
+        return 0;
+    double center[3], half[3];
+    for (int axis = 0; axis < 3; ++axis)
+        center[axis] = box.center[axis], half[axis] = box.half[axis];
+    if (box.is_moved) {
+        Matrix turn(q);
+        if (!box.is_turned)
+            turn.rows[0] = {1.0, 0.0, 0.0}, turn.rows[1] = {0.0, 1.0, 0.0}, turn.rows[2] = {0.0, 0.0, 1.0};
+        for (int axis = 0; axis < 3; ++axis) {
+            center[axis] = along(turn.rows[axis], vector_at(box.center)) + pose[axis];
+            half[axis] = along(magnitudes(turn.rows[axis]), vector_at(box.half));
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        out[axis] = center[axis] - half[axis];
+        out[3 + axis] = center[axis] + half[axis];
+    }
+    return 2;
+}

@@ -1,0 +1,167 @@
+// Changing how links touch, how heavy they are, and how bodies are damped: a kernel of quick calls.
+
+#include "export.h"
+#include "quick_calls.h"
+
+namespace {
+
+// Places of the arguments of `changeDynamics`, vectors taking three.
+enum {
+    BODY,
+    LINK,
+    MASS,
+    LATERAL_FRICTION,
+    SPINNING_FRICTION,
+    ROLLING_FRICTION,
+    RESTITUTION,
+    LINEAR_DAMPING,
+    ANGULAR_DAMPING,
+    CONTACT_STIFFNESS,
+    CONTACT_DAMPING,
+    FRICTION_ANCHOR,
+    INERTIA,
+    LOWER_LIMIT = 24,
+    SLEEP_THRESHOLD = 27,
+    CONNECTION,
+};
+
+// In the order of `Scene::surface` and `Scene::damping`.
+const int OF_SURFACE[] = {
+    LATERAL_FRICTION, SPINNING_FRICTION, ROLLING_FRICTION, RESTITUTION, CONTACT_STIFFNESS, CONTACT_DAMPING,
+};
+const int OF_BODY[] = {LINEAR_DAMPING, ANGULAR_DAMPING};
+
+bool is_given(double number) { return number == number; }
+
+// Whether an argument other than those above is what it is by default.
+bool is_left_out(const double* in, int place) {
+    return !is_given(in[place]) || in[place] == (place == LOWER_LIMIT ? 1.0 : -1.0);
+}
+
+bool has_others(const double* in) {
+    for (int place = FRICTION_ANCHOR; place <= SLEEP_THRESHOLD; ++place)
+        if ((place < INERTIA || place > INERTIA + 2) && !is_left_out(in, place))
+            return true;
+    return false;
+}
+
+// Whether one of some arguments is given.
+template <int count>
+bool has_one(const double* in, const int (&places)[count]) {
+    for (int place : places)
+        if (in[place] >= 0.0)
+            return true;
+    return false;
+}
+
+// Lets the host know of what it keeps as well; false if memory is short.
+bool tell(PyObject* dynamics, PyObject* name, PyObject* value) {
+    const bool well = value && !python.PyObject_SetAttr(dynamics, name, value);
+    if (!well)
+        python.PyErr_Clear();
+    return well;
+}
+
+bool tell(PyObject* dynamics, PyObject* name, double number) {
+    PyObject* value = python.PyFloat_FromDouble(number);
+    const bool well = tell(dynamics, name, value);
+    if (value)
+        python.Py_DecRef(value);
+    return well;
+}
+
+double moment(const Moments& of, int axis, double mass) {
+    double sum = 0.0;
+    for (const auto& term : of.terms[axis])
+        sum += mass / term.divisor * term.factors[0] * term.factors[1] * term.factors[2];
+    return sum;
+}
+
+bool is_held(const Scene& scene, const Body& body) {
+    PyObject* held = python.PyObject_GetAttr(body.handle, scene.fixed_base_name);
+    const bool is_free = held == python.False;
+    if (held)
+        python.Py_DecRef(held);
+    else
+        python.PyErr_Clear();
+    return !is_free;
+}
+
+// Changes the mass of a link, or its moments of inertia alone; false if Python has to see to it, which it has to
+// where a base is freed or held, and where something follows from masses. Fills the tuple, an empty one of three
+// items, with the moments.
+bool change_mass(const double* in, const Scene& scene, const Body& body, PyObject* dynamics, PyObject* tuple) {
+    const int64_t link = static_cast<int64_t>(in[LINK]), row = body.first_link + link + 1;
+    const bool has_mass = in[MASS] >= 0.0, has_inertia = is_given(in[INERTIA]);
+    double moments[3] = {in[INERTIA], in[INERTIA + 1], in[INERTIA + 2]};
+    if (python.PyDict_Size(body.derived))
+        return false;
+    if (has_mass && (in[MASS] == 0.0 || (link < 0 && is_held(scene, body))))
+        return false;
+    if (!has_inertia) {
+        if (!body.moments || !body.moments[link + 1].is_known)
+            return false;
+        for (int axis = 0; axis < 3; ++axis)
+            moments[axis] = moment(body.moments[link + 1], axis, in[MASS]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        PyObject* number = python.PyFloat_FromDouble(moments[axis]);
+        if (!number) {
+            python.PyErr_Clear();
+            return false;
+        }
+        python.PyTuple_SetItem(tuple, axis, number);
+    }
+    if (!tell(dynamics, scene.inertia_name, tuple) || (has_mass && !tell(dynamics, scene.mass_name, in[MASS])))
+        return false;
+    for (int axis = 0; axis < 3; ++axis)
+        scene.inertia[3 * row + axis] = moments[axis];
+    if (has_mass)
+        scene.mass[row] = in[MASS];
+    return true;
+}
+
+bool change(const double* in, const Client& client, const Body& body, PyObject* moments) {
+    const Scene& scene = *client.scene;
+    const Lock lock(client);
+    if (!lock.is_held || !scene.find_poses.function)
+        return false;
+    for (int i = 0; i < 2; ++i)
+        if (in[OF_BODY[i]] >= 0.0)
+            scene.damping[i][body.tree] = in[OF_BODY[i]];
+    const int64_t link = static_cast<int64_t>(in[LINK]);
+    PyObject* dynamics = python.PyList_GetItem(body.dynamics, link + 1);
+    if (moments && !change_mass(in, scene, body, dynamics, moments))
+        return false;
+    for (int i = 0; i < 6; ++i)
+        if (in[OF_SURFACE[i]] >= 0.0) {
+            if (!tell(dynamics, scene.surface_names[i], in[OF_SURFACE[i]]))
+                return false;
+            scene.surface[i][body.first_link + link + 1] = in[OF_SURFACE[i]];
+        }
+    return true;
+}
+
+}  // namespace
+
+// The arguments of `changeDynamics`. Python sees to all but masses, moments of inertia, friction, restitution, softness
+// and damping, and to calls that mix what belongs to a link with what belongs to the body.
+extern "C" CAROM_EXPORT int carom_change_dynamics(const double* in, double* out, const Call* call) {
+    const bool of_mass = in[MASS] >= 0.0 || is_given(in[INERTIA]), of_body = has_one(in, OF_BODY);
+    if (has_others(in) || ((of_mass || has_one(in, OF_SURFACE)) && of_body))
+        return 0;
+    if ((in[CONTACT_STIFFNESS] >= 0.0) != (in[CONTACT_DAMPING] >= 0.0))
+        return 0;
+    // A new tuple lets Python collect garbage, which may do anything: the body is looked up after that.
+    PyObject* moments = of_mass ? python.PyTuple_New(3) : nullptr;
+    if (of_mass && !moments) {
+        python.PyErr_Clear();
+        return 0;
+    }
+    const Client* client = find_client(in[CONNECTION]);
+    const Body* body = client ? find_body(*client, in[BODY]) : nullptr;
+    const bool well = body && -1.0 <= in[LINK] && in[LINK] < body->link_count && change(in, *client, *body, moments);
+    if (moments)
+        python.Py_DecRef(moments);
+    return well;
+}

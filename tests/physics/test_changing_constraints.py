@@ -1,0 +1,95 @@
+"""Constraints that come and go while a world runs: what steps know is renewed no more than it has to be."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+import pytest
+
+import pybullet as p
+import pybullet_data
+from carom.world.world import World
+from pybullet._clients.clients import clients
+
+ROBOT = f"{pybullet_data.getDataPath()}/kuka_iiwa/model.urdf"
+
+
+def _story(seed: int) -> list[Any]:
+    """What a script sees that ties, unties, changes and steps a world at random."""
+    random = Random(seed)
+    client = p.connect(p.DIRECT)
+    seen: list[Any] = []
+    try:
+        p.setGravity(0, 0, -10, physicsClientId=client)
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
+        p.createMultiBody(
+            0, p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client), physicsClientId=client
+        )
+        p.loadURDF(ROBOT, [0, 0, 0.5], useFixedBase=random.random() < 0.5, physicsClientId=client)
+        for number in range(3):
+            p.createMultiBody(1.0, box, basePosition=[1, 0, 0.1 + 0.21 * number], physicsClientId=client)
+        ties: list[int] = []
+        for _ in range(60):
+            bodies = [body for body in clients[client].world.bodies if body > 0]
+            a, b = random.choice(bodies), random.choice([-1, *bodies])
+            what = random.choice(["tie", "tie", "untie", "step", "step", "step", "weigh", "place", "near"])
+            if what == "tie" and a != b:
+                kind = random.choice([p.JOINT_FIXED, p.JOINT_POINT2POINT])
+                ends = [0.0, 0.0, 0.2], [random.uniform(-0.3, 0.3) for _ in range(3)]
+                ties.append(p.createConstraint(a, -1, b, -1, kind, [0, 0, 0], *ends, physicsClientId=client))
+            elif what == "untie" and ties:
+                p.removeConstraint(ties.pop(random.randrange(len(ties))), physicsClientId=client)
+            elif what == "step":
+                p.stepSimulation(client)
+            elif what == "weigh":
+                p.changeDynamics(a, -1, mass=random.choice([0.0, 1.0, 2.0]), physicsClientId=client)
+            elif what == "place":
+                p.resetBasePositionAndOrientation(a, [0, 1, random.random()], [0, 0, 0, 1], client)
+            elif what == "near":
+                seen.append(p.getClosestPoints(a, 0, 1.0, physicsClientId=client))
+            elif random.random() < 0.2:
+                p.createMultiBody(1.0, box, basePosition=[2, 0, 1], physicsClientId=client)
+            seen += [
+                (p.getBasePositionAndOrientation(body, client), p.getBaseVelocity(body, client))
+                for body in bodies
+            ]
+            seen.append(p.getContactPoints(physicsClientId=client))
+        return seen
+    finally:
+        p.disconnect(client)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_is_kept_is_what_would_be_made_anew(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = _story(seed)
+    monkeypatch.setattr(World, "constraints_changed", World.scene_changed)
+    assert kept == _story(seed)
+
+
+def test_launches_are_those_of_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tying and untying a body makes no launch anew, once there is room for its constraint."""
+    client = p.connect(p.DIRECT)
+    try:
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
+        for place in range(2):
+            p.createMultiBody(1.0, box, basePosition=[place, 0, 0], physicsClientId=client)
+
+        def tie_and_step() -> None:
+            tie = p.createConstraint(
+                0, -1, -1, -1, p.JOINT_FIXED, [0] * 3, [0] * 3, [0] * 3, physicsClientId=client
+            )
+            p.stepSimulation(client)
+            p.removeConstraint(tie, physicsClientId=client)
+
+        tie_and_step()
+
+        def refuse(*_: Any) -> None:
+            raise AssertionError("a program was loaded")
+
+        engine = clients[client].world.engine
+        monkeypatch.setattr(engine, "_make_program", refuse)
+        for _ in range(3):
+            tie_and_step()
+    finally:
+        p.disconnect(client)
