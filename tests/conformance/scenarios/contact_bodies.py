@@ -1,7 +1,7 @@
 """Bodies of one link that fall, bounce, roll, slide and stand.
 
-Rocking and tumbling are chaotic, so every body here moves in a way that does not amplify rounding:
-flat on its face, or round.
+Rocking and tumbling are chaotic, so bodies move in a way that does not amplify rounding, flat on a face or
+round, or are followed for a short time only.
 """
 
 from __future__ import annotations
@@ -207,3 +207,41 @@ def contact_with_substeps(p: Any) -> dict[str, Any]:
     _floor(p, restitution=0.9)
     bodies = {"box": _box(p, [0, 0, 0.4]), "ball": _ball(p, [1, 0, 0.7], restitution=0.7)}
     return simulate(p, 1.5, lambda: _observe_fall(p, bodies))
+
+
+@scenario()
+def boxes_tumble(p: Any) -> dict[str, Any]:
+    """Boxes thrown on a plane and on a block, lying flat and tumbling, and two that meet turned in the air."""
+    results: dict[str, Any] = {}
+    for ground in ("plane", "block"):
+        for name, turn, spin in (
+            ("flat", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+            ("tumbling", (0.1, 0.2, 0.3), (3.0, 2.0, 1.0)),
+            ("turned", (0.02, 0.01, 0.1), (0.0, 0.0, 5.0)),
+        ):
+            p.resetSimulation()
+            p.setGravity(0, 0, -10)
+            block = p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 0.5])
+            plane = p.createCollisionShape(p.GEOM_PLANE)
+            if ground == "plane":
+                p.createMultiBody(0, plane)
+            else:
+                p.createMultiBody(0, block, -1, [0, 0, -0.5])
+            shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.12, 0.08])
+            orientation = p.getQuaternionFromEuler(turn)
+            tilted = p.getQuaternionFromEuler([0.05, -0.03, 0.4])
+            lower = p.createMultiBody(1.0, shape, -1, [0.0, 0.0, 0.12], orientation)
+            upper = p.createMultiBody(1.0, shape, -1, [0.03, 0.02, 0.36], tilted)
+            p.resetBaseVelocity(lower, [0.5, 0.2, -0.5], spin)
+            p.resetBaseVelocity(upper, [0.4, 0.2, -1.0], [0.0, 0.0, 2.0])
+            motion = simulate(p, 0.2, lambda b=(lower, upper): _both(p, b), stride=1)
+            results |= under(f"{ground}/{name}", motion)
+    return results
+
+
+def _both(p: Any, bodies: tuple[int, int]) -> dict[str, Any]:
+    return {
+        "position": [p.getBasePositionAndOrientation(body)[0] for body in bodies],
+        "orientation": [p.getBasePositionAndOrientation(body)[1] for body in bodies],
+        "velocity": [p.getBaseVelocity(body)[0] for body in bodies],
+    }
