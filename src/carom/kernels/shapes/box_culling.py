@@ -10,6 +10,8 @@ from carom.kernels.types import Int32, Vector2, Vector3, Vector8Rows, func, real
 TURN = real(2.0 * math.pi)
 HALF_TURN = real(math.pi)
 QUARTER_TURN = real(0.5 * math.pi)
+# Corners less deep than the deepest by this are as deep: of what lies flat, the same should stay [m].
+ALIKE = real(1.0e-9)
 # Twice the area of a polygon below which it has no middle [m²].
 NO_AREA = real(1.0e-15)
 
@@ -61,7 +63,8 @@ def keep_four_around(
     middle = middle_of_face(candidates, world, count, across1, across2)
     best = Int32(0)
     for row in range(1, count):
-        if candidate_distance(candidates, world, row) < candidate_distance(candidates, world, best):
+        deeper = candidate_distance(candidates, world, best) - candidate_distance(candidates, world, row)
+        if deeper > ALIKE:
             best = Int32(row)
     place = place_in_face(candidates, world, best, across1, across2) - middle
     start = wp.atan2(place[1], place[0])
