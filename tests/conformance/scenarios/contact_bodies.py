@@ -211,7 +211,7 @@ def contact_with_substeps(p: Any) -> dict[str, Any]:
 
 @scenario()
 def boxes_tumble(p: Any) -> dict[str, Any]:
-    """Boxes thrown on a plane and on a block, lying flat and tumbling, and two that meet turned in the air."""
+    """Boxes thrown on a plane and on a block, flat and tumbling, and others that fall on them turned."""
     results: dict[str, Any] = {}
     for ground in ("plane", "block"):
         for name, turn, spin in (
