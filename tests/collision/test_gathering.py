@@ -179,19 +179,15 @@ def test_a_cube_that_does_not_lie_flat_gathers_its_points(ground: str, tilt: flo
     assert len(scene.contacts("distance")) == points
 
 
-@pytest.mark.parametrize(("ground", "counts"), [("plane", [1, 2, 3, 4]), ("box", [2, 4, 4, 4])])
-def test_a_box_that_rocks_gathers_its_corners(ground: str, counts: list[int]) -> None:
-    """On a plane one at a time; on a box those that touch, while those of before have not parted."""
+def test_a_box_that_rocks_on_a_plane_gathers_its_corners() -> None:
     half = 0.05
-    scene = Scene([box((half, half, half), breaking=BREAKING), GROUNDS[ground]])
+    scene = Scene([box((half, half, half), breaking=BREAKING), GROUNDS["plane"]])
     found = []
     for roll, pitch in ((2e-3, 1e-3), (-2e-3, 1e-3), (-2e-3, -1e-3), (2e-3, -1e-3)):
-        # About one axis alone it touches boxes with two corners.
-        orientation = product(turn(0, roll), turn(1, pitch)) if ground == "plane" else turn(0, roll)
-        scene.place(0, (0, 0, half), orientation)
+        scene.place(0, (0, 0, half), product(turn(0, roll), turn(1, pitch)))
         scene.collide()
         found.append(len(scene.contacts("distance")))
-    assert found == counts
+    assert found == [1, 2, 3, 4]
 
 
 def test_a_point_that_is_found_again_keeps_its_impulse_and_a_new_one_has_none() -> None:

@@ -3,10 +3,8 @@
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate, flip_candidates, keep_four
-from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.balls import collide_ball
-from carom.kernels.shapes.box_culling import keep_four_around
-from carom.kernels.shapes.boxes import APART, EDGES, FACE_B, box_axis, box_edge_points, main_axis
+from carom.kernels.shapes.boxes import APART, EDGES, box_axis, box_edge_points
 from carom.kernels.shapes.convex import collide_convex, collide_faces, face_towards
 from carom.kernels.shapes.cores import Core, core_of, segment_half
 from carom.kernels.shapes.planes import collide_plane, with_sharp_edges
@@ -31,7 +29,7 @@ def collide_boxes(
     """Candidates of two boxes, their edges sharp."""
     sharp_a = with_sharp_edges(core_a)
     sharp_b = with_sharp_edges(core_b)
-    code, normal, gap = box_axis(
+    code, normal, _gap = box_axis(
         sharp_a.frame,
         sharp_a.size,
         sharp_b.frame,
@@ -41,23 +39,15 @@ def collide_boxes(
     )
     count = Int32(0)
     if code >= EDGES:
-        _point_a, point_b = box_edge_points(
+        point_a, point_b = box_edge_points(
             sharp_a.frame, sharp_a.size, sharp_b.frame, sharp_b.size, sharp_a.position, sharp_b.position,
             code, normal,
         )  # fmt: skip
-        count = add_candidate(pairs.candidate_terms, world, 0, point_b, normal, gap)
+        count = add_candidate(
+            pairs.candidate_terms, world, 0, point_b, normal, wp.dot(point_a - point_b, normal)
+        )
     elif code != APART:
         count = collide_faces(shapes, pairs, world, a, b, sharp_a, sharp_b, normal, max_distance, 0)
-        if count > 4:
-            frame = sharp_a.frame
-            if code == FACE_B:
-                frame = sharp_b.frame
-            axis = main_axis(wp.transpose(frame) * normal)
-            across1 = Int32(wp.where(axis == 0, 1, 0))
-            across2 = Int32(wp.where(axis == 2, 1, 2))
-            count = keep_four_around(
-                pairs.candidate_terms, world, count, column(frame, across1), column(frame, across2)
-            )
     return count
 
 

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.min_max import greatest_entry
+from carom.kernels.maths.min_max import greatest_entry, least_entry, lower_corner
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import toward
 from carom.kernels.shapes.segments import nearest_places
@@ -11,11 +11,10 @@ from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
 # What `box_axis` found: a face of a, a face of b, no axis within reach, or 3 + 3 i + j for the edges
 # along axis i of a and axis j of b.
 FACE_A, FACE_B, APART, EDGES = 0, 1, 2, 3
-# Edges must be this share better than what was found before, lest contacts alternate, ...
+# Edges, and faces of b, must be this share better than faces of a, lest contacts alternate; ...
 EDGE_SHARE = real(0.05)
-# ... and reach by this share of the boxes further than they do, as all are alike where boxes just touch.
-EDGE_REACH = real(1.0e-5)
-# Faces of b must be this share better than those of a.
+# ... edges also by this share of the thinnest box, as all are alike where boxes just touch.
+EDGE_SIZE_SHARE = real(1.0e-4)
 FACE_SHARE = real(1.0e-6)
 # Faces this share of the boxes apart touch: where they just do, rounding must not decide.
 TOUCHING_SHARE = real(1.0e-12)
@@ -83,6 +82,8 @@ def box_axis(
     if best > max_distance + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
         return Int32(APART), normal, best
 
+    thinnest = least_entry(lower_corner(half_a, half_b))
+    needed = best + EDGE_SHARE * wp.abs(best) + EDGE_SIZE_SHARE * thinnest
     pair = Int32(0)
     while pair < 9:
         i = pair // 3
@@ -97,10 +98,9 @@ def box_axis(
             along = t[i2] * turn[i1, j] - t[i1] * turn[i2, j]
             max_distance_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
             max_distance_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
-            reach = max_distance_a + max_distance_b
-            reach += EDGE_REACH * (half_a[i1] + half_a[i2] + half_b[j1] + half_b[j2])
-            gap = (wp.abs(along) - reach) / wp.sqrt(length_sq)
-            if gap * (1.0 + EDGE_SHARE) > best:
+            gap = (wp.abs(along) - max_distance_a - max_distance_b) / wp.sqrt(length_sq)
+            if gap > needed:
+                needed = gap
                 best = gap
                 code = EDGES + pair
                 cross = wp.cross(column(frame_a, i), column(frame_b, j))
