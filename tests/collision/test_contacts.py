@@ -8,6 +8,7 @@ from tests.collision.scene import Scene, box, capsule, cylinder, hull, plane, sp
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.5
+SLAB = box((5, 5, 5), position=(0, 0, -5), static=True)
 UPRIGHT_X = (0, np.sqrt(0.5), 0, np.sqrt(0.5))
 UPRIGHT_Y = (np.sqrt(0.5), 0, 0, np.sqrt(0.5))
 
@@ -41,13 +42,8 @@ def four_corners(half, height):
     ],
     ids=["box", "hull", "hull with margin"],
 )
-@pytest.mark.parametrize(
-    "ground",
-    [plane(), box((5, 5, 5), position=(0, 0, -5), static=True)],
-    ids=["plane", "box"],
-)
-def test_a_cube_at_rest_has_its_four_corners_at_once(shape, ground):
-    scene = collided(shape, ground)
+def test_a_cube_at_rest_has_its_four_corners_at_once(shape):
+    scene = collided(shape, SLAB)
     assert_allclose(sorted_rows(scene.contacts("point_b")), four_corners(0.5, 0.0), atol=1e-7)
     assert_allclose(scene.contacts("distance"), -0.001, atol=1e-9)
     assert_allclose(scene.contacts("normal"), [[0, 0, 1]] * 4, atol=1e-7)
@@ -107,8 +103,8 @@ def test_crossed_box_edges_touch_in_one_point():
 )
 @pytest.mark.parametrize(
     "ground",
-    [plane(), box((5, 5, 5), position=(0, 0, -5), static=True), hull(10 * CUBE - (0, 0, 5), static=True)],
-    ids=["plane", "box", "hull"],
+    [SLAB, hull(10 * CUBE - (0, 0, 5), static=True)],
+    ids=["box", "hull"],
 )
 def test_round_shapes_at_rest(shape, count, lowest, ground):
     scene = collided(shape, ground)
@@ -129,7 +125,7 @@ def test_capsules_side_by_side_touch_along_what_they_share():
 
 
 def test_impulses_follow_a_sliding_contact():
-    scene = Scene([plane(), box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
+    scene = Scene([SLAB, box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
     scene.collide()
     impulses = np.arange(12.0).reshape(4, 3)
     scene.contacts("impulse")[:] = impulses
@@ -154,7 +150,7 @@ def test_impulses_stay_behind_where_a_contact_is_elsewhere_on_both_bodies(far, k
 
 
 def test_a_new_contact_starts_from_nothing():
-    scene = Scene([plane(), box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
+    scene = Scene([SLAB, box((0.5, 0.5, 0.5), position=(0, 0, 0.5))])
     scene.collide()
     scene.contacts("impulse")[:] = 1.0
     scene.place(1, (0, 0, 2.0))
@@ -216,7 +212,8 @@ def test_parts_of_a_compound_always_meet_the_bounds_of_a_plane():
 
 
 def test_contacts_without_room_are_found_when_there_is_and_have_lost_nothing():
-    shapes = [plane(), *(box((0.5, 0.5, 0.5), position=(2 * i, 0, 0.5)) for i in range(8))]
+    slab = box((50, 50, 5), position=(0, 0, -5), static=True)
+    shapes = [slab, *(box((0.5, 0.5, 0.5), position=(2 * i, 0, 0.5)) for i in range(8))]
     scene = Scene(shapes, contact_room=16)
     for i in range(1, 9):
         scene.place(i, (2 * i, 0, 0.5 if i == 3 else 5.0))
@@ -235,7 +232,7 @@ def test_contacts_without_room_are_found_when_there_is_and_have_lost_nothing():
     scene.grow_scratch(len(shapes), 64)
     scene.collide()
     assert len(scene.contacts("impulse")) == 32
-    kept = scene.contacts("shapes")[:, 0] == 3
+    kept = (scene.contacts("shapes")[:, :2] == 3).any(axis=1)
     assert_allclose(scene.contacts("impulse")[kept], 7.0)
     assert_allclose(scene.contacts("impulse")[~kept], 0.0)
 

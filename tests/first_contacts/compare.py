@@ -137,9 +137,12 @@ the table, by kinds of shape: the cases that are the same in all of this, of tho
 _DIFFERENCES = """
 ## What differs
 
-PyBullet makes one point of a manifold in each step, and over the edges of meshes and height fields one for
-each triangle it comes across; Carom makes the manifold at once and leaves out what inner edges would only
-push sideways. So forces of first steps are shared out in another way where faces meet faces or triangles.
+On meshes and height fields PyBullet makes a point for each triangle it comes across; Carom leaves out what
+inner edges would only push sideways. So normals lean in PyBullet where here they are upright, points are
+more, and forces are shared out in another way, while their sum and the gap are the same.
+[Differences](../differences.md#contact) has what comes of it. On other shapes two cases are left: a cylinder
+that lands flat on a box has all its points at once here, and one more in each step in PyBullet; a tilted box
+meets the edge of another with two points, in PyBullet with one.
 
 | case | steps later | gap here, there [mm] | points here, there | force here, there [N] |
 |---|---:|---:|---:|---:|"""

@@ -96,13 +96,14 @@ def hurried_stack(client: int) -> None:
 
 
 def robots(client: int) -> None:
-    """A walking robot and a wheeled one on the floor, with motors; boxes tied to each other; a tied robot."""
+    """Robots with motors and sensors, on legs and on wheels, one of them tied; boxes tied to each other."""
     p.setPhysicsEngineParameter(numSubSteps=2, physicsClientId=client)
     p.loadURDF("plane.urdf", physicsClientId=client)
     legs = p.loadURDF("a1/a1.urdf", [0, 0, 0.4], flags=p.URDF_USE_SELF_COLLISION, physicsClientId=client)
     r2d2 = p.loadURDF("r2d2.urdf", [1.5, 0, 0.5], physicsClientId=client)
     for robot, target in ((legs, p.POSITION_CONTROL), (r2d2, p.VELOCITY_CONTROL)):
         for joint in range(p.getNumJoints(robot, physicsClientId=client)):
+            p.enableJointForceTorqueSensor(robot, joint, physicsClientId=client)
             if p.getJointInfo(robot, joint, physicsClientId=client)[2] == p.JOINT_REVOLUTE:
                 p.setJointMotorControl2(robot, joint, target, 0.5, force=20, physicsClientId=client)
     shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1], physicsClientId=client)

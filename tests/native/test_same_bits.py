@@ -14,10 +14,10 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "63e8838f8942bacb",
+    "stack": "746268d82545f5a5",
     "tied": "2a3a54cf08b535dd",
     "questions": "54d8874ff3d1bde4",
-    "images": "d73a7cd7d7886fc4",
+    "images": "48d8e2adf97e0616",
     "robots": "ddb089f9206e801e",
     "meshes": "75971d4db0801db0",
     "soft": "6306db71c491c0cb",

@@ -9,6 +9,7 @@ import numpy as np
 from tests.physics.robots import box_inertia
 
 from carom import Body, World
+from carom.description import Pose
 from carom.description.geometry import Box, Geometry, Sphere
 from carom.description.link import Collision, ContactParameters
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
@@ -65,6 +66,19 @@ def add_floor(world: World, **surface: float) -> Body:
     block = Collision(Box((20.0, 20.0, 1.0)))
     link = LinkSpec(name="floor", collisions=(block,), contact=_contact(surface))
     return world.load(BodySpec("floor", link, fixed_base=True), (0.0, 0.0, -1.0))
+
+
+def add_plate_on_a_stand(world: World) -> Body:
+    """A plate of 1 kg fixed to the world, whose joint can measure; its upper side is at height 1."""
+    block = Collision(Box((3.0 * HALF, 3.0 * HALF, HALF)))
+    plate = LinkSpec(
+        name="plate",
+        mass=1.0,
+        inertia=(0.01, 0.01, 0.01),
+        joint_frame=Pose((0.0, 0.0, 1.0 - HALF)),
+        collisions=(block,),
+    )
+    return world.load(BodySpec("stand", LinkSpec("base"), [plate], fixed_base=True))
 
 
 def _contact(surface: dict[str, float]) -> ContactParameters:

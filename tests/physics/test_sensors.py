@@ -6,12 +6,21 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from tests.physics.aba_reference import rotation
-from tests.physics.one_joint import WEIGHT_MOMENT, Motor, hanging_rod, joint_state, place
+from tests.physics.contact_scenes import (
+    HALF,
+    WEIGHT,
+    add_ball,
+    add_box,
+    add_plate_on_a_stand,
+    earth,
+    impulses,
+)
+from tests.physics.one_joint import DT, WEIGHT_MOMENT, Motor, hanging_rod, joint_state, place
 from tests.physics.robots import ALL_TYPES, coordinates, let_go, put_in_motion, random_tree
 
 from carom import Body, World
 from carom.description import JointType, Pose
-from carom.layouts.codes import MOTOR_MAX_IMPULSE, MOTOR_VELOCITY
+from carom.layouts.codes import MOTOR_MAX_IMPULSE, MOTOR_VELOCITY, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
 
 WORLD_AXES, ABOUT_JOINT = 1, 2
@@ -66,6 +75,35 @@ def test_a_swinging_rod_pulls_outwards():
     body.world.step()
     # Released from the horizontal, a joint carries a quarter of a rod.
     assert_allclose(body.world.joint_reaction[1, :3], [-2.0 * 9.81 / 4, 0.0, 0.0], atol=1e-12)
+
+
+def test_a_plate_weighs_what_lies_on_it_and_hangs_from_it():
+    world = earth()
+    plate = add_plate_on_a_stand(world)
+    add_box(world, (0.0, -HALF, 1.0 + HALF))
+    hanging = add_ball(world, (0.0, 0.0, 0.5))
+    frame = Pose((0.0, 0.0, 0.5 - HALF))
+    world.tie(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, BASE, child_frame=frame)
+    sensing(plate, WORLD_AXES, 0)
+    alone = world.copy()
+    alone.bodies[plate.id].set_sensor(0, False)
+    world.step(480)
+    alone.step(480)
+    assert_allclose(world.joint_reaction[1], [0.0, 0.0, 3.0 * WEIGHT, -HALF * WEIGHT, 0.0, 0.0], atol=1e-3)
+    np.testing.assert_array_equal(world.position, alone.position)
+    np.testing.assert_array_equal(world.velocity, alone.velocity)
+
+
+@pytest.mark.parametrize("substeps", [1, 4])
+def test_forces_are_those_of_the_last_substep(substeps):
+    world = earth(substeps=substeps)
+    plate = add_plate_on_a_stand(world)
+    add_ball(world, (0.0, 0.0, 1.0 + HALF))
+    sensing(plate, WORLD_AXES, 0)
+    world.step(20)
+    (impulse,) = impulses(world)
+    assert_allclose(world.joint_reaction[1, 2], WEIGHT + impulse[0] * substeps / DT, rtol=1e-12)
+    assert world.joint_reaction[1, 2] > 1.5 * WEIGHT
 
 
 def subtree(spec: BodySpec, joint: int) -> list[int]:

@@ -94,6 +94,30 @@ def test_contacts_are_logged_as_they_are_reported(boxes, tmp_path: Path) -> None
     )
 
 
+def test_contacts_are_logged_of_a_step_in_which_their_arrays_grow(tmp_path: Path) -> None:
+    p.connect(p.DIRECT)
+    p.setGravity(0, 0, -10)
+    p.setPhysicsEngineParameter(numSubSteps=3)
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[20, 20, 1]), -1, [0, 0, -1])
+    for number in range(300):
+        # All but the first fall for 23 steps.
+        height = 0.15 if number else 0.1
+        p.createMultiBody(1, box, -1, [0.3 * (number % 20), 0.3 * (number // 20), height])
+    start = p.saveState()
+    logged = []
+    for name in ("arrays grow", "there is room"):
+        p.restoreState(start)
+        log = p.startStateLogging(p.STATE_LOGGING_CONTACT_POINTS, str(tmp_path / name))
+        for _ in range(26):
+            p.stepSimulation()
+        p.stopStateLogging(log)
+        logged.append([record[2:] for record in parts(tmp_path / name)[2] if record])
+    p.disconnect()
+    assert logged[0] == logged[1]
+    assert len(logged[0]) > 4 * 300
+
+
 def test_timings_are_a_trace_with_the_zones_of_scripts(boxes, tmp_path: Path) -> None:
     log = p.startStateLogging(p.STATE_LOGGING_PROFILE_TIMINGS, str(tmp_path / "trace"))
     p.submitProfileTiming("zone")

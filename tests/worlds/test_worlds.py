@@ -7,12 +7,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth
+from tests.physics.contact_scenes import (
+    HALF,
+    WEIGHT,
+    add_ball,
+    add_box,
+    add_floor,
+    add_plate_on_a_stand,
+    earth,
+)
 from tests.worlds.same_bits import assert_same_bits
 
 import pybullet_data
 from carom import Body, Camera, World, Worlds
+from carom.description import Pose
 from carom.errors import SimulationWarning
+from carom.layouts.codes import UserConstraintKind
 from carom.worlds import memory
 
 DATA = pybullet_data.getDataPath()
@@ -112,6 +122,22 @@ def test_sensors_and_links(arm: tuple[World, Body]) -> None:
     np.testing.assert_array_equal(batch.link_poses[2], lone.link_pose[rows])
     body.update_link_velocities()
     np.testing.assert_array_equal(batch.link_velocities[2], lone.link_velocity[rows])
+
+
+def test_sensors_feel_what_links_touch_and_are_tied_to() -> None:
+    world = earth()
+    plate = add_plate_on_a_stand(world)
+    add_box(world, (0.0, -HALF, 1.0 + HALF))
+    hanging = add_ball(world, (0.0, 0.0, 0.5))
+    frame = Pose((0.0, 0.0, 0.5 - HALF))
+    world.tie(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, -1, child_frame=frame)
+    plate.joints[0].enable_sensor()
+    worlds = Worlds(world, COUNT, threads=2)
+    lone = worlds.extract(2)
+    worlds.step(100)
+    lone.step(100)
+    assert_same_bits(worlds, 2, lone)
+    assert (worlds[plate].sensor_wrenches[:, 0, 2] > 2.5 * WEIGHT).all()
 
 
 def test_forces_push_links_where_they_act(arm: tuple[World, Body]) -> None:

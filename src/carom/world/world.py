@@ -496,6 +496,9 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
                 if substep < rounds and self._status[STATUS] == WELL:
                     self._tell_of_substep()
                 continue
+            # Observers are to read the arrays that there are now.
+            self._renew_after_growth()
+            self._prepare_step()
             for observer in self._substep_observers:
                 observer.step_repeated()
             substep = 0

@@ -1,7 +1,7 @@
 """Bodies of one link that fall, bounce, roll, slide and stand.
 
-Rocking and tumbling are chaotic, so every body here moves in a way that does not amplify rounding:
-flat on its face, or round.
+Rocking and tumbling are chaotic, so bodies move in a way that does not amplify rounding, flat on a face or
+round, or are followed for a short time only.
 """
 
 from __future__ import annotations
@@ -207,3 +207,22 @@ def contact_with_substeps(p: Any) -> dict[str, Any]:
     _floor(p, restitution=0.9)
     bodies = {"box": _box(p, [0, 0, 0.4]), "ball": _ball(p, [1, 0, 0.7], restitution=0.7)}
     return simulate(p, 1.5, lambda: _observe_fall(p, bodies))
+
+
+@scenario()
+def boxes_tumble(p: Any) -> dict[str, Any]:
+    """Boxes thrown on an infinite plane, flat, tumbling and turning."""
+    results: dict[str, Any] = {}
+    for name, turn, spin in (
+        ("flat", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        ("tumbling", (0.1, 0.2, 0.3), (3.0, 2.0, 1.0)),
+        ("turning", (0.02, 0.01, 0.1), (0.0, 0.0, 5.0)),
+    ):
+        p.resetSimulation()
+        p.setGravity(0, 0, -10)
+        p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.12, 0.08])
+        box = p.createMultiBody(1.0, shape, -1, [0.0, 0.0, 0.12], p.getQuaternionFromEuler(turn))
+        p.resetBaseVelocity(box, [1.0, 0.2, -0.5], spin)
+        results |= under(name, simulate(p, 0.2, lambda b=box: base_motion(p, b), stride=1))
+    return results

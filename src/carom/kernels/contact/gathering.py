@@ -5,7 +5,7 @@ parted. A face that lies flat has all its corners after a few steps, so a manifo
 steadier, and which of its points is the deepest is up to rounding. But what rolls or tumbles never comes so
 far: new points enter where it rolls to, old ones linger where it rolled from, and both decide how deep it
 rolls and how it scrubs sideways. So hulls, cylinders and capsules get their points by Bullet's rules unless
-they lie on a face, and cylinders on infinite planes wherever they stand.
+they lie on a face, and on infinite planes all shapes do.
 """
 
 import math
@@ -26,7 +26,6 @@ from carom.kernels.shapes.cores import core_of
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
 from carom.layouts.codes import (
-    CYLINDER,
     HULL,
     NO_ROLLING,
     PLANE,
@@ -107,15 +106,13 @@ def rolls_on(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, outward: 
 
 @func
 def gathers_everywhere(shapes: Shapes, a: Int32, b: Int32) -> bool:
-    """Whether two shapes are a cylinder and an infinite plane.
+    """Whether one of two shapes is an infinite plane.
 
-    On a plane a cylinder gathers its points also where it stands: pucks and small drones rock and creep by
-    them. On faces of other shapes the deepest point of one that stands exactly is in the middle, and would
+    On planes all shapes gather their points, also where they lie on a face: boxes that land flat tip and creep
+    by them. On faces of other shapes the deepest point of what lies exactly flat is in the middle, and would
     stay alone.
     """
-    kind_a = shapes.shape_kind[a]
-    kind_b = shapes.shape_kind[b]
-    return (kind_a == CYLINDER and kind_b == PLANE) or (kind_a == PLANE and kind_b == CYLINDER)
+    return shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
 
 
 @func
@@ -146,7 +143,9 @@ def find_new_point(
     """
     a = sides[0]
     b = sides[1]
-    if not (rolls(shapes, a) or rolls(shapes, b)) or is_single_sided(shapes, a) or is_single_sided(shapes, b):
+    if is_single_sided(shapes, a) or is_single_sided(shapes, b):
+        return AT_ONCE
+    if not (rolls(shapes, a) or rolls(shapes, b) or gathers_everywhere(shapes, a, b)):
         return AT_ONCE
     if pairs.shape_motion[world, a] + pairs.shape_motion[world, b] > 0.0:
         # What is stopped at one end only would swing through with the other.

@@ -24,6 +24,14 @@ def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: 
 
 
 @func
+def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, point: Vector3, force: Vector3):
+    """Add a force at a point of a link [m] to the constraint forces of the substep."""
+    center = wp.transform_get_translation(state.link_pose[world, link])
+    scratch.link[world, link].constraint_force += force
+    scratch.link[world, link].constraint_torque += wp.cross(point - center, force)
+
+
+@func
 def gather_constraint_forces(
     model: Model, settings: Settings, scratch: Scratch, world: Int32, first: Int32, last: Int32
 ):

@@ -81,15 +81,15 @@ def free_motion(
 def constrained_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
     """Add what the solver found to the velocities, and move on by them."""
     for tree in range(settings.tree_count):
-        if is_asleep(state, world, tree):
-            stop(model, state, world, tree)
-            continue
-        move_on(settings, model, state, scratch, world, tree)
+        move_or_stop(settings, model, state, scratch, world, tree)
 
 
 @func
-def move_on(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """As `constrained_motion`, for one tree that is awake."""
+def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `constrained_motion`, for one tree."""
+    if is_asleep(state, world, tree):
+        stop(model, state, world, tree)
+        return
     if model.tree[tree].sensor_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)
     apply_delta_velocities(model, state, scratch, world, tree)

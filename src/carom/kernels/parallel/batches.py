@@ -2,8 +2,8 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.step import free_motion
-from carom.kernels.parallel.trees import begin_tree, move_or_stop
+from carom.kernels.dynamics.step import free_motion, move_or_stop
+from carom.kernels.parallel.trees import begin_tree
 from carom.kernels.parallel.workspace import is_called_off, state_of_tree
 from carom.kernels.solver.joint_solver import is_constrained, solve_joints
 from carom.kernels.structs import IslandWork, Model, Pairs, Scratch, Settings, State

@@ -5,12 +5,12 @@ import warp as wp
 from carom.kernels.dynamics.kinematics import update_link_poses
 from carom.kernels.dynamics.motors import joint_damping
 from carom.kernels.dynamics.quarantine import keep_start
-from carom.kernels.dynamics.step import free_motion, move_on
+from carom.kernels.dynamics.step import free_motion, move_or_stop
 from carom.kernels.dynamics.step_ends import abandon_tree, clear_forces
 from carom.kernels.parallel.layout import lay_out_islands
 from carom.kernels.parallel.workspace import is_called_off, state_of_tree, went_wrong
-from carom.kernels.solver.activity import is_asleep, stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
+from carom.kernels.solver.link_forces import gather_link_forces
 from carom.kernels.structs import (
     Contacts,
     IslandWork,
@@ -93,23 +93,24 @@ def tree_free_motion_kernel(
     free_motion(model, settings, own_state, scratch, world, tree, pushed)
 
 
-@func
-def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """New velocities and positions of a tree; see `step.constrained_motion`."""
-    if is_asleep(state, world, tree):
-        stop(model, state, world, tree)
-        return
-    move_on(settings, model, state, scratch, world, tree)
-
-
 @kernel
-def tree_motion_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, work: IslandWork):
+def tree_motion_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    work: IslandWork,
+):
     """New velocities and positions of each tree."""
     tree, world = wp.tid()
     if is_called_off(state, world):
         return
     work.tree_motion_fault[world, tree] = 0
     own_state = state_of_tree(state, work.tree_motion_fault, tree)
+    gather_link_forces(settings, model, own_state, scratch, shapes, contacts, users, world, tree)
     move_or_stop(settings, model, own_state, scratch, world, tree)
 
 

@@ -7,10 +7,11 @@ from carom.kernels.contact.candidates import add_candidate, candidate_distance, 
 from carom.kernels.contact.narrow_phase import collide_simple, in_order
 from carom.kernels.shapes.convex import nearest_or_deepest
 from carom.kernels.shapes.cores import Core, core_of
+from carom.kernels.shapes.planes import collide_plane_deepest, with_sharp_edges
 from carom.kernels.shapes.surfaces import nearest_on_surface
 from carom.kernels.structs import Pairs, Searches, Settings, Shapes, State
 from carom.kernels.types import Int32, func, kernel, real
-from carom.layouts.codes import PLANE, TRIANGLES
+from carom.layouts.codes import BOX, PLANE, TRIANGLES
 from carom.layouts.contacts import PLACED, READINESS
 
 
@@ -29,6 +30,12 @@ def nearest_convex(
         core_a: Core of a.
         max_distance: Largest distance of interest [m].
     """
+    if core_a.kind == BOX and shapes.shape_kind[b] == PLANE:
+        # Of the corners of a face that is flat on the plane Bullet takes a certain one.
+        return collide_plane_deepest(
+            with_sharp_edges(core_a), shapes.vertex_position, pairs.shape_position[world, b],
+            pairs.shape_frame[world, b] * shapes.shape_size[b], max_distance, pairs.candidate_terms, world,
+        )  # fmt: skip
     count = collide_simple(shapes, pairs, world, a, b, core_a, max_distance)
     if count >= 0:
         for row in range(1, count):

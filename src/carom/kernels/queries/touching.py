@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.solver.contact_terms import impulse_on_a
 from carom.kernels.structs import Contacts, Touching
 from carom.kernels.types import Int32, Vector3, func, kernel, real
 from carom.layouts.contacts import THERE
@@ -46,16 +47,11 @@ def touching_kernel(
             touching.place_touching[links * world + touching.link_place[b]] = wp.uint8(1)
         if is_a or is_b:
             touching.world_number[world] += 1
-            along = contacts.contact_impulse[world, contact]
-            if along[0] > 0.0:
+            if contacts.contact_impulse[world, contact][0] > 0.0:
                 touching.world_touching[world] = wp.uint8(1)
             # Normals point from b to a and the impulses along them push a away. Within a body a contact has
             # its first link on side a.
-            push = (
-                along[0] * contacts.contact_normal[world, contact]
-                + along[1] * contacts.contact_direction1[world, contact]
-                + along[2] * contacts.contact_direction2[world, contact]
-            )
+            push = impulse_on_a(contacts, world, contact)
             nearer = contacts.contact_distance[world, contact] < touching.world_distance[world]
             if nearer:
                 touching.world_distance[world] = contacts.contact_distance[world, contact]

@@ -36,6 +36,21 @@ def add_on_plane(
     return add_candidate(candidates, world, count, point - normal * height, normal, height - radius)
 
 
+@func
+def collide_plane_deepest(
+    core: Core,
+    vertex_position: Vectors3,
+    origin: Vector3,
+    normal: Vector3,
+    max_distance: real,
+    candidates: Vector8Rows,
+    world: Int32,
+) -> Int32:
+    """As `collide_plane`, the deepest point alone."""
+    deepest = support(core, vertex_position, -normal)
+    return add_on_plane(candidates, world, 0, deepest, core.radius, origin, normal, max_distance)
+
+
 @shared_func
 def collide_plane(
     core: Core,
@@ -72,8 +87,7 @@ def collide_plane(
             )
         return count
     # The deepest point first: it must be there even if there are more points than fit.
-    deepest = support(core, vertex_position, -normal)
-    count = add_on_plane(candidates, world, count, deepest, core.radius, origin, normal, max_distance)
+    count = collide_plane_deepest(core, vertex_position, origin, normal, max_distance, candidates, world)
     if count > 0:
         for vertex in range(core.first_vertex, core.first_vertex + core.vertex_count):
             point = core.position + core.frame * vertex_position[vertex]

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.feedback import add_link_force
 from carom.kernels.solver.activity import is_asleep
 from carom.kernels.structs import Model, Scratch, Settings, Shapes, SoftModel, SoftWork, State
 from carom.kernels.types import Int32, Vector3, func, real
@@ -70,9 +71,7 @@ def report_push(
 ):
     """Add a force at a point of a link to what the sensors of its tree feel."""
     if tree >= 0 and model.tree[tree].sensor_count > 0:
-        center = wp.transform_get_translation(state.link_pose[world, link])
-        scratch.link[world, link].constraint_force += force
-        scratch.link[world, link].constraint_torque += wp.cross(point - center, force)
+        add_link_force(state, scratch, world, link, point, force)
 
 
 @func

@@ -231,6 +231,17 @@ def friction_change(settings: Settings, velocity: real, drift: Vector3, directio
 
 
 @func
+def impulse_on_a(contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
+    """Impulse of a contact on its side a in the last substep, friction included, in world axes."""
+    along = contacts.contact_impulse[world, contact]
+    return (
+        along[0] * contacts.contact_normal[world, contact]
+        + along[1] * contacts.contact_direction1[world, contact]
+        + along[2] * contacts.contact_direction2[world, contact]
+    )
+
+
+@func
 def keep_contact_impulse(
     contacts: Contacts,
     world: Int32,

@@ -2,8 +2,9 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.step import constrained_motion, free_motion
+from carom.kernels.dynamics.step import free_motion, move_or_stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
+from carom.kernels.solver.link_forces import gather_link_forces
 from carom.kernels.solver.solver import solve_island
 from carom.kernels.structs import (
     Contacts,
@@ -71,6 +72,18 @@ def constraints_kernel(
 
 
 @kernel
-def integration_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
+def integration_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    first_world: Int32,
+):
     """New velocities and positions."""
-    constrained_motion(settings, model, state, scratch, first_world + wp.tid())
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        gather_link_forces(settings, model, state, scratch, shapes, contacts, users, world, tree)
+        move_or_stop(settings, model, state, scratch, world, tree)

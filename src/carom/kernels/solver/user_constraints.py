@@ -51,6 +51,62 @@ def across_axis(frame: Matrix3, axis: Vector3) -> Vector3:
 
 
 @func
+def user_ends(users: UserConstraints, user: Int32) -> Index4:
+    """Tree and link of a, then of b."""
+    return Index4(
+        users.user_tree_a[user], users.user_link_a[user], users.user_tree_b[user], users.user_link_b[user]
+    )
+
+
+@func
+def held_points(state: State, users: UserConstraints, world: Int32, user: Int32):
+    """The points of a and of b that a user constraint holds together, in world axes."""
+    ends = user_ends(users, user)
+    point_a = world_point(state, world, ends[0], ends[1], users.user_pivot_a[user])
+    point_b = world_point(state, world, ends[2], ends[3], users.user_pivot_b[user])
+    return point_a, point_b
+
+
+@func
+def held_directions(
+    state: State, users: UserConstraints, world: Int32, user: Int32, axes: Matrix3
+) -> Matrix3:
+    """Directions along which the points may not part, as rows: three axes, or the two across the slide."""
+    directions = wp.identity(3, real)
+    if users.user_kind[user] == USER_PRISMATIC:
+        along = wp.quat_rotate(
+            wp.transform_get_rotation(state.link_pose[world, users.user_link_a[user]]), users.user_axis[user]
+        )
+        first = across_axis(axes, along)
+        second = wp.normalize(wp.cross(along, first))
+        directions = wp.matrix_from_rows(first, second, along)
+    return directions
+
+
+@func
+def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
+    """What row `i` of a user constraint is along or about.
+
+    Returns:
+        The direction, else 0; the axis, else 0; which column of `axes` that is, -1 for a direction.
+    """
+    linear = Vector3(0.0, 0.0, 0.0)
+    angular = Vector3(0.0, 0.0, 0.0)
+    axis = Int32(-1)
+    linear_count = Int32(3)
+    first_angle = Int32(0)
+    if kind == USER_PRISMATIC:
+        linear_count = Int32(2)
+        first_angle = Int32(2)
+    if i < linear_count:
+        linear = Vector3(directions[i, 0], directions[i, 1], directions[i, 2])
+    else:
+        axis = (i - linear_count + first_angle) % 3
+        angular = column(axes, axis)
+    return linear, angular, axis
+
+
+@func
 def add_pose_rows(
     settings: Settings,
     model: Model,
@@ -67,43 +123,20 @@ def add_pose_rows(
 
     Each row lets a not move against b along or about an axis, and takes back a share of the error.
     """
-    kind = users.user_kind[user]
-    ends = Index4(
-        users.user_tree_a[user], users.user_link_a[user], users.user_tree_b[user], users.user_link_b[user]
-    )
-    point_a = world_point(state, world, ends[0], ends[1], users.user_pivot_a[user])
-    point_b = world_point(state, world, ends[2], ends[3], users.user_pivot_b[user])
+    ends = user_ends(users, user)
+    point_a, point_b = held_points(state, users, world, user)
     apart = point_a - point_b
     frame_a = world_frame(state, world, ends[0], ends[1], users.user_frame_a[user])
     frame_b = world_frame(state, world, ends[2], ends[3], users.user_frame_b[user])
     axes = rotation_matrix(frame_a)
     turned = euler_xyz(rotation_matrix(wp.quat_inverse(frame_b) * frame_a))
-
-    # Directions along which the points may not part: three axes, or the two across the slide.
-    directions = wp.identity(3, real)
-    linear_count = Int32(3)
-    first_angle = Int32(0)
-    if kind == USER_PRISMATIC:
-        along = wp.quat_rotate(
-            wp.transform_get_rotation(state.link_pose[world, ends[1]]), users.user_axis[user]
-        )
-        first = across_axis(axes, along)
-        second = wp.normalize(wp.cross(along, first))
-        directions = wp.matrix_from_rows(first, second, along)
-        linear_count = Int32(2)
-        first_angle = Int32(2)
+    directions = held_directions(state, users, world, user, axes)
 
     bound = users.user_max_impulse[user]
-    for i in range(user_row_count(kind)):
-        linear = Vector3(0.0, 0.0, 0.0)
-        angular = Vector3(0.0, 0.0, 0.0)
-        error = real(0.0)
-        if i < linear_count:
-            linear = Vector3(directions[i, 0], directions[i, 1], directions[i, 2])
-            error = wp.dot(apart, linear)
-        else:
-            axis = (i - linear_count + first_angle) % 3
-            angular = column(axes, axis)
+    for i in range(user_row_count(users.user_kind[user])):
+        linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
+        error = wp.dot(apart, linear)
+        if axis >= 0:
             error = turned[axis]
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular

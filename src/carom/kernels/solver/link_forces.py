@@ -1,0 +1,143 @@
+"""What contacts and user constraints do to the links of one tree, for force-torque sensors.
+
+It is gathered from the impulses that the solver left, by the tree itself once all islands are solved: so no
+two islands write to one link where they run side by side, and sums have one order. A tree without dofs is in
+no island, but feels what lies on it as well.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.feedback import add_link_force
+from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.solver.activity import can_move, is_asleep, pushed_tree
+from carom.kernels.solver.contact_terms import impulse_on_a
+from carom.kernels.solver.user_constraints import (
+    held_directions,
+    held_points,
+    pose_row,
+    user_ends,
+    user_row_count,
+    world_frame,
+)
+from carom.kernels.structs import Contacts, Model, Scratch, Settings, Shapes, State, UserConstraints
+from carom.kernels.types import Int32, Vector3, func
+from carom.layouts.codes import USER_GEAR
+from carom.layouts.contacts import THERE
+
+
+@func
+def gather_link_forces(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    world: Int32,
+    tree: Int32,
+):
+    """Add to the constraint forces of a tree with sensors those of its contacts and user constraints."""
+    if model.tree[tree].sensor_count == 0 or is_asleep(state, world, tree):
+        return
+    for contact in range(contacts.count_contacts[world, THERE]):
+        gather_contact_force(settings, model, state, scratch, shapes, contacts, world, tree, contact)
+    for user in range(settings.user_count):
+        if users.user_enabled[world, user] != 0:
+            gather_user_forces(settings, model, state, scratch, users, world, tree, user)
+
+
+@func
+def gather_contact_force(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    world: Int32,
+    tree: Int32,
+    contact: Int32,
+):
+    """Add the force of a contact to the links of a tree that it touches, if it was solved.
+
+    Torques of rolling and spinning friction are not in it: PyBullet leaves them out.
+    """
+    pair = contacts.contact_shapes[world, contact]
+    a = shapes.shape_tree[pair[0]]
+    b = shapes.shape_tree[pair[1]]
+    if a != tree and b != tree:
+        return
+    pushed = pushed_tree(shapes, model, pair)
+    if pushed < 0 or is_asleep(state, world, pushed):
+        return
+    force = impulse_on_a(contacts, world, contact) / settings.time_step
+    if a == tree:
+        add_link_force(state, scratch, world, pair[2], contacts.contact_point_a[world, contact], force)
+    if b == tree:
+        add_link_force(state, scratch, world, pair[3], contacts.contact_point_b[world, contact], -force)
+
+
+@func
+def gather_user_forces(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    world: Int32,
+    tree: Int32,
+    user: Int32,
+):
+    """Add what a user constraint does to the links of a tree that it holds, if it was solved."""
+    ends = user_ends(users, user)
+    if ends[0] != tree and ends[2] != tree:
+        return
+    pushed = ends[0]
+    if not can_move(model, pushed):
+        pushed = ends[2]
+    if not can_move(model, pushed) or is_asleep(state, world, pushed):
+        return
+    force, torque = user_wrench(settings, model, state, scratch, users, world, user)
+    point_a, point_b = held_points(state, users, world, user)
+    if users.user_kind[user] == USER_GEAR:
+        # Of what slides it is a force without a moment.
+        point_a = wp.transform_get_translation(state.link_pose[world, ends[1]])
+        point_b = wp.transform_get_translation(state.link_pose[world, ends[3]])
+    if ends[0] == tree:
+        add_link_force(state, scratch, world, ends[1], point_a, force)
+        scratch.link[world, ends[1]].constraint_torque += torque
+    if ends[2] == tree:
+        add_link_force(state, scratch, world, ends[3], point_b, -force)
+        scratch.link[world, ends[3]].constraint_torque -= torque
+
+
+@func
+def user_wrench(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    world: Int32,
+    user: Int32,
+):
+    """Force on a of a user constraint in the last substep, and the torque beside it, in world axes."""
+    force = Vector3(0.0, 0.0, 0.0)
+    torque = Vector3(0.0, 0.0, 0.0)
+    impulse = state.user_impulse[world, user] / settings.time_step
+    if users.user_kind[user] == USER_GEAR:
+        # PyBullet takes the axis of joint a for both.
+        dof = model.link[users.user_link_a[user]].first_dof
+        torque = scratch.dof[world, dof].angular * impulse[0]
+        if wp.dot(torque, torque) == 0.0:
+            force = scratch.dof[world, dof].linear * impulse[0]
+        return force, torque
+    ends = user_ends(users, user)
+    axes = rotation_matrix(world_frame(state, world, ends[0], ends[1], users.user_frame_a[user]))
+    directions = held_directions(state, users, world, user, axes)
+    for i in range(user_row_count(users.user_kind[user])):
+        linear, angular, _axis = pose_row(users.user_kind[user], directions, axes, i)
+        force += linear * impulse[i]
+        torque += angular * impulse[i]
+    return force, torque
