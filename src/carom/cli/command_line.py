@@ -30,14 +30,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: Words of the command line; those of the process by default.
 
     Returns:
-        Exit status: 0 when all went well, 1 when a file cannot be used. argparse itself ends the
-        process with 2 when it does not understand the command.
+        Exit status: 0 when all went well, 1 when a file cannot be used. For a wrong command argparse ends the
+        process with status 2.
     """
     options = _parser().parse_args(arguments)
     try:
         options.command(options)
     except BrokenPipeError:
-        # Whoever reads the output has had enough, as `head` has; Python is not to write the rest at its end.
+        # The reader has closed its end, as `head` does; keep Python from writing the rest at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (CaromError, OSError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
@@ -144,7 +144,7 @@ def _view(options: argparse.Namespace) -> None:
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
-    # Terminals take what follows an address without a space for a part of it.
+    # Terminals take text that follows an address without a space as part of it.
     print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
     if tunnel := tunnel_command(view.viewer.address):
         print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)

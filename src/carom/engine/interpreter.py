@@ -49,7 +49,7 @@ class Stepper(Protocol):
     """What performs programs.
 
     Attributes:
-        run: Performs what has been asked for.
+        run: Runs the steps that were asked for.
         program: What was loaded last.
     """
 
@@ -57,7 +57,7 @@ class Stepper(Protocol):
     program: Program
 
     def load(self, program: Program) -> None:
-        """Perform another program from now on."""
+        """Use another program from now on."""
         ...
 
     def ask(self, **asked: int) -> None:

@@ -19,7 +19,7 @@ class EngineParameters:
         time_step: Duration of one step [s].
         substeps: Parts a step is solved in; 0 is the same as 1.
         gravity: [m/s²] in world axes.
-        solver_iterations: Greatest number of sweeps over the constraint rows.
+        solver_iterations: Maximum number of sweeps over the constraint rows.
         solver_residual_threshold: Sweeps end when no row changed its velocity by more, squared.
         erp: Share of a joint limit's or user constraint's error taken back per step.
         contact_erp: The same for penetrations.

@@ -19,7 +19,7 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
-        search: Where a file that is not there as named, and meshes, are looked for.
+        search: Folders in which the file, if not found as named, and meshes are searched.
 
     Raises:
         DescriptionError: The file cannot be used, or its kind is not known.

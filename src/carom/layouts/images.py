@@ -87,7 +87,7 @@ class View:
     facet_second: Vectors3
     facet_third: Vectors3
     facet_depth: Vectors3
-    facet_box: Indices4  # least column and row, greatest column and row
+    facet_box: Indices4  # least column and row, largest column and row
     facet_triangle: Ints
     chunk_facet_count: Ints
     pixel_depth: Reals

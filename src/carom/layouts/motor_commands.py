@@ -10,7 +10,7 @@ POSITIONS, VELOCITIES, FORCES, KPS, KDS = 1, 2, 4, 8, 16
 
 @struct
 class MotorCommands:
-    """What motors of one freedom each are told."""
+    """What motors of one degree of freedom each are told."""
 
     joint_dof: Ints
     joint_lower: Reals  # least target position

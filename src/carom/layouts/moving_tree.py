@@ -116,7 +116,7 @@ class Control:
     dof_target_rate: Reals
     dof_kp: Reals
     dof_kd: Reals
-    dof_most: Reals  # greatest torque
+    dof_most: Reals  # maximum torque
     dof_torque: Reals  # the answer
     dof_acceleration: Reals
     entry_factor: Reals  # triangular factor of the mass matrix with the controller's damping, row after row

@@ -37,8 +37,8 @@ class LinkSpec:
         lower: Lower limit as the file states it [rad or m].
         upper: Upper limit; `lower > upper` means none.
         limited: The engine enforces `lower` and `upper`.
-        effort: Greatest drive force the file states; not enforced.
-        velocity: Greatest speed the file states; not enforced.
+        effort: Largest drive force the file states; not enforced.
+        velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
         damping: Viscous joint damping [N m s/rad or N s/m].
         friction: Joint friction the file states; not simulated.

@@ -71,7 +71,7 @@ class PairFilters:
         """Make ready to drop the rules of links that are removed; later links move up.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         after = first + count
         kept, enabled = [], []

@@ -255,7 +255,7 @@ class ShapeArrays:
         """Make ready to take a body's shapes out, while its tree's rows are still the ones it has.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]

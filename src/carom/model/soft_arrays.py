@@ -176,7 +176,7 @@ class SoftArrays:
         """Make ready to take out what belongs to a body, soft or not, while its rows are still those it has.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         gone = next((soft for soft in self.bodies if soft.rows is rows), None)
         count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count

@@ -138,7 +138,7 @@ class Link(ctypes.Structure):
 
 
 class Joint(ctypes.Structure):
-    """Where the coordinates of a joint of one freedom are among those of its body; -1 for other joints."""
+    """Index of the coordinates of a joint with one degree of freedom in its body; -1 for other joints."""
 
     _fields_ = (("position", ctypes.c_int32), ("velocity", ctypes.c_int32))
 

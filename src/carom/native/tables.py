@@ -283,7 +283,7 @@ class ArrayTable:
             targets: Fields whose values are rows of an axis, and which; they follow those rows.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         moves, freed, values = [], [], []
         for name, field in self._fields.items():

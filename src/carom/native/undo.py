@@ -39,7 +39,7 @@ class Undo:
             self._settle_patiently()
 
     def at_once(self, change: Callable[[], None]) -> None:
-        """Make a change that can be made again, to its end even if it is broken off."""
+        """Make a change that can be made again, to its end even if it is interrupted."""
         # A context would do it as well, but scripts change parameters at every step.
         try:
             self._steps.append(change)

@@ -27,7 +27,7 @@ _BASE = -1
 _RAY_GROUP = 1
 # Nodes touch up to this gap beyond their margin [m].
 _GAP = 1.0e-4
-# Rays by faces looked at at a time, for want of memory.
+# Rays by faces looked at at a time, for lack of memory.
 _CHUNK = 1 << 20
 _TINY = 1.0e-300
 

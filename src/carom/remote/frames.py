@@ -33,7 +33,7 @@ _ZEROS = bytes(ALIGNMENT)
 
 @dataclass(frozen=True)
 class Limits:
-    """The greatest sizes one side takes from the other [bytes].
+    """The largest sizes one side takes from the other [bytes].
 
     Attributes:
         message: Of a message.

@@ -28,9 +28,9 @@ class RawImage:
     Attributes:
         rgba: (height, width, 4) uint8 red, green, blue and 255.
         depth: (height, width) float32 depth as in OpenGL's buffer: 0 at the near plane, 1 at the far one.
-        distance: (height, width) float32 distance from the plane of the eye [m]; infinite where there is
-            nothing. Of use for perspective only.
-        label: (height, width) int32: body id + (link + 1) << 24; -1 where there is nothing.
+        distance: (height, width) float32 distance from the plane of the eye [m]; infinite for the
+            background. Meaningful for perspective only.
+        label: (height, width) int32: body id + (link + 1) << 24; -1 for the background.
     """
 
     rgba: NDArray[np.uint8]

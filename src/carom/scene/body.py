@@ -47,7 +47,7 @@ class Body:
         joint_types: Code of each joint: 0 revolute, 1 prismatic, 2 spherical, 3 planar, 4 fixed.
         position_count: Number of position coordinates of each joint.
         velocity_count: Number of velocity coordinates of each joint.
-        fixed_base: The base does not move now.
+        fixed_base: The base is fixed in the world.
         derived: What algorithms keep about the body until its masses, inertias or freedom change.
         first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
         first_position: Row of the first coordinate in `World.position`.
@@ -146,7 +146,7 @@ class Body:
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
-        """Place a joint without simulating the way there; its motor keeps its target.
+        """Place a joint without simulating the motion; its motor keeps its target.
 
         Args:
             joint: Index of the joint; nothing happens for a fixed one.

@@ -1,6 +1,6 @@
 """Changes of what there is in a world: each is made as a whole, or not at all.
 
-An exception may come at any line: from a handler of signals, or for want of memory. What is noted in
+An exception may come at any line: from a handler of signals, or for lack of memory. What is noted in
 `World.undo` then brings the world back to what it was, or the change to its end.
 """
 
@@ -133,7 +133,7 @@ def untie(world: World, constraint: UserConstraint) -> None:
 
 
 def free_base(world: World, body: Body, *, free: bool) -> None:
-    """Let the base of a body move, or hold it where it is."""
+    """Free the base of a body, or fix it in the world."""
     with begin(world) as undo:
         undo.note(world.constraints.way_back())
         undo.note(partial(set_base_freedom, world, body, free=not body.fixed_base))

@@ -50,7 +50,7 @@ def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callab
     """Make ready to change the dynamics of a link.
 
     Returns:
-        What does it. Broken off, it can be called again, and then comes to the same end.
+        A function that does it; if interrupted, it can be called again, with the same result.
 
     Raises:
         AttributeError: There is no such field.
@@ -192,7 +192,7 @@ def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) ->
 
 
 def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """Let the base of a body move, or hold it where it is, within a change; can be called again."""
+    """Free the base of a body, or fix it in the world, within a change; can be called again."""
     set_base_freedom(world, body, free=free)
     world.constraints.base_freedom_changed(body)
 

@@ -83,7 +83,7 @@ class Joint:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Least and greatest position that are enforced now; -inf and inf where there is no limit."""
+        """Minimum and maximum position that are enforced now; -inf and inf where there is no limit."""
         spec, dynamics = self.spec, self.body.dynamics(self.index)
         limits = (dynamics.joint_lower_limit, dynamics.joint_upper_limit)
         # A file can state limits that do not count, those of a continuous joint for example.
@@ -92,7 +92,7 @@ class Joint:
 
     @property
     def effort_limit(self) -> float:
-        """Greatest force of the drive according to the file; inf where it states none."""
+        """Maximum force of the drive according to the file; inf where it states none."""
         return self.spec.effort or np.inf
 
     @property
@@ -125,7 +125,7 @@ class Joint:
         return world_of(self.body).velocity[self._dofs].copy()
 
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
-        """Place the joint without simulating the way there; its motor keeps its target.
+        """Place the joint without simulating the motion; its motor keeps its target.
 
         Args:
             position: As many numbers as `coordinates` has; a quaternion is normalised.
@@ -163,8 +163,8 @@ class Joint:
             gain: Share of the position error per substep, in general within 0 ... 1.
             velocity: Velocity to arrive with.
             velocity_gain: Share of the velocity error per substep.
-            max_force: Greatest force; `effort_limit` by default.
-            max_velocity: Greatest velocity the motor asks for.
+            max_force: Maximum force; `effort_limit` by default.
+            max_velocity: Maximum velocity the motor asks for.
         """
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
         world = world_of(self.body)
@@ -188,7 +188,7 @@ class Joint:
         Args:
             target: The velocity.
             gain: Share of the velocity error taken away per substep.
-            max_force: Greatest force; `effort_limit` by default.
+            max_force: Maximum force; `effort_limit` by default.
         """
         world = world_of(self.body)
         joint_motor.aim_at_velocity(
@@ -216,7 +216,7 @@ class Joint:
             stiffness: [N m/rad or N/m].
             damping: [N m s/rad or N s/m]. The force is explicit: too much for the inertia is unstable.
             velocity: Velocity at which the damper rests.
-            max_force: Greatest force; `effort_limit` by default.
+            max_force: Maximum force; `effort_limit` by default.
         """
         joint_motor.pull_like_a_spring(
             world_of(self.body).pd,
@@ -242,7 +242,7 @@ class Joint:
             target: Quaternion (x, y, z, w); normalised here.
             gain: Share of the error per substep.
             damping: Share of the angular velocity taken away per substep.
-            max_force: Greatest torque about each axis; `effort_limit` by default.
+            max_force: Maximum torque about each axis; `effort_limit` by default.
         """
         if not self._has_quaternion:
             raise ValueError(f"joint {self.name!r} is {self.type.value}, not spherical")
@@ -365,17 +365,17 @@ class Joints(Named[Joint]):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Least and greatest positions of the movable joints; -inf and inf where there is no limit."""
+        """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
         lower, upper = zip(*(joint.limits for joint in self._movable), strict=True)
         return np.array(lower), np.array(upper)
 
     @property
     def effort_limits(self) -> Array:
-        """Greatest forces of the drives according to the file; inf where it states none."""
+        """Maximum forces of the drives according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
-        """Place all movable joints without simulating the way there; motors keep their targets.
+        """Place all movable joints without simulating the motion; motors keep their targets.
 
         Args:
             positions: As many numbers as `positions` has.

@@ -31,7 +31,7 @@ class JointConstraint:
         upper: Upper limit; swing range about y of a spherical joint [rad or m].
         twist: Twist range of a spherical joint [rad].
         user: The constraint users created, if it is one.
-        max_impulse: Greatest impulse of a limit per substep.
+        max_impulse: Maximum impulse of a limit per substep.
     """
 
     body: Body
@@ -101,7 +101,7 @@ class JointConstraints:
         """Make ready to remove the constraints of a body, the last first.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         kept = self.all.copy()
         for constraint in reversed(self.all):

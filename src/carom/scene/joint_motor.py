@@ -3,7 +3,7 @@
 The functions work on `motor` or `pd` of a world, shape (dofs, 8), or of many worlds at once,
 (worlds, dofs, 8), and there on `dofs`: a slice of the velocity coordinates, or their numbers. What is given
 is for all of these, or one number for each, or one for each world and each of these. Forces are in N m for
-revolute joints and in N for prismatic ones; a motor's bound is an impulse, the greatest force times
+revolute joints and in N for prismatic ones; a motor's bound is an impulse, the maximum force times
 `substep_time` [s].
 """
 

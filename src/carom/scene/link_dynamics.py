@@ -31,12 +31,12 @@ class LinkDynamics:
         friction_anchor: Friction keeps a position anchor.
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
-        contact_processing_threshold: Greatest distance of a contact that is solved [m].
+        contact_processing_threshold: Maximum distance of a contact that is solved [m].
         anisotropic_friction: Factors on friction along the link's axes.
         joint_damping: [N m s/rad or N s/m].
         joint_lower_limit: [rad or m].
         joint_upper_limit: Less than the lower limit means none.
-        joint_limit_impulse: Greatest impulse of a limit per substep [N m s or N s].
+        joint_limit_impulse: Maximum impulse of a limit per substep [N m s or N s].
     """
 
     mass: float

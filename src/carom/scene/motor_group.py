@@ -37,12 +37,12 @@ _MODES = (VELOCITY, TORQUE, POSITION)
 class MotorGroup:
     """Revolute and prismatic joints of a world, in any order.
 
-    It is of use until bodies come or go.
+    It is of use until bodies are added or removed.
 
     Args:
         world: The world.
         dofs: Rows of their velocities.
-        bounds: Least and greatest target position of each.
+        bounds: Minimum and maximum target position of each.
         force: Of motors for which none is stated [N or N m].
         kp: Gain likewise.
         kd: Gain likewise.
@@ -122,7 +122,7 @@ class MotorGroup:
             time_step: Of a step [s].
             positions: Targets [rad or m], taken to the nearest bound when they are beyond; 0 by default.
             velocities: Targets [rad/s or m/s]; 0 by default.
-            forces: Greatest forces of the motors, or torques [N m or N].
+            forces: Maximum forces of the motors, or torques [N m or N].
             kps: Gains.
             kds: Gains.
 

@@ -1,7 +1,7 @@
 """The state of a world at one moment, to go back to.
 
 What a step starts from is all here, contacts and the impulses they remember included, so a world that
-goes back to a snapshot then moves exactly, to the last bit, as it did after the snapshot was taken. What
+goes back to a snapshot then moves exactly, bit for bit, as it did after the snapshot was taken. What
 bodies are made of, constraints, gravity and the other parameters are not state.
 """
 
@@ -150,7 +150,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         snapshot: The state.
 
     Returns:
-        What does it. It can be called again, after it was broken off.
+        A function that does it; it can be called again if it was interrupted.
 
     Raises:
         StateError: The world has other bodies.

@@ -53,7 +53,7 @@ class SoftBody(Body):
 
     @property
     def nodes(self) -> np.ndarray:
-        """Positions of the nodes in world axes [m], shape (n, 3): a view, until bodies come or go.
+        """Positions of the nodes in world axes [m], shape (n, 3): a view, until bodies are added or removed.
 
         After a change by hand call `update`.
         """

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def begin(world: World) -> Undo:
-    """Begin a change; what may be left of one that was broken off comes to its end before."""
+    """Begin a change; what may be left of one that was interrupted comes to its end before."""
     world.undo.settle()
     # Nothing that was made for the world as it was may be used before it is whole again.
     world.undo.note(world.scene_changed)

@@ -40,8 +40,8 @@ class UserConstraint:
         axis: Axis of a prismatic constraint in the inertial frame of the parent's link.
         parent_frame: Pivot and axes in the inertial frame of the parent's link.
         child_frame: The same of the child; in world axes where there is no child.
-        max_impulse: Greatest impulse of each row per substep.
-        max_force: What users last set as greatest force [N or N m].
+        max_impulse: Maximum impulse of each row per substep.
+        max_force: What users last set as maximum force [N or N m].
         gear_ratio: Joint rate of the parent is minus this times that of the child; 0 stands for 1.
         gear_auxiliary_link: Link of the parent whose joint's motion is taken off; -1 for none.
         relative_position_target: What the gear's joint positions are to add up to [rad].
@@ -149,7 +149,7 @@ class UserConstraints:
         """Make ready to remove every constraint of a body that goes.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         kept = {
             number: constraint

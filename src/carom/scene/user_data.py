@@ -128,7 +128,7 @@ class UserData:
         """Make ready to take away all texts of a body that goes.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         gone = [datum.id for datum in self.of_body(body)]
         free = [*self._free, *gone]

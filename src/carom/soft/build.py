@@ -23,7 +23,7 @@ MOST_NODES = 1_000_000
 LEAST_MASS = 1.0e-30
 """Least mass of a soft body [kg]; divided by less, numbers overflow."""
 FARTHEST = 1.0e6
-"""Greatest coordinate of a node [m]."""
+"""Largest coordinate of a node [m]."""
 # Tetrahedra of less than this share of the cube of their longest edge are flat.
 _FLAT = 1.0e-9
 # Springs shorter than this share of the size of the body have no length.

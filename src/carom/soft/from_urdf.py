@@ -27,7 +27,7 @@ def urdf_body(
         search: Where it and what it refers to are looked for.
         scale: Factor on all lengths.
         flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
-        fixed_base: Hold the base of a rigid body where it is.
+        fixed_base: Fix the base of a rigid body in the world.
         older: Soft bodies are those of Bullet's world without deformables.
 
     Raises:

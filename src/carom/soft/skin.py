@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 # Cells whose middles are nearest to a vertex, among which the one that holds it is looked for.
 _CANDIDATES = 8
-# Vertices looked at at a time, for want of memory.
+# Vertices looked at at a time, for lack of memory.
 _CHUNK = 256
 
 

@@ -1,4 +1,4 @@
-"""Actions for many environments, refused where they are none."""
+"""Actions for many environments, which are checked."""
 
 from __future__ import annotations
 

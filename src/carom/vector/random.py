@@ -28,11 +28,11 @@ class RandomSources:
         self.seeds: list[int] = [seed for _, seed in made]
 
     def seed(self, seed: int | Sequence[int | None] | None, worlds: np.ndarray) -> None:
-        """Begin anew.
+        """Start again.
 
         Args:
             seed: Environment k gets `seed + k`, or the k-th of a list; None leaves it as it is.
-            worlds: The environments that begin anew; others stay as they are.
+            worlds: The environments that start again; others stay as they are.
 
         Raises:
             ValueError: There are not as many seeds as environments.

@@ -35,7 +35,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
     Environment k depends on nothing but its own actions and its own seed: `reset(seed=s)` gives it `s + k`.
 
-    Episodes that are over begin anew as `autoreset_mode` says. With `NEXT_STEP`, as Gymnasium's own vector
+    Episodes that are over start again as `autoreset_mode` says. With `NEXT_STEP`, as Gymnasium's own vector
     environments have it, the next step ignores the action of such an environment, and returns what is
     observed at the beginning with a reward of 0. With `SAME_STEP` that observation comes in place of the
     last one, which is in `infos["final_obs"]`. With `DISABLED` nothing happens until
@@ -48,7 +48,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         worlds: The worlds.
         steps: Steps of the worlds in one of the environments.
         max_episode_steps: After how many steps an episode is truncated; None for never.
-        autoreset_mode: When episodes that are over begin anew.
+        autoreset_mode: When episodes that are over start again.
         episode_steps: Steps of each environment in its present episode, (num_envs,).
         random: Where random numbers come from.
         camera: What `render` looks through; None for nothing.
@@ -60,7 +60,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         action_space: Of one environment: a `Box` of one axis, or `Discrete`.
         steps: Steps of the worlds in one of the environments.
         max_episode_steps: After how many steps an episode is truncated; None for never.
-        autoreset_mode: When episodes that are over begin anew: one of Gymnasium's, or its value.
+        autoreset_mode: When episodes that are over start again: one of Gymnasium's, or its value.
         threads: How many threads share the worlds; None for as many as there are processors.
         render_mode: "rgb_array" or None.
         camera: What `render` looks through.

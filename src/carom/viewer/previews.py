@@ -41,7 +41,7 @@ class Previews:
         Args:
             rgba: (height, width, 4) colours.
             depth: (height, width) depth from 0 to 1, as OpenGL has it.
-            labels: (height, width) numbers of bodies; -1 where there is nothing.
+            labels: (height, width) numbers of bodies; -1 for the background.
             camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
         """
         now = monotonic()

@@ -56,7 +56,7 @@ class Viewer:
         world: The world.
         lock: Held by whoever steps the world, or adds and removes bodies, and asks `held` before each step.
             Without one the viewer guards the steps itself, by an observer of the world; `Viewer.lock` has
-            to be held while bodies come and go.
+            to be held while bodies are added and removed.
         host: Address to listen on; this machine alone unless told otherwise. On any other, pages need a
             token, which is part of `address`.
         port: Port to listen on; None for the usual one or, where that is taken, any.

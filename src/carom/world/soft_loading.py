@@ -14,7 +14,7 @@ _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 class SoftLoading(BodyAdding):
-    """What soft bodies a world that can add a body can load."""
+    """Loading of soft bodies into a world."""
 
     def load_cloth(
         self,
@@ -49,7 +49,7 @@ class SoftLoading(BodyAdding):
             self_collision: It does not go through itself.
 
         Raises:
-            carom.errors.DescriptionError: A number makes no sense, or the file cannot be used; the world is
+            carom.errors.DescriptionError: A number is out of range, or the file cannot be used; the world is
                 as before.
         """
         from carom.soft.build import soft_body
@@ -96,7 +96,7 @@ class SoftLoading(BodyAdding):
             radius: Distance at which its nodes rest on other surfaces [m].
 
         Raises:
-            carom.errors.DescriptionError: A number makes no sense; the world is as before.
+            carom.errors.DescriptionError: A number is out of range; the world is as before.
         """
         import numpy as np
 
@@ -142,7 +142,7 @@ class SoftLoading(BodyAdding):
             margin: Distance at which it rests on other surfaces [m].
 
         Raises:
-            carom.errors.DescriptionError: A number makes no sense, or the file cannot be used; the world is
+            carom.errors.DescriptionError: A number is out of range, or the file cannot be used; the world is
                 as before.
         """
         from carom.errors import DescriptionError

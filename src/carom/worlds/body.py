@@ -29,7 +29,7 @@ class BodyBatch:
         rows: Where it is in the arrays of the engine.
         joint_names: Names of all joints, in order; joint j moves link j.
         link_names: Names of the links besides the base.
-        limits: Least and greatest positions of the joints that move, by which targets are clipped.
+        limits: Minimum and maximum positions of the joints that move, by which targets are clipped.
     """
 
     def __init__(self, body: Body, scene: World, engine: Engine) -> None:
@@ -104,11 +104,11 @@ class BodyBatch:
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Least and greatest positions of the joints that move, (dofs,); infinite without a limit."""
+        """Minimum and maximum positions of the joints that move, (dofs,); infinite without a limit."""
         return self._body.joints.limits
 
     def columns(self, joints: list[int | str] | None = None) -> slice | np.ndarray:
-        """Where some joints of one freedom are among the columns of `joint_velocities`.
+        """Where some joints of one degree of freedom are among the columns of `joint_velocities`.
 
         They are there in `joint_positions` as well unless a spherical joint comes before them.
 
@@ -119,7 +119,7 @@ class BodyBatch:
             A slice if they are next to each other, so that indexing gives a view.
 
         Raises:
-            ValueError: A joint has more than one freedom, or none.
+            ValueError: A joint has more than one degree of freedom, or none.
         """
         dofs, _ = self._chosen(joints)
         if isinstance(dofs, slice):
@@ -170,8 +170,8 @@ class BodyBatch:
             gains: Share of the position error taken away per substep.
             velocities: Velocities to arrive with.
             velocity_gains: Share of the velocity error taken away per substep.
-            max_forces: Greatest forces; those of the file by default.
-            max_velocities: Greatest velocities the motors ask for.
+            max_forces: Maximum forces; those of the file by default.
+            max_velocities: Maximum velocities the motors ask for.
             joints: Which joints, by index or name; None for all that move.
 
         Raises:

@@ -1,4 +1,4 @@
-"""Numbers for many worlds, refused where their shapes do not fit."""
+"""Numbers for many worlds, whose shapes are checked."""
 
 from __future__ import annotations
 

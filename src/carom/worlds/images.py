@@ -20,9 +20,9 @@ class Images(NamedTuple):
 
     Attributes:
         colour: (n, height, width, 3) uint8 red, green and blue.
-        depth: (n, height, width) float32 distance along the optical axis [m]; infinite for nothing.
-        body_ids: (n, height, width) int32 ids of bodies; -1 where there is nothing.
-        link_indices: (n, height, width) int32 links of those bodies; -1 is the base, and nothing.
+        depth: (n, height, width) float32 distance along the optical axis [m]; infinite for the background.
+        body_ids: (n, height, width) int32 ids of bodies; -1 for the background.
+        link_indices: (n, height, width) int32 links of those bodies; -1 is the base, and the background.
     """
 
     colour: NDArray[np.uint8]

@@ -147,7 +147,7 @@ class Worlds:
             self._halt(running[status > WELL], steps)
 
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
-        """Throw away what the failed step left besides the coordinates, as in a world alone, and say so."""
+        """Clear all other results of the failed step than the coordinates, as in a single world, and warn."""
         state = self._engine.arrays.state.numpy
         self.halted[worlds] = True
         state["link_reaction"][worlds] = 0.0
@@ -173,7 +173,7 @@ class Worlds:
     # States
 
     def save(self, where: ArrayLike | None = None) -> SavedWorlds:
-        """The present states, to come back to by `restore`.
+        """The present states, for `restore`.
 
         Args:
             where: Which worlds: a mask (count,) or their numbers; None for all.
@@ -182,7 +182,7 @@ class Worlds:
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
-        """Put worlds back to states of `save`; what follows is then the same as it was, to the last bit.
+        """Put worlds back to states of `save`; what follows is then the same as it was, bit for bit.
 
         Args:
             start: States of all worlds: each of those chosen gets its own; or the state of one world,
@@ -328,7 +328,7 @@ class Worlds:
         """What a camera sees in each world.
 
         Args:
-            camera: A `Camera`, mounted on a link of the world they are copies of or standing in the world.
+            camera: A `Camera`, mounted on a link of the world they are copies of or fixed in the world.
             where: Which worlds: a mask (count,) or their numbers; None for all.
         """
         return take_images(

@@ -84,7 +84,7 @@ class BodyAccess:
 
     @cached_property
     def tree(self) -> MovingTree | None:
-        """Its equations of motion, if none of its joints has more than one freedom."""
+        """Its equations of motion, if none of its joints has more than one degree of freedom."""
         if any(freedoms > 1 for freedoms in self.body.velocity_count):
             return None
         from carom.algorithms.moving_tree import moving_tree

@@ -116,7 +116,7 @@ def changeDynamics(
 ) -> None:
     """Changes a link, the joint that carries it, or the whole body. Negative numbers change nothing.
 
-    PyBullet has a trap here, which is kept: damping, activation state, greatest velocity and collision
+    PyBullet has a trap here, which is kept: damping, activation state, maximum velocity and collision
     margin belong to the body, and when one of them is what it looks at last, in the order written below,
     then everything else in the same call goes to the base as well. Use one call for the body and another
     for the link; a warning is logged when it happens. A body or link that does not exist is no error.
@@ -147,11 +147,11 @@ def changeDynamics(
             motors nor gravity, and velocities given to it are lost.
         jointDamping: [N m s/rad or N s/m].
         anisotropicFriction: Factor on friction along the axes of the link.
-        maxJointVelocity: Greatest velocity of every coordinate of the body [rad/s, m/s]; 100 at first.
+        maxJointVelocity: Maximum velocity of every coordinate of the body [rad/s, m/s]; 100 at first.
         collisionMargin: Of the base's shapes [m].
         jointLowerLimit: [rad or m]; the limits change when it is not greater than the upper one.
         jointUpperLimit: [rad or m].
-        jointLimitForce: Greatest force of the limits [N m or N].
+        jointLimitForce: Maximum force of the limits [N m or N].
         sleepThreshold: Sum of all its squared velocities below which a body may sleep; 0.05 at first.
         physicsClientId: The connection.
 

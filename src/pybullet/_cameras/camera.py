@@ -77,7 +77,7 @@ def getCameraImage(
 
     Returns:
         (width, height, colours, depth, segmentation). Colours: (height, width, 4) uint8, red, green, blue,
-        255, white where there is nothing. Depth: (height, width) float32 as in OpenGL's buffer; the
+        255, white for the background. Depth: (height, width) float32 as in OpenGL's buffer; the
         distance along the view is far * near / (far - (far - near) * depth) [m]. Segmentation:
         (height, width) int32 body ids, -1 where there is nothing; with the flag
         `ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX` body id + (link index + 1) << 24. Row 0 is the top.

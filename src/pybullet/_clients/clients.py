@@ -38,7 +38,7 @@ class Client:
         method: How it was connected: `DIRECT`, `GUI`, ...
         world: Its world.
         bodies: Direct access to the state of bodies, by id; made when first asked for and forgotten
-            whenever bodies come or go, because that moves the rows of the state arrays.
+            whenever bodies are added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
         plugins: Plugins the script has loaded.

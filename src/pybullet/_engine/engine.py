@@ -29,7 +29,7 @@ __all__ = [
     "stepSimulation",
 ]
 
-# What decides how long a step takes: parameter, argument and greatest value.
+# What decides how long a step takes: parameter, argument and largest value.
 _WORK = {
     "substeps": ("numSubSteps", 10_000),
     "solver_iterations": ("numSolverIterations", 1_000_000),
@@ -149,7 +149,7 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
 def setTimeStep(timeStep: float, physicsClientId: int = 0) -> None:
     """Sets the time by which `stepSimulation` advances; 1/240 s at first.
 
-    The greatest impulses of motors that are already set stay, so the greatest forces change.
+    The maximum impulses of motors that are already set stay, so the maximum forces change.
 
     Args:
         timeStep: Time [s], greater than 0.
@@ -298,10 +298,10 @@ def setPhysicsEngineParameter(
 
     Args:
         fixedTimeStep: Time by which `stepSimulation` advances [s].
-        numSolverIterations: Greatest number of passes over all constraints in a step; 50 at first.
+        numSolverIterations: Maximum number of passes over all constraints in a step; 50 at first.
         useSplitImpulse: Correct penetration of rigid bodies without giving them speed.
         splitImpulsePenetrationThreshold: Penetration from which that is done [m].
-        numSubSteps: Parts of a step, each solved by itself; 0 or 1 for none. The greatest impulse of a
+        numSubSteps: Parts of a step, each solved by itself; 0 or 1 for none. The maximum impulse of a
             motor holds for each part.
         collisionFilterMode: 0: both bodies' filters have to agree; 1: one is enough.
         contactBreakingThreshold: Distance at which a contact is given up, relative to the size.

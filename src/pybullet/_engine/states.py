@@ -49,7 +49,7 @@ def saveState(physicsClientId: int = 0) -> int:
 
 @exported
 def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId: int = 0) -> None:
-    """Goes back to a state. The steps that follow are the same, to the last bit, as they were then.
+    """Goes back to a state. The steps that follow are the same, bit for bit, as they were then.
 
     Args:
         stateId: A state of `saveState`; it can be restored any number of times.
@@ -114,7 +114,7 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
     format is Carom's own, not PyBullet's; see docs/world-files.md.
 
     Args:
-        bulletFileName: The file; one that is there is replaced.
+        bulletFileName: The file; an existing one is replaced.
         physicsClientId: The connection.
 
     Raises:

@@ -136,7 +136,7 @@ def changeConstraint(
         userConstraintUniqueId: The constraint.
         jointChildPivot: New pivot of the child, in the world if there is no child [m].
         jointChildFrameOrientation: New axes of the child, a quaternion.
-        maxForce: Greatest force of each row [N or N m]; negative leaves it.
+        maxForce: Maximum force of each row [N or N m]; negative leaves it.
         gearRatio: Of a gear, 1 at first; 0 leaves it.
         gearAuxLink: Link of the parent whose joint's motion is taken off the gear's; negative leaves it.
         relativePositionTarget: What the joint positions of a gear are to add up to.
@@ -375,7 +375,7 @@ def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
 
 
 def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:
-    """A gear needs a joint of one freedom on each side."""
+    """A gear needs a joint of one degree of freedom on each side."""
     for body, link, name in ((parent, parent_link, "parent"), (child, child_link, "child")):
         if body is None or link < 0 or body.velocity_count[link] != 1:
             fail(_FAILED, f"The {name} of a gear has to be a revolute or prismatic joint.")

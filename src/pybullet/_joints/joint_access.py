@@ -1,7 +1,7 @@
 """Joints as scripts see them: direct access to their rows in the state arrays.
 
 These objects are made once per joint and hold the memory of the arrays, so that reading a state or
-commanding a motor is a few reads or writes of numbers. They live until bodies come or go.
+commanding a motor is a few reads or writes of numbers. They live until bodies are added or removed.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ _DOUBLE = 8
 _MOTOR_COLUMNS = 8
 _MOTOR_ROW = _MOTOR_COLUMNS * _DOUBLE
 _WRENCH_ROW = 6 * _DOUBLE
-# The greatest force of a motor that was given a target but no force [N or N m].
+# The maximum force of a motor that was given a target but no force [N or N m].
 _UNSTATED_FORCE = 1000000.0
 # The gains of a multi-dof motor whose gains were given in the wrong number.
 _UNSTATED_GAIN = 0.1
 # A PD drive weaker than this is taken away.
 _LEAST_PD_FORCE = 1.1920928955078125e-07
 
-# The first columns of a motor's row, as one write: target position, target velocity, kp, kd, greatest
+# The first columns of a motor's row, as one write: target position, target velocity, kp, kd, maximum
 # impulse; then the velocity clamp. The row of a PD drive starts alike, with a force for the impulse.
 assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD, MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP) == (
     0,
@@ -118,7 +118,7 @@ class JointAccess:
         return ((), (), self._reaction(), ())
 
     def reset(self, position: float, velocity: float) -> None:
-        """Puts a joint of one freedom somewhere, without any physics; others stay where they are."""
+        """Sets the state of a joint with one degree of freedom, without physics; ignores other joints."""
 
     def command(
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
@@ -173,7 +173,7 @@ class AxisJoint(JointAccess):
 
     Attributes:
         lower: Least target position; minus infinity where there are no limits.
-        upper: Greatest target position.
+        upper: Largest target position.
     """
 
     __slots__ = ("lower", "row_at", "upper")

@@ -60,7 +60,7 @@ def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -
         having the first seven, and 4 of its first velocity, the base having the first six (both -1 for
         a fixed joint); 5 flags, 1 for a joint that has a motor; 6 damping [N m s/rad or N s/m];
         7 friction, which is not simulated; 8 lower and 9 upper limit [rad or m], the lower greater than
-        the upper when there are none; 10 greatest force and 11 greatest velocity, which are not
+        the upper when there are none; 10 maximum force and 11 maximum velocity, which are not
         enforced; 12 name of the link (bytes); 13 axis in the link's inertial frame; 14 position of the
         joint in the parent's inertial frame; 15 quaternion that turns vectors of the parent's inertial
         frame into the link's; 16 index of the parent link, -1 for the base.

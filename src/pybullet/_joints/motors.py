@@ -1,4 +1,4 @@
-"""Joint motors by numbers: one joint or many joints of one freedom each."""
+"""Joint motors by numbers: one joint or many joints of one degree of freedom each."""
 
 from __future__ import annotations
 
@@ -106,11 +106,11 @@ def setJointMotorControl2(
             ends it.
         targetPosition: [rad or m]; taken to the nearest limit when it is beyond.
         targetVelocity: [rad/s or m/s].
-        force: Greatest force of the motor, or the torque [N m or N]. As a bound of a motor it may be
+        force: Maximum force of the motor, or the torque [N m or N]. As a bound of a motor it may be
             infinite.
         positionGain: See above.
         velocityGain: See above.
-        maxVelocity: Greatest velocity the motor reaches for with `POSITION_CONTROL` when greater than 0
+        maxVelocity: Maximum velocity the motor reaches for with `POSITION_CONTROL` when greater than 0
             [rad/s or m/s]; it stays until `VELOCITY_CONTROL` is set.
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.

@@ -68,12 +68,12 @@ def setJointMotorControlMultiDof(
             next step.
         targetPosition: One number [rad or m]; for a spherical joint a quaternion (x, y, z, w).
         targetVelocity: One number [rad/s or m/s], or three; a spherical motor ignores it.
-        force: Greatest forces of the motor, or the torques [N m or N]: a number for each freedom, or one
+        force: Maximum forces of the motor, or the torques [N m or N]: a number for each freedom, or one
             for all.
         positionGain: Fraction of the error that one step takes back. A number, or one for each freedom;
             those count only when forces and both gains are all given so.
         velocityGain: As in `setJointMotorControl2`, and a number or numbers as before.
-        maxVelocity: Greatest velocity the motor reaches for when greater than 0; not for spherical joints.
+        maxVelocity: Maximum velocity the motor reaches for when greater than 0; not for spherical joints.
         damping: Fraction of the angular velocity that a spherical motor takes away, for each axis or for
             all.
         physicsClientId: The connection.
@@ -125,12 +125,13 @@ def setJointMotorControlMultiDofArray(
         bodyUniqueId: The body.
         jointIndices: The joints, in any order.
         controlMode: `POSITION_CONTROL` or `TORQUE_CONTROL` as in `setJointMotorControlMultiDof`;
-            `PD_CONTROL` as in `setJointMotorControl2`, for joints of one freedom; `STABLE_PD_CONTROL`, for
-            the next step only: the torques of a PD controller that looks one step ahead with the equations
-            of motion of the whole body, and so stays stable with high gains (Tan, Liu and Turk, 2011).
+            `PD_CONTROL` as in `setJointMotorControl2`, for joints of one degree of freedom;
+            `STABLE_PD_CONTROL`, for the next step only: the torques of a PD controller that looks one step
+            ahead with the equations of motion of the whole body, and so stays stable with high gains (Tan,
+            Liu and Turk, 2011).
         targetPositions: For each joint one number [rad or m], or a quaternion (x, y, z, w).
         targetVelocities: For each joint one number [rad/s or m/s], or three.
-        forces: For each joint the greatest forces of the motor, or the torques [N m or N].
+        forces: For each joint the maximum forces of the motor, or the torques [N m or N].
         positionGains: A number for each joint.
         velocityGains: A number for each joint.
         maxVelocities: Not used, as in PyBullet.

@@ -69,7 +69,7 @@ class CommandLog:
     Args:
         number: Id of the client.
         client: The client.
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
 
     Raises:
         OSError: The file cannot be written.

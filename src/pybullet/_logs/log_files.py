@@ -32,7 +32,7 @@ class BinaryLog:
     """A binary log without records; the kinds build on it.
 
     Args:
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
         columns: Names of the columns.
         types: Type of each column.
 

@@ -59,7 +59,7 @@ def startStateLogging(
             and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty.
 
             `STATE_LOGGING_ALL_COMMANDS` for all calls that change the world, one such log at a time;
-            `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results to the last
+            `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results bit for
             bit in a world that is as it was when the log began. See docs/command-logs.md.
         fileName: The file; one that is there is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
         objectUniqueIds: Bodies to log; none for all, but a Minitaur has to be named. Those with more

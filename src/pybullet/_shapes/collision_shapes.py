@@ -80,7 +80,7 @@ def createCollisionShape(
         indices: Three vertices for each triangle, one after the other.
         heightfieldTextureScaling: For a window: how often the texture repeats.
         heightfieldData: `numHeightfieldRows` * `numHeightfieldColumns` heights, those along x first. The
-            middle between the least and the greatest lies at the origin.
+            middle between the least and the largest lies at the origin.
         numHeightfieldRows: Points along x.
         numHeightfieldColumns: Points along y.
         replaceHeightfieldIndex: A heightfield of as many points that gets these heights instead, along

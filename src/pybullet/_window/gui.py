@@ -38,7 +38,7 @@ def addUserDebugParameter(
     Args:
         paramName: Its name.
         rangeMin: Least value.
-        rangeMax: Greatest value; less than the least for a button, which counts its clicks.
+        rangeMax: Largest value; less than the least for a button, which counts its clicks.
         startValue: Value at first.
         physicsClientId: The connection.
 

@@ -99,8 +99,8 @@ def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
 class Errors:
     """How far the ends are from their targets."""
 
-    distance: real  # the greatest [m]
-    angle: real  # the greatest [rad]
+    distance: real  # the largest [m]
+    angle: real  # the largest [rad]
     squares: real  # sum of the squares of all errors
 
 
@@ -134,7 +134,7 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
 
 @func
 def write_column(search: Search, entry: Int32, oriented: Int32, linear: Vector3, angular: Vector3):
-    """Set what a unit of one freedom does to an end."""
+    """Set what a unit of one degree of freedom does to an end."""
     search.entry_jacobian[entry] = linear
     if oriented == 1:
         search.entry_jacobian[entry + 1] = angular

@@ -99,7 +99,7 @@ def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
 
 @func
 def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> real:
-    """Relax `count` rows once; returns the greatest change squared."""
+    """Relax `count` rows once; returns the maximum change squared."""
     residual = real(0.0)
     row = Int32(0)
     stride = Int32(1)

@@ -123,7 +123,7 @@ def sweep_island(
         resting: 1 if all units are manifold blocks that start from their last impulses.
 
     Returns:
-        Greatest change of a velocity in the last sweep, squared; number of sweeps.
+        Maximum change of a velocity in the last sweep, squared; number of sweeps.
     """
     threshold = settings.residual_threshold
     most = settings.iterations

@@ -41,7 +41,7 @@ RESTING_SWEEPS = 4
 # How the search for the impulses of a contact went: it was in no island at rest; that was solved; it was
 # not; it was, and the manifold block holds.
 NOT_RESTING, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
-# Share of the greatest friction, squared, from which on a contact slides.
+# Share of the largest friction, squared, from which on a contact slides.
 SLIDING = real(1.0 - 1e-9)
 # What `next_warm_start` says of a contact in a manifold block that holds; others go up to 1.
 HOLDS = real(2.0)

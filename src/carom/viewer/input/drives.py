@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _GAIN, _VELOCITY_GAIN = 0.1, 1.0
-# Greatest force of the drive where the file states no effort [N m or N].
+# Maximum force of the drive where the file states no effort [N m or N].
 _FORCE = 500.0
-# Greatest speed of a driven joint [rad/s or m/s]: a slider is moved faster than a robot should.
+# Maximum speed of a driven joint [rad/s or m/s]: a slider is moved faster than a robot should.
 _SPEED = 2.0
 
 

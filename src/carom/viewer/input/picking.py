@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
-# The greatest force a hand pulls with, by the mass of what it pulls [N/kg] and at least [N]: enough to lift
+# The maximum force a hand pulls with, by the mass of what it pulls [N/kg] and at least [N]: enough to lift
 # and swing a body, and too little to tear it through others.
 _FORCE_BY_MASS = 100.0
 _LEAST_FORCE = 5.0

@@ -34,9 +34,9 @@ class ReplayRecorder:
 
     Args:
         world: The world.
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
         fps: Frames for each second of simulated time.
-        title: What the page is called; the name of the file by default.
+        title: Title of the page; the name of the file by default.
         contacts: Record contacts and their forces.
         joints: Record positions, velocities and torques of joints.
 

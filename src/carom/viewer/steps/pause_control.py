@@ -16,7 +16,7 @@ class PauseControl:
 
     Attributes:
         closed: Steps have to wait. Read without a lock, so that it costs nothing while nobody pauses.
-        speed: Greatest speed, as simulated time by real time; None for any.
+        speed: Maximum speed, as simulated time by real time; None for any.
         listeners: How many waits end at `call_back`.
     """
 
