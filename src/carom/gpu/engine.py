@@ -53,7 +53,7 @@ class DeviceEngine(Engine):
             device: Where they are to be.
             arrays: Model and state of the one.
             contact_arrays: Its shapes, contacts and user constraints.
-            count: How many there are to be.
+            count: Number of worlds.
 
         Raises:
             MemoryError: There is no room for them.

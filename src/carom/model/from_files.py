@@ -36,7 +36,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
     Args:
         path: The file.
-        search: Where it and what it refers to are looked for.
+        search: Folders in which it and the files it refers to are searched.
         flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
         as_mujoco: `axisangle` turns bodies, and named classes limit joints; in PyBullet they do not.
     """

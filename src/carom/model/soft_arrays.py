@@ -36,7 +36,7 @@ class SoftRows:
 
     Attributes:
         rows: Rows of the tree that stands for it; somebody else keeps them up to date.
-        spec: What it is made of.
+        spec: Its specification.
         first: First row on each axis.
         count: Rows on each axis.
     """

@@ -47,7 +47,7 @@ class SoftSpec:
         damping: Viscosity of the tetrahedra as a share of these [s].
         damps_all_directions: Springs damp every relative motion of their ends, not only that along them.
         margin: Distance at which nodes rest on other surfaces [m].
-        self_collision: Its nodes do not go through its own faces.
+        self_collision: Its nodes collide with its own faces.
         gravity_factor: Share of the world's gravity that pulls it.
         skin: The mesh that is seen in place of the faces, if there is one.
     """

@@ -43,7 +43,7 @@ class Queries:
     Args:
         structs: Structs by the name kernels give them.
         positions: The memory of the coordinates of all bodies.
-        places: Body and link that each row of the link arrays stands for.
+        places: Body and link of each row of the link arrays.
         present_poses: `World.present_poses`.
         contact_arrays: The arrays of shapes.
         pairs: Room for the intermediate results of collision detection.
@@ -142,7 +142,7 @@ class Queries:
         Args:
             starts: Their starts in world axes [m], shape (n, 3).
             ends: Their ends, shape (n, 3).
-            mask: Collision groups that are hit.
+            mask: Mask of the collision groups that are hit.
             hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
             separation: Later hits on a link less than this fraction of the ray after one do not count.
         """

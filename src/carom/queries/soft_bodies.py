@@ -40,7 +40,7 @@ class SoftQueries:
         contact_arrays: The shapes and the soft bodies.
         state: The state of the world.
         work: The workspace of soft bodies.
-        places: Body and link that each row of the link arrays stands for.
+        places: Body and link of each row of the link arrays.
         present_poses: `World.present_poses`.
     """
 
@@ -87,7 +87,7 @@ class SoftQueries:
         Args:
             starts: Their starts in world axes [m], shape (n, 3).
             ends: Their ends.
-            mask: Collision groups that are hit.
+            mask: Mask of the collision groups that are hit.
         """
         start = np.asarray(starts, dtype=np.float64).reshape(-1, 3)
         way = np.asarray(ends, dtype=np.float64).reshape(-1, 3) - start

@@ -19,9 +19,9 @@ from carom.soft.skin import bind
 from carom.soft.topology import bending_pairs, edges_of, surface_of
 
 MOST_NODES = 1_000_000
-"""Most nodes of a soft body."""
+"""Maximum number of nodes of a soft body."""
 LEAST_MASS = 1.0e-30
-"""Least mass of a soft body [kg]; divided by less, numbers overflow."""
+"""Minimum mass of a soft body [kg]; smaller masses would overflow."""
 FARTHEST = 1.0e6
 """Largest coordinate of a node [m]."""
 # Tetrahedra of less than this share of the cube of their longest edge are flat.
@@ -52,16 +52,16 @@ def soft_body(
         cells: Its (m, 2) links, (m, 3) triangles or (m, 4) tetrahedra.
         mass: Of all nodes together [kg].
         springs: Springs along the edges of the cells, if there are any.
-        solid: What tetrahedra are like, if they resist to a change of shape.
+        solid: Material of tetrahedra, if they resist deformation.
         margin: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient, multiplied by that of what it touches.
-        self_collision: Its nodes do not go through its own faces.
-        seen: (v, 3) vertices and (t, 3) triangles that are seen in place of its surface.
+        self_collision: Its nodes collide with its own faces.
+        seen: (v, 3) vertices and (t, 3) triangles that are drawn instead of its surface.
         source: The file it comes from, for errors.
 
     Raises:
         DescriptionError: A node is not finite or far away, a cell names a node that does not exist, has no
-            volume, or has two corners in one place; or a parameter makes no sense.
+            volume, or has two corners in one place; or a parameter is out of range.
     """
     _check_parameters(mass, springs, solid, margin, friction, source)
     nodes = np.array(nodes, dtype=np.float64).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""Soft bodies of a world, made from numbers or from mesh files."""
+"""Soft bodies of a world, made from parameters or from mesh files."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class SoftLoading(BodyAdding):
             damping: Of all springs [N s/m].
             friction: Coulomb coefficient, multiplied by that of what it touches.
             margin: Distance at which it rests on other surfaces [m].
-            self_collision: It does not go through itself.
+            self_collision: It collides with itself.
 
         Raises:
             carom.errors.DescriptionError: A number is out of range, or the file cannot be used; the world is

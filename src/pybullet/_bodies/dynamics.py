@@ -133,7 +133,7 @@ def changeDynamics(
         lateralFriction: Coulomb coefficient.
         spinningFriction: Torque about the contact normal per normal force [m].
         rollingFriction: Torque about the tangents per normal force [m].
-        restitution: Fraction of the normal speed that comes back.
+        restitution: Coefficient of restitution.
         linearDamping: Of the whole body [1/s]; 0.04 at first.
         angularDamping: Of the whole body [1/s]; 0.04 at first.
         contactStiffness: Spring of contacts [N/m]; together with `contactDamping`.

@@ -14,11 +14,11 @@ class StateLog(Protocol):
     """Any log: it is told of every step, and finishes its file in the end."""
 
     def before_step(self) -> None:
-        """A step is about to be made."""
+        """Called before a step."""
         ...
 
     def after_step(self) -> None:
-        """It has been made."""
+        """Called after a step."""
         ...
 
     def close(self) -> None:

@@ -38,7 +38,7 @@ def rayTest(
     Args:
         rayFromPosition: Its start in the world frame [m].
         rayToPosition: Its end.
-        collisionFilterMask: Collision groups that are hit.
+        collisionFilterMask: Mask of the collision groups that are hit.
         reportHitNumber: n for the n-th hit along the ray, from 0; negative for the first.
         physicsClientId: The connection.
 
@@ -87,7 +87,7 @@ def rayTestBatch(
         parentObjectUniqueId: Body whose frame the positions are in; -1 for the world's.
         parentLinkIndex: Its link, -1 for the base: positions are in that link's inertial frame.
         reportHitNumber: n for the n-th hit along each ray, from 0; negative for the first.
-        collisionFilterMask: Collision groups that are hit.
+        collisionFilterMask: Mask of the collision groups that are hit.
         fractionEpsilon: Later hits on a link less than this fraction of the ray after one do not count.
         physicsClientId: The connection.
 

@@ -222,7 +222,7 @@ def getNumConstraints(physicsClientId: int = 0) -> int:
         physicsClientId: The connection.
 
     Returns:
-        How many there are.
+        Number of worlds.
 
     Raises:
         pybullet.error: Not connected.
@@ -336,7 +336,7 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
 
 
 def _numbers(client: Client) -> list[int]:
-    """The numbers of all constraints, in the order they were made."""
+    """The numbers of all constraints, in order of creation."""
     world = client.world
     return sorted(
         [constraint.id for constraint in world.user_constraints.all] + [*world.contact_arrays.soft.anchors]

@@ -203,7 +203,7 @@ def nearest_on_shape(
 
     Args:
         shapes: All shapes.
-        pairs: Where they are.
+        pairs: The device they are on.
         world: The world.
         shape: The shape.
         point: The point in world axes [m].
