@@ -22,7 +22,7 @@ class ContactColumns(NamedTuple):
     """Contacts in columns, which are to be read at once.
 
     Attributes:
-        found: Number of worlds.
+        found: Number of them.
         columns: An iterable for each of: number of the first body, of the second body, link of the first
             body, of the second body (-1: the base), point on the first body, on the second body (in world
             axes [m]), normal on the second body towards the first, distance (negative: penetration [m]),

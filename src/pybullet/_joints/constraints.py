@@ -222,7 +222,7 @@ def getNumConstraints(physicsClientId: int = 0) -> int:
         physicsClientId: The connection.
 
     Returns:
-        Number of worlds.
+        Their number.
 
     Raises:
         pybullet.error: Not connected.

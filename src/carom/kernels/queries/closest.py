@@ -94,7 +94,7 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
         shapes: All shapes.
         pairs: Room for intermediate results, and the poses of the shapes, from `place_shapes_kernel`.
         searches: The pairs, and room for what is found.
-        count: Number of worlds.
+        count: Number of them.
         max_distance: Largest distance of interest [m].
     """
     world = wp.tid()
