@@ -1,4 +1,4 @@
-"""The boxes around the shapes of links, for `getAABB`."""
+"""The bounding boxes of links, for `getAABB`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _DOUBLE = 8
 
 
 class LinkBox:
-    """The box around one link, wherever it is when it is asked for."""
+    """The bounding box of one link, at its present pose."""
 
     __slots__ = ("_at", "_bounds", "_lone", "_poses")
 
@@ -32,12 +32,12 @@ class LinkBox:
         alone = is_in_place(spec.collisions, spec.inertial_frame)
         self._lone = type(spec.collisions[0].geometry) if alone else None
         self._bounds = world.contact_arrays.shapes.bounds(row)
-        # The base is where its coordinates say, also after a step.
+        # The pose of the base is that of its coordinates, also after a step.
         self._poses = world.position_memory if link == BASE else world.link_pose_memory
         self._at = body.first_position * _DOUBLE if link == BASE else row * _POSE.size
 
     def corners(self) -> tuple[Vector3, Vector3]:
-        """The lowest and the highest corner, in the world frame [m]."""
+        """The minimum and the maximum corner, in the world frame [m]."""
         center, half = self._bounds.center, self._bounds.half
         if self._lone is not Plane:
             x, y, z, qx, qy, qz, qw = _read_pose(self._poses, self._at)
@@ -48,7 +48,7 @@ class LinkBox:
 
 
 class SoftBox:
-    """The box around a soft body, wherever its nodes are when it is asked for."""
+    """The bounding box of a soft body, for the present positions of its nodes."""
 
     __slots__ = ("_body",)
 
@@ -57,6 +57,6 @@ class SoftBox:
         self._body = body
 
     def corners(self) -> tuple[Vector3, Vector3]:
-        """The lowest and the highest corner, in the world frame [m]."""
+        """The minimum and the maximum corner, in the world frame [m]."""
         (ax, ay, az), (bx, by, bz) = (corner.tolist() for corner in self._body.bounds())
         return (ax, ay, az), (bx, by, bz)

@@ -1,4 +1,4 @@
-"""Joints as scripts see them: direct access to their rows in the state arrays.
+"""Direct access to the rows of joints in the state arrays.
 
 These objects are made once per joint and hold the memory of the arrays, so that reading a state or
 commanding a motor is a few reads or writes of numbers. They live until bodies are added or removed.
@@ -48,7 +48,7 @@ _WRENCH_ROW = 6 * _DOUBLE
 _UNSTATED_FORCE = 1000000.0
 # The gains of a multi-dof motor whose gains were given in the wrong number.
 _UNSTATED_GAIN = 0.1
-# A PD drive weaker than this is taken away.
+# A PD drive weaker than this is removed.
 _LEAST_PD_FORCE = 1.1920928955078125e-07
 
 # The first columns of a motor's row, as one write: target position, target velocity, kp, kd, maximum
@@ -140,7 +140,7 @@ class JointAccess:
         return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH
 
     def add_torques(self, torques: Sequence[float]) -> None:
-        """Adds to the torques of the next step; ignored unless there is one for each freedom."""
+        """Adds to the torques of the next step; ignored unless there is one for each degree of freedom."""
 
     def command_multi_dof(
         self,
@@ -152,7 +152,7 @@ class JointAccess:
         clamp: float,
         damping: float | Sequence[float],
     ) -> None:
-        """Sets the motor by one number for each freedom, as `setJointMotorControlMultiDof` does.
+        """Sets the motor by one number for each degree of freedom, as `setJointMotorControlMultiDof` does.
 
         A sequence of the wrong length counts as not given.
         """
@@ -172,8 +172,8 @@ class AxisJoint(JointAccess):
     """A revolute or prismatic joint.
 
     Attributes:
-        lower: Least target position; minus infinity where there are no limits.
-        upper: Largest target position.
+        lower: Minimum target position; minus infinity without limits.
+        upper: Maximum target position.
     """
 
     __slots__ = ("lower", "row_at", "upper")
@@ -315,7 +315,7 @@ class MultiDofJoint(JointAccess):
         if mode == TORQUE_CONTROL:
             self.torques[self.u] += force
         elif mode == POSITION_CONTROL and self.spherical:
-            # A number cannot say an orientation: it counts as the quaternion's x.
+            # A single number is not an orientation: it is used as the quaternion's x.
             target = (position, 0.0, 0.0, 0.0) if position else (0.0, 0.0, 0.0, 1.0)
             self._set_motor(
                 target, (velocity, 0.0, 0.0), (force,) * 3, (kp,) * 3, (kd,) * 3, (1.0,) * 3, clamp
@@ -395,7 +395,7 @@ def _is_triple(values: float | Sequence[float]) -> TypeGuard[Sequence[float]]:
 
 
 def _first_gain(gain: float | Sequence[float], dofs: int, targeted: bool) -> float:
-    """The gain of the first freedom; a sequence of the wrong length counts as not given."""
+    """The gain of the first degree of freedom; a sequence of the wrong length counts as not given."""
     if isinstance(gain, (int, float)):
         return gain
     if len(gain) in (1, dofs):

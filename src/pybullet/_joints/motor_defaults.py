@@ -1,4 +1,4 @@
-"""What a motor that is set has where nothing else is said."""
+"""Defaults of motors."""
 
 DEFAULT_FORCE = 100000.0
 """Maximum force [N or N m]."""

@@ -203,7 +203,7 @@ def nearest_on_shape(
 
     Args:
         shapes: All shapes.
-        pairs: The device they are on.
+        pairs: Where they are.
         world: The world.
         shape: The shape.
         point: The point in world axes [m].
