@@ -68,7 +68,7 @@ def inverse_kinematics(
             of any length but 0.
         lower: Limits that the result keeps [rad or m], one for each freedom of the joints. A joint whose
             lower limit is above the upper one has none.
-        upper: The same, from above.
+        upper: Upper limits.
         ranges: With `lower`, `upper` and `rest`, how far apart the limits are: the push back into them
             goes down with it.
         rest: Positions to which joints are drawn as far as the links do not mind.

@@ -133,7 +133,7 @@ def subtracted(a: Vector3, b: Vector3) -> Vector3:
 
 
 def rotate(quaternion: Quaternion, v: Vector3) -> Vector3:
-    """A vector turned by a quaternion."""
+    """Rotates a vector by a quaternion."""
     return matrix_vector(rotation_matrix(quaternion), v)
 
 

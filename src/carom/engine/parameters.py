@@ -26,7 +26,7 @@ class EngineParameters:
         friction_erp: The same for friction anchors.
         global_cfm: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
         contact_breaking_threshold: Distance at which a contact point is given up [m].
-        contact_slop: Penetration that is left alone [m].
+        contact_slop: Penetration that is not corrected [m].
         restitution_velocity_threshold: Slower impacts do not bounce [m/s].
         split_impulse: Deep errors are not turned into velocity.
         split_impulse_penetration_threshold: What counts as deep (negative) [rad or m].

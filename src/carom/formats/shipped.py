@@ -31,7 +31,7 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
     folder = shipped_folder()
     near = _near(name, Path(name).parent)
     if folder is not None and not name.is_absolute() and folder not in searched:
-        # `os.path`, for which a name that no file can have is none.
+        # `os.path`, which accepts names that no file can have.
         if os.path.isfile(folder / name):
             return f"; pybullet_data has one: call {_CALL} before"
         if meant := _near(name, folder / name.parent, name.parent):

@@ -144,7 +144,7 @@ class Queries:
             ends: Their ends, shape (n, 3).
             mask: Mask of the collision groups that are hit.
             hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
-            separation: Later hits on a link less than this fraction of the ray after one do not count.
+            separation: Hits on the same link within this fraction of the ray after another are ignored.
         """
         self._prepare(IN_HIERARCHY)
         if self._soft is not None:
@@ -227,7 +227,7 @@ class Queries:
 
         Args:
             lower: Lowest corner of the box in world axes [m].
-            upper: Its highest corner.
+            upper: Its maximum corner.
         """
         found: set[int] = set()
         if self._shape_count:

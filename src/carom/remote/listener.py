@@ -37,7 +37,7 @@ class Listener:
 
     Args:
         addresses: Hosts and ports to listen at; port 0 for any that is free.
-        key: What clients have to know.
+        key: The key that clients need.
         answer: Called with each frame, by several threads at once.
 
     Attributes:

@@ -45,7 +45,7 @@ class SavedLooks:
 
 
 def save(world: World, writer: Writer) -> Any:
-    """What to write."""
+    """The text."""
     appearance = appearance_of(world)
     places: dict[int, int] = {}
     bodies: list[list[list[SavedLook]] | None] = []

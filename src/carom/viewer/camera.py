@@ -30,7 +30,7 @@ class Orbit:
 
 
 class SharedCamera:
-    """Where the camera is. A script moves that of every page; a page moves its own, and tells.
+    """The camera. A script moves that of every page; a page moves its own, and tells.
 
     Attributes:
         orbit: Where it was last moved to, by whomever.

@@ -14,7 +14,7 @@ class DebugItem:
     """Something drawn into the scene.
 
     Attributes:
-        life_time: How long it stays [s]; 0 for ever.
+        life_time: Life time [s]; 0 for ever.
         parent_body: Body whose link carries it; -1 for the world.
         parent_link: That link; -1 for the base.
     """

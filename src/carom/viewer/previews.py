@@ -42,7 +42,7 @@ class Previews:
             rgba: (height, width, 4) colours.
             depth: (height, width) depth from 0 to 1, as OpenGL has it.
             labels: (height, width) numbers of bodies; -1 for the background.
-            camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+            camera: (4, 4) matrix from the world to clip coordinates, as in OpenGL.
         """
         now = monotonic()
         if now < self._due:
@@ -69,7 +69,7 @@ def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
     """Corners of what a camera sees from its near plane to 25 cm behind that: four near, four far.
 
     Args:
-        camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+        camera: (4, 4) matrix from the world to clip coordinates, as in OpenGL.
 
     Returns:
         Points in the world; None if the matrix has no inverse.

@@ -51,7 +51,7 @@ class SavedState:
 
 
 def state_of(world: World) -> dict[str, Any]:
-    """What to write."""
+    """The text."""
     snapshot = take(world, layout(world))
     return {
         "bodies": list(snapshot.layout.bodies),

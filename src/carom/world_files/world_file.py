@@ -48,7 +48,7 @@ class Part(Protocol):
     """What a layer above the engine adds to a file."""
 
     def save(self, world: World, writer: Writer) -> Any:
-        """What to write."""
+        """The text."""
         ...
 
     def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
