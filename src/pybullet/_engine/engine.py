@@ -46,7 +46,7 @@ _DEFORMABLE = RESET_USE_DEFORMABLE_WORLD | RESET_USE_REDUCED_DEFORMABLE_WORLD
 
 @exported
 def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ...]:
-    """Advances the simulation by `fixedTimeStep`, in `numSubSteps` equal substeps.
+    """Advances the simulation by `fixedTimeStep`, in `numSubSteps` equal substeps if set.
 
     Applied forces and torques last for this step only.
 
