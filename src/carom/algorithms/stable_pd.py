@@ -31,7 +31,7 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class JointTarget(NamedTuple):
-    """What a joint is to do. Lists of a length that does not fit the joint count as not given.
+    """Target of a joint. Lists of the wrong length count as not given.
 
     Attributes:
         position: One number [rad or m], or a quaternion (x, y, z, w); 0 or no rotation when not given.
@@ -49,7 +49,7 @@ class JointTarget(NamedTuple):
 
 
 def stable_pd_torques(body: Body, targets: Mapping[int, JointTarget], time_step: float) -> np.ndarray:
-    """Torques that lead joints to their targets.
+    """Torques that move joints to their targets.
 
     With a floating base the equations of motion are those PyBullet solves, see `extended_nodes`; with a
     fixed one, where PyBullet mixes up coordinates, they are the body's own.

@@ -60,7 +60,7 @@ class DeviceStructs(KernelStructs):
 
     Attributes:
         device: The device.
-        extent: How many of everything there are.
+        extent: The numbers of links, joints and so on.
         arrays: The arrays of `IslandWork`, `PairWork` and `RunWork`, by the names of these structs.
         parts: What `RunWork.world_part` has been set to.
     """
@@ -109,7 +109,7 @@ class DeviceWorkspace(Workspace):
         self._extent: Extent | None = None
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Bring arrays that go with others to the length of those."""
+        """Resize arrays to the length of the arrays they belong to."""
         touching = can_collide(arrays, contact_arrays)
         if touching:
             self.pairs.reserve(_FIRST_ROOM)

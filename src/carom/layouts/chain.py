@@ -38,7 +38,7 @@ DAMPED, NULL_SPACE, SELECTIVE = 0, 1, 2
 
 @struct
 class ChainSizes:
-    """How many of everything there are."""
+    """The numbers of links, joints and so on."""
 
     joints: Int32
     ends: Int32

@@ -23,7 +23,7 @@ POSE = 3
 
 @struct
 class TreeSizes:
-    """How many of everything there are."""
+    """The numbers of links, joints and so on."""
 
     nodes: Int32
     coordinates: Int32

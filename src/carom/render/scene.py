@@ -89,7 +89,7 @@ class _Columns:
 
 
 class SceneArrays:
-    """Everything a world shows, at rest.
+    """Everything visible of a world, in link frames.
 
     Attributes:
         struct: The arrays, for kernels.
@@ -131,13 +131,13 @@ class SceneArrays:
         self._take_textures(appearance.textures)
 
     def shows(self, world: World, appearance: Appearance) -> bool:
-        """The arrays hold what the world shows now; textures may be out of date."""
+        """The arrays are up to date, except perhaps textures."""
         return self._changes == appearance.changes and [body() for body in self._bodies] == list(
             world.bodies.values()
         )
 
     def follow_nodes(self) -> None:
-        """Brings the surfaces of soft bodies up to date with their nodes."""
+        """Updates the surfaces of soft bodies from their nodes."""
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
@@ -165,7 +165,7 @@ class SceneArrays:
         return self._texture_slots.setdefault(number, len(self._texture_slots))
 
     def update_textures(self, textures: Textures) -> bool:
-        """Takes over changed textures; true if there were any, and `struct` has other arrays."""
+        """Copies changed textures; true if there were any, and `struct` has other arrays."""
         if self._texture_changes == textures.changes:
             return False
         self._take_textures(textures)

@@ -52,7 +52,7 @@ class Part(Protocol):
         ...
 
     def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
-        """Take over what was written for these bodies."""
+        """Apply the saved colours and textures to these bodies."""
         ...
 
 

@@ -103,7 +103,7 @@ def descend(
     """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
 
     Args:
-        sizes: How many of everything there are.
+        sizes: The numbers of links, joints and so on.
         chain: The chain; its joints are placed.
         search: The question; its errors are measured.
         oriented: 1 if the ends are to be turned as well.
@@ -204,7 +204,7 @@ def inverse_kinematics_kernel(
     """Leave in `coordinate_best` the joint positions found.
 
     Args:
-        sizes: How many of everything there are.
+        sizes: The numbers of links, joints and so on.
         chain: The chain.
         search: The question.
         oriented: 1 if the ends are to be turned as well.
