@@ -33,7 +33,7 @@ class RobotView:
         file: URDF, SDF or MJCF file.
         search: Folders in which the file, if not found as named, and meshes are searched.
         host: Address to serve the page at.
-        port: Port to serve it at; None for the usual one or any that is free.
+        port: Port to serve it at; None for the default port or any free one.
 
     Raises:
         DescriptionError: The file cannot be used, or there is no robot in it.

@@ -17,7 +17,7 @@ from carom.recording.video import VideoFile
 if TYPE_CHECKING:
     from carom.world.world import World
 
-# Times are sums of time steps: how far a picture may be early [of the time between two].
+# Tolerance for rounding of times, which are sums of time steps [of the time between two pictures].
 _EARLY = 1e-6
 # Maximum number of pictures of one step: the video of a longer step is cut short.
 _MOST_OF_A_STEP = 240

@@ -176,7 +176,7 @@ class SceneArrays:
         images = [textures.image(number) for number in self._texture_slots]
         # Bodies loaded from the same file share one image, though each has a texture of its own.
         distinct = {id(image): image for image in images}
-        # The lower row comes first, as texture coordinates have it.
+        # The lower row comes first, as in texture coordinates.
         texels = [image[::-1].reshape(-1, 3) for image in distinct.values()]
         starts = dict(zip(distinct, _starts(list(map(len, texels))).tolist(), strict=False))
         put_array(self.struct, "texture_first", np.array([starts[id(image)] for image in images]))

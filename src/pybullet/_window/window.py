@@ -27,7 +27,7 @@ class Window(ABC):
     """A graphical interface.
 
     Attributes:
-        held: Steps have to ask `wait_for_turn` or `has_turn` first, and may find the window closed then.
+        held: Steps have to call `wait_for_turn` or `has_turn` first; the window may be closed then.
         background: The plain background the script has asked for; None for the sky.
     """
 
