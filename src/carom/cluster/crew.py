@@ -172,7 +172,7 @@ class Crew:
         starting = [str(member.node) for member in self.members if not member.is_ready]
         if starting:
             _log.warning(
-                "environments are still to be made on %s; Ray begins where %g processors are free",
+                "waiting for environments on %s; Ray starts them where %g processors are free",
                 ", ".join(starting),
                 self.cpus,
             )

@@ -72,7 +72,7 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
         stamp = FileStamp.of(file)
         if not file.is_file():
             # A pipe would wait for somebody to write, and a device may have no end.
-            raise DescriptionError("it is no regular file", file=file)
+            raise DescriptionError("it is not a regular file", file=file)
         if stamp.size > most_bytes:
             raise DescriptionError(f"{stamp.size} bytes are more than the {most_bytes} accepted", file=file)
         with open(file, "rb") as stream:

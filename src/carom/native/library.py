@@ -154,5 +154,5 @@ def _built(target: Target, level: str, digest: str) -> Path:
 
 def _cure() -> str:
     if (_ROOT.parent / "pyproject.toml").exists():
-        return "Run `pip install --editable '.[build]'` in the clone, which brings what compiles it."
+        return "Run `pip install --editable '.[build]'` in the clone, which installs the compiler."
     return "Install Carom again: `pip install --force-reinstall carom`."

@@ -41,15 +41,15 @@ def enter(peer: socket.socket, key: bytes) -> None:
     try:
         peer.sendall(_GREETING + mine)
         if talk.receive(len(_GREETING)) != _GREETING:
-            raise NoServer("What answers there is no physics server of this version of Carom.")
+            raise NoServer("The program that answers there is not a physics server of this version of Carom.")
         theirs = talk.receive(_NONCE)
         if not hmac.compare_digest(talk.receive(_DIGEST), _digest(key, b"server", mine, theirs)):
             raise NoServer("The server has another key.")
         peer.sendall(_digest(key, b"client", mine, theirs))
         if talk.receive(len(_WELCOME)) != _WELCOME:
-            raise NoServer("The server has as many clients as it can have.")
+            raise NoServer("The server has its maximum number of clients.")
     except (OSError, EOFError) as problem:
-        raise NoServer(f"The server turns away: {problem}") from problem
+        raise NoServer(f"The server refuses the connection: {problem}") from problem
 
 
 def admit(peer: socket.socket, key: bytes, take_place: Callable[[], bool]) -> bool:

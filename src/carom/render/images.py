@@ -53,7 +53,7 @@ def _decoded(data: bytes, file: Path) -> Texels:
                 raise DescriptionError(reason, file=file)
             texels = np.array(image.convert("RGB"))
     except UnidentifiedImageError:
-        raise DescriptionError("this is no image that can be read", file=file) from None
+        raise DescriptionError("the image cannot be read", file=file) from None
     # Pillow's decoders raise almost anything for what they cannot decode.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
         raise DescriptionError(f"the image is broken: {error}", file=file) from error

@@ -76,7 +76,7 @@ def load(bodies: list[Body], reader: Reader, data: Any) -> None:
     """
     saved = reader.record(SavedLooks, data, "parts.looks")
     if len(saved.bodies) != len(bodies):
-        raise ValueError("the looks are those of other bodies")
+        raise ValueError("the colours and textures are those of other bodies")
     if not bodies:
         return
     appearance = appearance_of(bodies[0].world)

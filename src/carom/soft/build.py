@@ -123,9 +123,7 @@ def _check_parameters(
     if solid is not None:
         others |= {"mu": solid.mu, "lambda": solid.lam, "the damping of the solid": solid.damping}
     if 0.0 < mass < LEAST_MASS:
-        raise DescriptionError(
-            f"mass is {mass}; {LEAST_MASS:g} kg is the least that is accepted", file=source
-        )
+        raise DescriptionError(f"mass is {mass}; {LEAST_MASS:g} kg is the minimum", file=source)
     for name, value in {**positive, **others}.items():
         if not np.isfinite(value) or value < 0.0 or (value == 0.0 and name in positive):
             least = "greater than 0" if name in positive else "0 or more"
@@ -151,7 +149,7 @@ def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source
     flat = determinants(edges) <= _FLAT * size**3
     if flat.any():
         raise DescriptionError(
-            f"tetrahedron {int(flat.argmax())} has no volume; mend the mesh, or leave it out", file=source
+            f"tetrahedron {int(flat.argmax())} has no volume; repair the mesh, or remove it", file=source
         )
 
 

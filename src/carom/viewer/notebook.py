@@ -17,7 +17,7 @@ HEIGHT = 520
 _ALLOWED = "fullscreen; clipboard-write"
 _UNREACHABLE = """<p style="font: 14px system-ui, sans-serif">The simulation cannot be reached from here. It
 has ended, or the notebook server has no proxy: <code>pip install jupyter-server-proxy</code> and restart it.
-What needs no connection is a recording: <code>with world.record("run.html") as replay: ...</code> and
+A recording needs no connection: <code>with world.record("run.html") as replay: ...</code> and
 <code>replay</code> as the last line of a cell.</p>"""
 
 

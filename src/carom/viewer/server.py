@@ -247,7 +247,7 @@ class PageServer:
         try:
             content = await self._polling.answer(path)
         except ValueError:
-            return connection.respond(HTTPStatus.BAD_REQUEST, "The request does not say who asks.\n")
+            return connection.respond(HTTPStatus.BAD_REQUEST, "The request does not name its page.\n")
         headers = _headers("application/octet-stream", content, _POLICY, cache="no-store")
         return Response(HTTPStatus.OK, "OK", headers, content)
 

@@ -84,6 +84,6 @@ class Log:
             value = self._world.time if name == "time" else getattr(self._world, name)
             if np.shape(value) != rows.shape[1:]:
                 self.stop()
-                raise StateError("bodies have come or gone while the log was kept; it has been stopped")
+                raise StateError("bodies were added or removed; the log has been stopped")
             rows[self._count] = value
         self._count += 1

@@ -444,7 +444,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         for other in self.bodies.values():
             other.update_link_poses()
         raise SimulationError(
-            f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
+            f'body {body.id} ("{body.name}") has a velocity that is not finite; '
             f"the world is as it was before the step{cause and f': {cause}'}"
         )
 

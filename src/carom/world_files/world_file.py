@@ -212,7 +212,7 @@ def _guarded(path: Path, load: Callable[[], Any]) -> Any:
     try:
         return load()
     except _MEANINGLESS as problem:
-        raise DescriptionError(f"what it says makes no sense: {problem}", file=path) from problem
+        raise DescriptionError(f"its content is invalid: {problem}", file=path) from problem
 
 
 def _read(path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:

@@ -427,7 +427,9 @@ class BodyBatch:
         for joint in joints:
             if self._body.velocity_count[joint] != 1:
                 kind = JointType(self._body.spec.links[joint].joint_type).value
-                raise ValueError(f"joint {self.joint_names[joint]!r} is {kind}: it has not one freedom")
+                raise ValueError(
+                    f"joint {self.joint_names[joint]!r} is {kind}: it needs one degree of freedom"
+                )
 
     def _forces(self, max_forces: ArrayLike | None, places: np.ndarray) -> ArrayLike:
         if max_forces is None:

@@ -97,7 +97,5 @@ def _limit_row(engine: Engine, body: Body, joint: int) -> int:
     rows = np.flatnonzero(is_limit & (model["constraint_link"][:used] == body.first_link + 1 + joint))
     if not len(rows):
         name = body.spec.links[joint].joint_name
-        raise ValueError(
-            f"joint {name!r} has no limits: give it some in the world that these are copies of, before"
-        )
+        raise ValueError(f"joint {name!r} has no limits: set them in the original world before")
     return int(rows[0])

@@ -158,7 +158,7 @@ class Worlds:
         for world in worlds[:_MOST_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
             warnings.warn(
-                f"world {world} is halted: its body {name!r} came to a velocity that is not finite",
+                f"world {world} is halted: its body {name!r} has a velocity that is not finite",
                 SimulationWarning,
                 stacklevel=4,
             )

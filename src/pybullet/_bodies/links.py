@@ -75,7 +75,7 @@ def getLinkState(
     if index < 0:
         fail(
             "getLinkState failed; invalid linkIndex",
-            f"{index} is no link; for the base see getBasePositionAndOrientation.",
+            f"{index} is not a link; for the base see getBasePositionAndOrientation.",
         )
     with_velocity = _prepare(access, computeLinkVelocity, computeForwardKinematics)
     return _state(access, index, with_velocity)

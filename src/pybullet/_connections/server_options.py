@@ -120,7 +120,7 @@ def address_of(method: int, target: Target) -> Address:
         note = find(f"{kind}-{port}")
         keys.append(note.key if note else None)
     places = tuple(Note(target.host, port, key) for key in keys if key)
-    nobody = f"None of yours on this machine is found as {kind}-{port}, and no key is stated for others."
+    nobody = f"None of yours on this machine is found as {kind}-{port}, and no key is given for others."
     return Address(places, _A_MINUTE, logging.WARNING, nobody)
 
 

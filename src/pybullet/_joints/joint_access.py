@@ -134,7 +134,7 @@ class JointAccess:
             POSITION_CONTROL,
             PD_CONTROL,
         ):
-            fail(ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
+            fail(ILLEGAL_MODE, f"{mode} is not a control mode for a single joint.")
 
     def _reaction(self) -> Wrench:
         return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH

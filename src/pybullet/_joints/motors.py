@@ -244,7 +244,7 @@ def _set_array_carefully(
     client_of(physics_client_id)
     mode = integer(control_mode, "controlMode")
     if mode not in _MODES:
-        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of joints can have.")
+        fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of joints.")
     requested = indices(joint_indices, NO_INDICES, "jointIndices")
     if not requested:
         return

@@ -148,7 +148,7 @@ def setJointMotorControlMultiDofArray(
     client = client_of(physicsClientId)
     mode = integer(controlMode, "controlMode")
     if mode not in (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL):
-        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of such joints can have.")
+        fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of such joints.")
     requested = indices(jointIndices, NO_INDICES, "jointIndices")
     lists = {
         "targetPositions": _entries(targetPositions, "targetPositions"),

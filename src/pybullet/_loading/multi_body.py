@@ -278,7 +278,7 @@ def _rotation(values: Any, name: str) -> Quaternion:
 def _joint_type(value: Any, name: str) -> JointType:
     kind = integer(value, name)
     if kind not in JOINT_TYPES:
-        fail(_FAILED, f"{name} is {kind}, which is no joint that can be made here.")
+        fail(_FAILED, f"{name} is {kind}, which is not a joint type that can be made here.")
     return JOINT_TYPES[kind]
 
 

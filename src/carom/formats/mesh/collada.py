@@ -218,7 +218,7 @@ class ColladaReader:
         except ValueError:
             raise self.error(element, "it must hold numbers") from None
         if count is not None and len(values) != count:
-            raise self.error(element, f"{len(values)} numbers where {count} are due")
+            raise self.error(element, f"{len(values)} numbers instead of {count} are due")
         if not np.isfinite(values).all():
             raise self.error(element, "it must hold finite numbers")
         return values
