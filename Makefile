@@ -43,7 +43,7 @@ comma := ,
 
 VENV := .venv
 RUN := $(VENV)/bin/python
-PIP := $(RUN) -m pip --quiet --disable-pip-version-check
+PIP := $(RUN) tools/patiently.py installing $(RUN) -m pip --quiet --disable-pip-version-check
 
 .PHONY: help demo test quick check mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu wheels wine aarch64 installed oldest clean
 
@@ -54,7 +54,7 @@ help:
 
 $(VENV)/created:
 	@test -n "$(PYTHON)" || { echo "No Python >= 3.10 found; name one: make PYTHON=..." >&2; exit 1; }
-	$(PYTHON) -m venv $(VENV)
+	$(PYTHON) tools/patiently.py "making $(VENV)" $(PYTHON) -m venv $(VENV)
 	@touch $@
 
 # Without isolation: what builds the native library is installed here, and not once more for the installation.

@@ -33,6 +33,12 @@ def test_arrays_and_logging_wait_for_a_world_and_a_warning():
     assert not modules_after("import pybullet") & {"numpy", "logging", "carom.formats.urdf"}
 
 
+def test_a_rigid_robot_does_not_load_what_soft_ones_need():
+    loaded = modules_after('import carom\ncarom.World().load_urdf("r2d2.urdf")')
+    assert "carom.formats.urdf.reader" in loaded
+    assert not loaded & {"carom.formats.urdf.deformable", "carom.description.deformable", "carom.soft.build"}
+
+
 @pytest.mark.parametrize(
     "statement", ["import carom", "import pybullet_data", "from carom.control import PID"]
 )

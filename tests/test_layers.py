@@ -19,6 +19,7 @@ FLOORS = (
         "carom.checks",
         "carom.errors",
         "carom.logger",
+        "carom.record",
         "carom.suggestions",
         "carom.version",
         "eglRenderer",
@@ -65,12 +66,12 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
 # Rooms that are kept free of the others below them, and what they may import.
 KEPT_APART = {
-    "carom.description": {"carom.errors", "carom.layouts", "carom.native"},
-    "carom.geometry": {"carom.errors", "carom.description", "carom.native"},
-    "carom.layouts": set(),
+    "carom.description": {"carom.errors", "carom.record", "carom.layouts", "carom.native"},
+    "carom.geometry": {"carom.errors", "carom.record", "carom.description", "carom.native"},
+    "carom.layouts": {"carom.record"},
     # Device code: nothing that runs on the host imports it but what compiles and launches it.
     "carom.kernels": {"carom.layouts"},
-    "carom.native": {"carom.errors", "carom.layouts"},
+    "carom.native": {"carom.errors", "carom.record", "carom.layouts"},
     # They know nothing of physics.
     "carom.remote": {"carom.errors"},
     "carom.cluster": {"carom.errors"},

@@ -106,8 +106,9 @@ def test_fast_pictures_get_finer_again(replay: Page):
             return pace.sharpness;
           };
           const first = pace.sharpness;
-          const single = (told(15, 2), told(900, 1), told(30, 2));
-          const slow = told(50, 5), slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
+          const single = (told(15, 2), told(900, 1), told(30, 5));
+          const some = (told(30, 5), told(50, 3)), slow = told(50, 8);
+          const slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
           pace.wait(600);
           const still = (told(500, 50), pace.sharpness);
           pace.wait(0);
@@ -115,7 +116,7 @@ def test_fast_pictures_get_finer_again(replay: Page):
           pace.hold(true);
           pace.wait(9999);
           const filmed = (told(500, 50), pace.sharpness);
-          return [first, single, slow, slowest, enough, fast, still, moving, filmed];
+          return [first, single, some, slow, slowest, enough, fast, still, moving, filmed];
         }"""
     )
-    assert steps == [0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1, 1]
+    assert steps == [0.5, 0.5, 0.4, 0.3, 0.25, 0.25, 1, 1, 1, 1]

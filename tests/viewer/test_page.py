@@ -233,6 +233,19 @@ def test_a_page_loaded_again_shows_it_all_again(page: Page):
     page.page.get_by_label("gain").wait_for()
 
 
+def test_a_page_whose_graphics_were_taken_away_shows_it_all_again(page: Page):
+    red_ball((0, 0, 0.5))
+    p.resetDebugVisualizerCamera(2, 40, -30, [0, 0, 0.5])
+    page.wait_for_picture(red_at((0, 0, 0.5)))
+    page.page.evaluate("window.graphics = app.renderer.gl.getExtension('WEBGL_lose_context')")
+    page.page.evaluate("graphics.loseContext()")
+    page.page.wait_for_selector("#notice:not([hidden])")
+    assert "graphics" in page.page.inner_text("#notice")
+    page.page.evaluate("graphics.restoreContext()")
+    page.until("window.app && !window.graphics")
+    page.wait_for_picture(red_at((0, 0, 0.5)))
+
+
 def test_the_loop_of_a_script_ends_by_the_close_button(page: Page):
     ended = threading.Event()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,12 +12,13 @@ from carom.description.transform import rotation_matrix
 from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
 from carom.native.products import dots, length, product
+from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Node:
     """A joint and the rigid body behind it; the first node is the base.
 
@@ -43,7 +43,7 @@ class Node:
     axes: np.ndarray
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class End:
     """A link, for points given on it.
 

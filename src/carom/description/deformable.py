@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from carom.record import record
 
-@dataclass(frozen=True, slots=True)
+
+@record
 class SpringCoefficients:
     """`<spring>`: along the edges of cells.
 
@@ -21,7 +22,7 @@ class SpringCoefficients:
     bending: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class LameCoefficients:
     """`<neohookean>` or `<corotated>`: of tetrahedra.
 
@@ -36,7 +37,7 @@ class LameCoefficients:
     damping: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Deformable:
     """`<deformable>` or `<reduced_deformable>`.
 

@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
+from carom.record import record
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Sphere:
     """A ball around the origin of its frame."""
 
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Box:
     """A cuboid centred on its frame; `half_extents` is half its size along x, y and z."""
 
     half_extents: Vector3
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Cylinder:
     """A cylinder centred on its frame, its axis along z; `length` is its full height."""
 
@@ -35,7 +36,7 @@ class Cylinder:
     length: float
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Capsule:
     """A cylinder of height `length` along z with a half ball of `radius` on each end."""
 
@@ -43,14 +44,14 @@ class Capsule:
     length: float
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Plane:
     """The half space below the origin of its frame; `normal` points out of it."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Mesh:
     """A triangle mesh from a file.
 
@@ -67,14 +68,14 @@ class Mesh:
     asked_for: str = field(default="", compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class SignedDistanceField:
     """A shape given by distances on a grid, from a file."""
 
     path: Path
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class ConvexHull:
     """The convex hull of points.
 
@@ -87,7 +88,7 @@ class ConvexHull:
     scale: Vector3 = (1.0, 1.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class TriangleMesh:
     """Triangles that are what they are: no hull is made of them.
 
@@ -108,7 +109,7 @@ class TriangleMesh:
     uvs: NDArray[np.float64] | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class Heightfield:
     """A landscape: heights on a grid, centred on its frame, z up.
 

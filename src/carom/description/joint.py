@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import JointCode
+from carom.record import record
 
 
 class JointType(Enum):
@@ -40,7 +40,7 @@ JOINT_CODE = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class JointLimit:
     """Bounds of a joint; `lower > upper` means unlimited.
 
@@ -59,7 +59,7 @@ class JointLimit:
     twist: float = -1.0
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Mimic:
     """This joint follows another: position = multiplier · other + offset."""
 
@@ -68,7 +68,7 @@ class Mimic:
     offset: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class SafetyController:
     """Soft limits of a drive, as the file states them."""
 
@@ -78,7 +78,7 @@ class SafetyController:
     k_velocity: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Joint:
     """A joint between two links of a robot.
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from carom.description.geometry import Geometry
 from carom.description.pose import IDENTITY, Pose
+from carom.record import record
 
 Rgba = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Inertial:
     """Mass and rotational inertia about the centre of mass.
 
@@ -26,7 +27,7 @@ class Inertial:
     tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Material:
     """Looks of a visual: colour, specular colour and texture file."""
 
@@ -36,7 +37,7 @@ class Material:
     texture: Path | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Collision:
     """A shape that touches; `frame` is its pose in the link frame.
 
@@ -53,7 +54,7 @@ class Collision:
     ends_frame: Pose | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Visual:
     """A shape that is seen; `frame` is its pose in the link frame."""
 
@@ -64,7 +65,7 @@ class Visual:
     user_data: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class ContactParameters:
     """How a link touches; None means the engine's default.
 
@@ -89,7 +90,7 @@ class ContactParameters:
     friction_anchor: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Link:
     """One rigid body of a robot."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from carom.record import record
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Pose:
     """Position and orientation of a frame in its parent frame.
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from carom.description.deformable import Deformable
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
+from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.description.deformable import Deformable
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Robot:
     """Links and joints as a file describes them, checked to form one tree.
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from carom.record import record
 
 DEFAULT_TIME_STEP = 1.0 / 240.0
 # Bullet's -0.04 is a float32.
 DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class EngineParameters:
     """The parameters of `setPhysicsEngineParameter` and similar functions.
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
+
+from carom.record import record
 
 # Scripts written against a source tree name files relative to a `data` folder near the working directory.
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")
 _SCHEMES = ("package://", "model://")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class AssetSearch:
     """The order in which places are searched.
 

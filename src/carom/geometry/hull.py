@@ -7,7 +7,6 @@ vertices. Points that do not span a volume are given a little thickness.
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from carom.geometry.merge_faces import merged_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
 from carom.native.products import dots, length, product
+from carom.record import record
 
 Points = NDArray[np.float64]
 Triangle = tuple[int, int, int]
@@ -149,7 +149,7 @@ def _directions_beside(spanned: Points) -> list[Points]:
     return [aside, np.cross(along, aside)]
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class _Face:
     """A triangle of the growing hull.
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.native.products import dots
+from carom.record import record
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class Polyhedron:
     """Flat faces around a solid, or the triangles of a surface. The arrays are read-only.
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.geometry.polyhedron import Polyhedron
+from carom.record import record
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class TriangleHierarchy:
     """A complete binary tree of boxes over the faces of a surface.
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
+
+from carom.record import record
 
 _SCALARS: dict[str, Any] = {
     "int32": ctypes.c_int32,
@@ -22,7 +22,7 @@ _SCALARS: dict[str, Any] = {
 }
 
 
-@dataclass(frozen=True)
+@record
 class Type:
     """A number, or a fixed number of them.
 
@@ -36,7 +36,7 @@ class Type:
     shape: tuple[int, ...] = ()
     kind: str = "scalar"
 
-    @cached_property
+    @property
     def c_type(self) -> Any:
         """The type in C: a number or an array."""
         c_type = _SCALARS[self.scalar]
@@ -45,7 +45,7 @@ class Type:
         return c_type
 
 
-@dataclass(frozen=True)
+@record
 class ArrayType:
     """An array of one or two dimensions; the first of two is the world axis.
 

@@ -6,19 +6,20 @@ appends it to the flat arrays of a `Model`. It is what the information getters r
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.pose import IDENTITY, Vector3
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
+from carom.record import record
 
 BASE = -1
 DEFAULT_CONTACT = ContactParameters()
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class LinkSpec:
     """One link and the joint that carries it.
 
@@ -77,7 +78,7 @@ class LinkSpec:
     user_data: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class BodySpec:
     """A tree of links.
 

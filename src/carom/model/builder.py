@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from typing import Any
 
@@ -30,6 +30,7 @@ from carom.layouts.model import Model, State
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.tables import ArrayTable
+from carom.record import record
 
 # Bullet's default, a float32 in its source.
 DEFAULT_LINK_DAMPING = float(np.float32(0.04))
@@ -56,7 +57,7 @@ _INDEX_FIELDS = {
 }
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class TreeRows:
     """Where a body is in the flat arrays."""
 

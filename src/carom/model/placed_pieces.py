@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import sqrt
 
 from carom.description import Mesh, SignedDistanceField
@@ -14,6 +14,7 @@ from carom.model.bounds import Bounds
 from carom.model.inertia import is_in_place, placement
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, is_swept
+from carom.record import record
 
 _log = Logger(__name__)
 
@@ -21,7 +22,7 @@ AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class PlacedPiece:
     """A piece and where it is.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,6 +18,7 @@ from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, has_own_margin, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
 from carom.native.tables import ArrayTable
+from carom.record import record
 
 # Collision groups of bodies that move and of fixed bases, and the groups each collides with.
 MOVING_GROUP, MOVING_MASK = 1, -1
@@ -70,7 +71,7 @@ class Surface(Protocol):
     anisotropic_friction: tuple[float, float, float]
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class BodyShapes:
     """Where the shapes of a body are.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 
@@ -35,6 +34,7 @@ from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierar
 from carom.layouts.codes import Rolling, ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.trigonometry import cos, sin
+from carom.record import record
 
 MOST_HULL_VERTICES = 512
 """Hulls of finer meshes are simplified to so many vertices."""
@@ -54,7 +54,7 @@ _CACHED = 256
 MeshGeometry = ConvexHull | TriangleMesh
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class ShapePiece:
     """One convex shape, one triangle mesh or one height field.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from carom.model.builder import TreeRows
 from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
 from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
+from carom.record import record
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
 # Which axis the values of a field count on; they move when rows of that axis are deleted.
@@ -30,7 +31,7 @@ _INDEX_FIELDS = {
 }
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class SoftRows:
     """Where a soft body is.
 
@@ -47,7 +48,7 @@ class SoftRows:
     count: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class Anchor:
     """A node that is held.
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import sqrt
 from typing import TYPE_CHECKING
+
+from carom.record import record
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,7 +17,7 @@ LENGTH, STIFFNESS, DAMPING = 0, 1, 2
 _SHARE_OF_EDGE = 0.4
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class Skin:
     """A mesh that follows the nodes of a soft body.
 
@@ -31,7 +32,7 @@ class Skin:
     triangles: NDArray[np.int32]
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class SoftSpec:
     """Nodes, and what is between them.
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from carom.description import Joint, Link, Robot
+from carom.record import record
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class TreeNode:
     """A link, the joint that carries it, and what it carries.
 

@@ -13,10 +13,10 @@ import ctypes
 import sys
 import sysconfig
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from carom.native.library import library
+from carom.record import record
 
 MOST_PARAMETERS = 26
 MOST_GROUPS = 8
@@ -209,7 +209,7 @@ class _QuickCall(ctypes.Structure):
     )
 
 
-@dataclass(frozen=True)
+@record
 class Parameter:
     """A parameter of a quick call.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
@@ -17,6 +17,7 @@ from carom.errors import DescriptionError
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.body_spec import BASE, LinkSpec
+from carom.record import record
 from carom.render.images import read_image
 from carom.render.lights import Light
 from carom.render.meshes import shape_mesh
@@ -41,7 +42,7 @@ _GOOGLY: tuple[Rgba, ...] = (
 )
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class ShapeLook:
     """One visible shape of a link.
 
@@ -64,7 +65,7 @@ class ShapeLook:
     two_sided: bool = False
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class Appearance:
     """The looks of one world; get it from `appearance_of`.
 

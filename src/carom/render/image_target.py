@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +12,7 @@ from carom.native.kernels import image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product
 from carom.native.tables import put_zeros
+from carom.record import record
 from carom.render.lights import Light
 from carom.render.parallel import run_all
 from carom.render.projection import Matrix, unit_vector
@@ -21,7 +21,7 @@ from carom.render.shadows import ShadowCamera, shadow_camera
 from carom.render.view_buffers import Task, ViewBuffers
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class RawImage:
     """The results of one image; row 0 is the top.
 
@@ -50,7 +50,7 @@ class RawImage:
         )
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class _Shadows:
     """The view of the light, and the tasks that depend on it."""
 

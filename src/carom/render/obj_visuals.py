@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import chain
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.mesh.reader import MAX_FILE_BYTES
+from carom.record import record
 from carom.render.mtl import ObjMaterial, read_materials
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
@@ -24,7 +25,7 @@ _GREATEST = float(np.finfo(np.float32).max)
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class _Lines:
     """An OBJ file taken apart.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
@@ -15,6 +15,7 @@ from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array
+from carom.record import record
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
 from carom.render.render_mesh import RenderMesh
@@ -34,7 +35,7 @@ LINK_SHIFT = 24
 """Labels hold the body in the bits below and the link, from 1, above."""
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class Piece:
     """Part of a mesh with its own vertices, and a ball around it."""
 
@@ -69,7 +70,7 @@ def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
     return tuple(pieces)
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class _Columns:
     """The arrays of a scene while they are collected."""
 

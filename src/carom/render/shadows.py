@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import isinf
 
 import numpy as np
 
 from carom.native.products import product
+from carom.record import record
 from carom.render.lights import Light
 from carom.render.projection import Matrix, look_at, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
@@ -25,7 +25,7 @@ _PARALLEL_BIAS = 3.0
 """Of parallel light [pixels of the shadow map]."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class ShadowCamera:
     """The light as a camera.
 

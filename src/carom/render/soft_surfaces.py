@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.transform import rotation_matrix
+from carom.record import record
 from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def surface_mesh(body: SoftBody) -> RenderMesh:
     return mesh_of(places, node_normals(vertices, triangles), uvs, triangles)
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class SoftSurface:
     """The surface of a soft body in the arrays of a scene, three vertices for each triangle.
 

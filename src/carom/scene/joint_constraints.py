@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ import numpy as np
 from carom.layouts.codes import LIMIT_KIND, MAX_ROWS_PER_CONSTRAINT, MOTOR_KIND, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
+from carom.record import record
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from carom.scene.user_constraints import UserConstraint
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class JointConstraint:
     """A motor or a limit of one joint, or a user constraint.
 

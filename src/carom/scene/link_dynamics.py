@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
+from carom.record import record
 
 DEFAULT_FRICTION = 0.5
 DEFAULT_LIMIT_IMPULSE = 100.0
@@ -15,7 +14,7 @@ DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class LinkDynamics:
     """Inertia, surface and joint limits of a link.
 

@@ -8,7 +8,7 @@ shapes of bodies, constraints, gravity and the other parameters are not part of 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import THERE
+from carom.record import record
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
@@ -29,7 +30,7 @@ _CONTACT = "contact"
 _DRIVES = ("dof_motor", "dof_pd")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class BodyLayout:
     """The properties of a body that a state has to match.
 
@@ -61,7 +62,7 @@ class BodyLayout:
         return mine == (other.links, other.positions, other.dofs, other.nodes)
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class Snapshot:
     """A state; get one from `World.snapshot`.
 
@@ -83,7 +84,7 @@ class Snapshot:
     user_impulses: np.ndarray = field(default_factory=lambda: np.zeros((0, 6)))
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Layout:
     """Which bodies a world has, in the order of their rows.
 

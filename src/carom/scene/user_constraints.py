@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
 from carom.native.tables import ArrayTable
+from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -26,7 +26,7 @@ ROWS = {
 }
 
 
-@dataclass(slots=True, eq=False)
+@record(frozen=False, eq=False)
 class UserConstraint:
     """One constraint.
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from carom.model.body_spec import BASE, BodySpec
 from carom.native.undo import Undo
+from carom.record import record
 
 WHOLE = -1
 """Instead of a visual shape: the text belongs to the link, or to the body if the link is its base."""
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class UserDatum:
     """One text.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, overload
@@ -25,6 +24,7 @@ from carom.native.kernels import follow_nodes_kernel, forward_kinematics_kernel,
 from carom.native.launch import KernelStructs, TreeLaunch
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
+from carom.record import record
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class Derived:
     """What is derived from the bodies, constraints and arrays of a world, computed on demand."""
 

@@ -9,11 +9,11 @@ detour. No function has to know. Nor does the native library, which does not try
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
 from threading import Lock
 from types import CodeType, FunctionType
 from typing import Any, Protocol
 
+from carom.record import record
 from pybullet._calls.builtin import UsualForm, exports
 from pybullet._calls.quick import pause
 
@@ -32,7 +32,7 @@ _ASKING = (
 )
 
 
-@dataclass(frozen=True)
+@record
 class Function:
     """A function of the public interface.
 

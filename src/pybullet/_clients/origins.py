@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from carom.record import record
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@record(eq=False)
 class FileLoad:
     """A call that loaded a file.
 
@@ -23,7 +24,7 @@ class FileLoad:
     count: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Origin:
     """Origin of a body: the `index`-th body of a load."""
 

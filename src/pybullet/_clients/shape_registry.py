@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from carom.description import Collision, Visual
 from carom.native.undo import Undo
+from carom.record import record
 
 Shape = TypeVar("Shape")
 
 
-@dataclass(slots=True)
+@record(frozen=False)
 class CollisionShape:
     """A shape made by `createCollisionShape`.
 

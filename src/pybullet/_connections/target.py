@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
+from carom.record import record
 from pybullet._calls.constants import SHARED_MEMORY_KEY
 
 _WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
 
 
-@dataclass(frozen=True)
+@record
 class Target:
     """The arguments of `connect` after the method.
 

@@ -9,9 +9,6 @@ from carom.formats.robot.geometry import shape_file
 from carom.formats.urdf.context import UrdfContext
 from carom.formats.xml_element import Element
 
-TAGS = ("reduced_deformable", "deformable")
-"""The elements that make a robot a soft body; the first of them counts."""
-
 _SUFFIXES = (".obj", ".vtk")
 _DEFAULT_MARGIN = 0.02
 _DEFAULT_FRICTION, _REDUCED_FRICTION = 1.0, 0.0

@@ -11,12 +11,14 @@ from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_o
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
 from carom.formats.urdf.context import UrdfContext
-from carom.formats.urdf.deformable import TAGS, read_deformable
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.link import read_link
 from carom.formats.urdf.material import read_global_materials
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
+
+# The elements that make a robot a soft body; the first of them counts.
+_SOFT = ("reduced_deformable", "deformable")
 
 
 def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
@@ -59,7 +61,7 @@ def parse_urdf(
     element = parse_root(data, file, "robot")
     context = UrdfContext(file, element, scale, search)
     name = context.required(element, "name")
-    for tag in TAGS:
+    for tag in _SOFT:
         soft = element.first(tag)
         if soft is not None:
             return _soft_robot(context, name, soft), context.references
@@ -81,6 +83,8 @@ def parse_urdf(
 
 def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
     """A robot that is a soft body; as in PyBullet its links and joints do not count."""
+    from carom.formats.urdf.deformable import read_deformable
+
     deformable = read_deformable(context, element)
     return Robot(
         name,

@@ -11,6 +11,19 @@ function say(text) {
   notice.hidden = !text;
 }
 
+/**
+ * Browsers take a page's graphics away when the machine sleeps, the driver is restarted, or a notebook has many
+ * views. What comes back is empty, so the page begins again.
+ */
+function surviveLostGraphics() {
+  const canvas = document.getElementById("view");
+  canvas.addEventListener("webglcontextlost", (event) => {
+    event.preventDefault();
+    say("The browser has taken the graphics away. Waiting for them…");
+  });
+  canvas.addEventListener("webglcontextrestored", () => location.reload());
+}
+
 function watch() {
   const send = (message) => connection.send(message);
   const app = (window.app = new App(send, say));
@@ -24,6 +37,7 @@ function watch() {
 }
 
 async function start() {
+  surviveLostGraphics();
   const recording = document.getElementById("recording");
   if (recording) await playRecording(recording.textContent.trim(), (window.app = new App(() => {}, say)));
   else watch();

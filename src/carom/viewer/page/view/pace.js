@@ -5,11 +5,11 @@ const STEPS = [0.25, 0.3, 0.4, 0.5, 0.65, 0.8, 1];
 /** Where the processor draws, the first picture has half of them. */
 const MODEST = STEPS.indexOf(0.5);
 /** Pictures that take longer than this become coarser; those that take less, finer: 30 a second are wanted [ms]. */
-const SLOW_MS = 36;
+const SLOW_MS = 34;
 const VERY_SLOW_MS = 70;
 const FAST_MS = 20;
-/** How many pictures in a row are looked at, so that a single slow one changes nothing. */
-const PICTURES = 5;
+/** So many pictures in a row are looked at. The slowest of them does not count: something else may have run. */
+const PICTURES = 8;
 /** After so long without a change nothing is going on, and after so long there is time for the best picture [ms]. */
 const STILL_MS = 500;
 const RESTING_MS = 1500;
@@ -56,9 +56,10 @@ export class Pace {
     if (this.still || this.held !== null) return;
     this.durations.push(duration);
     if (this.durations.length < PICTURES) return;
-    const middle = this.durations.sort((a, b) => a - b)[PICTURES >> 1];
+    const total = this.durations.reduce((sum, each) => sum + each, -Math.max(...this.durations));
+    const mean = total / (PICTURES - 1);
     this.durations = [];
-    const change = middle > VERY_SLOW_MS ? -2 : middle > SLOW_MS ? -1 : middle < FAST_MS ? 1 : 0;
+    const change = mean > VERY_SLOW_MS ? -2 : mean > SLOW_MS ? -1 : mean < FAST_MS ? 1 : 0;
     this.step = Math.min(Math.max(this.step + change, 0), STEPS.length - 1);
   }
 }
