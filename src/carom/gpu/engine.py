@@ -50,7 +50,7 @@ class DeviceEngine(Engine):
         """So many worlds like one there is.
 
         Args:
-            device: Where they are to be.
+            device: The device of the worlds.
             arrays: Model and state of the one.
             contact_arrays: Its shapes, contacts and user constraints.
             count: Number of worlds.

@@ -1,4 +1,4 @@
-"""The native library: finding the one for this machine, loading it, and what is known about its kernels."""
+"""The native library: finding the one for this machine, loading it, and data of its kernels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Library:
 
     Args:
         path: The file; `manifest.json`, written when it was built, is beside it.
-        digest: What it has to be made from, as `source_digest` says.
+        digest: The required digest, as from `source_digest`.
 
     Attributes:
         path: The file.

@@ -111,7 +111,7 @@ class ArrayTable:
         numpy: The arrays by the names of their fields. An array of structs is there as one array for
             each of their fields, named after both: `link_mass` is the field `mass` of `link`.
         capacity: Rows there are, by axis.
-        replacements: How often an array has been replaced by another.
+        replacements: Number of times that an array was replaced by another.
     """
 
     def __init__(
@@ -164,7 +164,7 @@ class ArrayTable:
         Undo().at_once(put)
 
     def _follow(self) -> None:
-        """Bring everything up to date that follows from the arrays."""
+        """Update everything derived from the arrays."""
         self.replacements += 1
         self._made = None
         self._bytes.clear()
@@ -275,7 +275,7 @@ class ArrayTable:
     def removal(
         self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int], targets: Mapping[str, str]
     ) -> Callable[[], None]:
-        """Make ready to remove a run of rows of some axes; later ones move up and the freed ones are zero.
+        """Prepare to remove consecutive rows of some axes; later rows move up and the freed rows are zero.
 
         Args:
             cuts: First row and number of rows, by axis.

@@ -1,4 +1,4 @@
-"""The outside of a saved world: a header that tells rubbish and damage, a document, and blocks of bytes.
+"""The container of a saved world: a header with checks, a document, and blocks of bytes.
 
 All numbers are little-endian.
 

@@ -102,7 +102,7 @@ def split_impulses(contacts: dict[str, np.ndarray]) -> None:
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
-    """See that bodies have no more rows than the file has, so that counts cannot ask for any memory."""
+    """Check that bodies have no more rows than the file has, so that counts cannot exhaust memory."""
     for axis, counts in (
         ("link_pose", [body.links for body in bodies]),
         ("position", [body.positions for body in bodies]),

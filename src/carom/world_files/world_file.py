@@ -45,7 +45,7 @@ _MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionEr
 
 
 class Part(Protocol):
-    """What a layer above the engine adds to a file."""
+    """Data of a package above the engine in a file."""
 
     def save(self, world: World, writer: Writer) -> Any:
         """The text."""

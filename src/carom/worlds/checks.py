@@ -48,7 +48,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
 
     Args:
         where: A mask (count,), indices of worlds, or None for all.
-        count: How many worlds there are.
+        count: Number of worlds.
 
     Raises:
         ValueError: A mask has another length.
