@@ -28,7 +28,7 @@ WITHOUT_LIMIT = (JointType.CONTINUOUS,)
 NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
 # Its positions are lengths, which scale with the robot.
 SLIDES = (JointType.PRISMATIC,)
-# What the engine takes it for.
+# Its type in the engine.
 JOINT_CODE = {
     JointType.REVOLUTE: JointCode.REVOLUTE,
     JointType.CONTINUOUS: JointCode.REVOLUTE,

@@ -15,7 +15,7 @@ MJCF_SUFFIXES = (".xml", ".mjcf")
 
 
 def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[PlacedRobot]:
-    """All robots of a file, and where it puts them.
+    """All robots of a file, and their poses.
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.

@@ -9,7 +9,7 @@ from pathlib import Path
 _CALL = "p.setAdditionalSearchPath(pybullet_data.getDataPath())"
 # How alike names have to be for one to be meant by the other.
 _LIKENESS = 0.75
-# Longer ones are nobody's, and take long to compare.
+# Longer names match none, and take long to compare.
 _LONGEST_NAME = 255
 
 
@@ -25,7 +25,7 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
     """What to do about a file that was not found, as the end of a sentence; empty if there is nothing to say.
 
     Args:
-        name: What was looked for.
+        name: The name that was searched.
         searched: Directories that were searched besides the working directory.
     """
     folder = shipped_folder()

@@ -90,7 +90,7 @@ class BodySpec:
         flags: The loading flags it was made with.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
-        soft: What a soft body is made of; its base is fixed and has neither shapes nor links.
+        soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
     """
 
     name: str

@@ -283,7 +283,7 @@ class WorldArrays:
         self.used.update(used)
 
     def removal(self, rows: TreeRows, others: Sequence[TreeRows]) -> Callable[[], None]:
-        """Make ready to take a body's rows out.
+        """Prepare to remove a body's rows.
 
         Args:
             rows: Its rows.

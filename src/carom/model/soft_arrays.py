@@ -36,7 +36,7 @@ class SoftRows:
     """Where a soft body is.
 
     Attributes:
-        rows: Rows of the tree that stands for it; somebody else keeps them up to date.
+        rows: Rows of the tree that stands for it, which are updated elsewhere.
         spec: Its specification.
         first: First row on each axis.
         count: Rows on each axis.
@@ -137,7 +137,7 @@ class SoftArrays:
         numpy["face_nodes"][rows["face"], :3] = spec.faces + first["node"]
 
     def write_anchors(self) -> None:
-        """Bring the arrays up to date with the anchors there are."""
+        """Update the arrays from the present anchors."""
         numpy = self.table.numpy
         for soft in self.bodies:
             nodes = slice(soft.first["node"], soft.first["node"] + soft.count["node"])
@@ -174,7 +174,7 @@ class SoftArrays:
         return go_back
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Make ready to take out what belongs to a body, soft or not, while its rows are still those it has.
+        """Prepare to remove what belongs to a body, soft or not, while its rows are still present.
 
         Returns:
             A function that does it; it can be called again if it was interrupted.

@@ -1,4 +1,4 @@
-"""What a soft body is made of, ready for the engine."""
+"""Specifications of soft bodies, ready for the engine."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Skin:
 
     Attributes:
         nodes: (v, k) nodes that each vertex follows.
-        weights: (v, k) by how much; they add up to 1.
+        weights: (v, k) weights, which add up to 1.
         triangles: (t, 3) its vertices.
     """
 
@@ -34,7 +34,7 @@ class Skin:
 
 @record(frozen=False, eq=False)
 class SoftSpec:
-    """Nodes, and what is between them.
+    """Nodes, springs and tetrahedra.
 
     Attributes:
         nodes: (n, 3) places at rest in the frame of the body [m].

@@ -156,7 +156,7 @@ class ColladaReader:
         raise self.error(vertices, "it has no POSITION input with a source in this mesh")
 
     def shared_input(self, mesh: Element, primitive: Element) -> tuple[Element, int] | None:
-        """What the corners at one place are the same in, `<vertices>`, and the place of its index."""
+        """The input that the corners of one vertex share, `<vertices>`, and the position of its index."""
         entries = list(inputs(primitive, "VERTEX"))
         vertices = referenced(mesh, "vertices", entries[-1]) if entries else None
         return None if vertices is None else (vertices, self.offset(entries[-1]))
