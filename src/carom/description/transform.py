@@ -52,7 +52,7 @@ def quaternion_from_matrix(m: Matrix3) -> Quaternion:
 
 
 def turns_about_axes(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """Product of rotations [rad] about the fixed axes x, y, z in this order: of unit length up to rounding."""
+    """Product of rotations [rad] about the fixed axes x, y, z in this order; of unit length."""
     sr, cr = sin(roll / 2.0), cos(roll / 2.0)
     sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
     sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)

@@ -52,7 +52,7 @@ else:
 
 @struct
 class Scene:
-    """Everything there is to be drawn, at rest: changes only when bodies or their looks change."""
+    """Everything visible, in link frames: changes only when bodies or their appearance change."""
 
     vertex_position: Vectors3  # in the inertial frame of the link
     vertex_normal: Vectors3

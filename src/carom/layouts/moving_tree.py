@@ -1,4 +1,4 @@
-"""What the kernels of inverse dynamics, mass matrices, Jacobians and stable PD control work on.
+"""Data of the kernels of inverse dynamics, mass matrices, Jacobians and stable PD control.
 
 A *node* is a joint that moves, with all links that move as one behind it; node 0 is the base. A node's frame
 has its origin at the joint. Hinges turn about z; the other axes are as convenient. Everything about a node
@@ -110,7 +110,7 @@ class Tree:
 
 @struct
 class Control:
-    """What the joints are to do, and the memory for finding out how."""
+    """Targets of the joints, and workspace of the controller."""
 
     coordinate_target: Reals
     dof_target_rate: Reals

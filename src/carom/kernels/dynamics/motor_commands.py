@@ -66,7 +66,7 @@ def command_motors_kernel(
 
     Args:
         state: The state of all worlds.
-        commands: What the motors are told.
+        commands: The commands of the motors.
         world: Their world.
         count: How many joints there are.
         default_force: Force of motors whose forces are not given [N or N m].

@@ -1,4 +1,4 @@
-"""The nearest points of two shapes, however far apart, or the deepest ones."""
+"""The nearest points of two shapes at any distance, or the deepest ones."""
 
 import warp as wp
 

@@ -181,7 +181,7 @@ def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: I
 
 @func
 def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Add what the solver found to the velocities of a tree."""
+    """Add the solver's change to the velocities of a tree."""
     bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     delta = model.tree[tree].first_delta

@@ -19,7 +19,7 @@ from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, s
 
 @func
 def body_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
-    """What the solver has changed so far about the velocity of a rigid body."""
+    """The solver's change of a rigid body's velocity so far."""
     first = scratch.delta_velocity[world, delta]
     second = scratch.delta_velocity[world, delta + 1]
     return Vector8(first[0], first[1], first[2], first[3], second[0], second[1], second[2], second[3])
