@@ -34,7 +34,7 @@ class Current(gymnasium.Env[np.ndarray, np.ndarray]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begin an episode."""
+        """Start an episode."""
         super().reset(seed=seed)
         if seed is not None:
             self._env.seed(seed)
@@ -42,7 +42,7 @@ class Current(gymnasium.Env[np.ndarray, np.ndarray]):
         return self._env.reset(), {}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Go on by a step."""
+        """Take a step."""
         observation, reward, over, _ = self._env.step(action)
         self._steps += 1
         return observation, float(reward), bool(over), self._steps >= self._most, {}

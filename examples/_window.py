@@ -1,4 +1,4 @@
-"""What the examples with a window share: how long they run, and whether anybody looks."""
+"""Shared code of the examples with a window: sliders, buttons, real time and `--headless`."""
 
 import sys
 import time
@@ -14,13 +14,13 @@ def connect(window):
 
 
 def slider(name, lower, upper, start):
-    """A function that says where a slider is; without a window it stays at its start."""
+    """Returns a function for the value of a slider; without a window that is its start value."""
     number = p.addUserDebugParameter(name, lower, upper, start)
     return (lambda: p.readUserDebugParameter(number)) if number >= 0 else (lambda: start)
 
 
 def button(name):
-    """A function that says whether a button was pressed since the last call; without a window it never is."""
+    """Returns a function: whether a button was pressed since the last call; never without a window."""
     number = p.addUserDebugParameter(name, 1, 0, 0)
     seen = 0.0
 
@@ -33,7 +33,7 @@ def button(name):
 
 
 def steps(duration, window):
-    """Counts steps until the time is over or the user ends it by ESC; with a window, in real time."""
+    """Counts steps until the duration is over or the user presses ESC; with a window, in real time."""
     began, count = time.perf_counter(), 0
     while p.isConnected() and count * TIME_STEP < duration:
         if 27 in p.getKeyboardEvents():

@@ -31,9 +31,9 @@ NOTHING = -1
 """Body of pixels that show nothing."""
 
 DAYLIGHT = Light(ambient=0.5, diffuse=0.5, distance=inf, shadow=True, shade=0.4)
-"""Light of a camera unless told otherwise: parallel, with shadows."""
+"""Default light of a camera: parallel, with shadows."""
 
-# Eyes look along -z with y up, cameras along z with y down.
+# OpenGL's eye looks along -z with y up, cameras along z with y down.
 _EYE_FROM_CAMERA = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -52,13 +52,13 @@ class PointCloud(NamedTuple):
 
 
 class CameraImage:
-    """What a camera saw at one time. Row 0 is the top; arrays belong to the image alone.
+    """The image of a camera at one time. Row 0 is the top; no other image shares its arrays.
 
     Attributes:
-        colour: (height, width, 3) uint8 red, green and blue; white where there is nothing.
-        depth: (height, width) float32 distance along the optical axis [m]; infinite where there is nothing.
-        body_ids: (height, width) int32 ids of bodies; -1 where there is nothing.
-        link_indices: (height, width) int32 links of those bodies; -1 is the base, and nothing.
+        colour: (height, width, 3) uint8 red, green and blue; white for the background.
+        depth: (height, width) float32 distance along the optical axis [m]; infinite for the background.
+        body_ids: (height, width) int32 ids of bodies; -1 for the background.
+        link_indices: (height, width) int32 links of those bodies; -1 is the base, and the background.
         camera_pose: World pose of the camera at that time.
     """
 
@@ -80,7 +80,7 @@ class CameraImage:
         self.link_indices: np.ndarray = np.where(nothing, 0, label >> LINK_SHIFT).astype(np.int32) - 1
         self.camera_pose = camera_pose
         self._intrinsics = intrinsics
-        # Bodies may have gone by the time the image is looked at; their names may not.
+        # Bodies may be removed after the image is taken; their names are kept.
         self._names = {
             body.id: (body.name, [link.name for link in (body.spec.base, *body.spec.links)])
             for body in bodies.values()
@@ -95,7 +95,7 @@ class CameraImage:
         return file.getvalue()
 
     def mask(self, body: Body | int | str, link: Link | int | str | None = None) -> NDArray[np.bool_]:
-        """Where a body, or one link of it, is seen.
+        """The pixels in which a body, or one link of it, is visible.
 
         Args:
             body: Handle, id or name; a name stands for all bodies of that name.
@@ -105,7 +105,7 @@ class CameraImage:
             (height, width) true where it is seen.
 
         Raises:
-            KeyError: There was no such body or link when the image was taken.
+            KeyError: No such body or link existed when the image was taken.
         """
         found = np.zeros(self.body_ids.shape, dtype=bool)
         for identifier in self._matching(body):
@@ -129,7 +129,7 @@ class CameraImage:
         return result
 
     def point_cloud(self, *, frame: Literal["world", "camera"] = "world") -> PointCloud:
-        """The points of all pixels that show something, row by row.
+        """The points of all pixels except the background, row by row.
 
         Args:
             frame: Axes of the points: those of the world, or of the camera (x to the right, y down,
@@ -182,11 +182,11 @@ class Camera:
         fy: Focal length in rows; `fx` by default.
         cx: Column that the optical axis meets; the middle by default.
         cy: Row that the optical axis meets; the middle by default.
-        near: What is nearer is not seen [m].
-        far: What is farther is not seen [m].
+        near: Near plane: nothing closer is visible [m].
+        far: Far plane: nothing farther is visible [m].
         position: Of the camera [m], in the world or, if it is mounted, in the frame of its link.
         orientation: Of the camera, quaternion (x, y, z, w), in the same frame.
-        link: Link it is mounted on; None for one that stands in the world.
+        link: Link it is mounted on; None for a camera fixed in the world.
         light: The light of its images.
 
     Raises:
@@ -244,8 +244,8 @@ class Camera:
             width: Number of columns.
             height: Number of rows.
             degrees: Angle from the lower to the upper edge of the image.
-            near: What is nearer is not seen [m].
-            far: What is farther is not seen [m].
+            near: Near plane: nothing closer is visible [m].
+            far: Far plane: nothing farther is visible [m].
 
         Raises:
             ValueError: The angle is not between 0 and 180 degrees, or a number is out of range.
@@ -255,7 +255,7 @@ class Camera:
         return cls(width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far)
 
     def _repr_html_(self) -> str:
-        """Where it is and what it can see, for notebooks."""
+        """Its pose and field of view, for notebooks."""
         position = ", ".join(f"{value:.4g}" for value in self.pose.position)
         where = f"at ({position}) m" if self.link is None else f"on link {self.link.name}, at ({position}) m"
         return f"<b>Camera</b>: {self.width} x {self.height} pixels, {escape(where)}"
@@ -287,7 +287,7 @@ class Camera:
         """Moves the camera so that it looks from one point at another.
 
         Args:
-            eye: Where it stands [m], in the world or, if it is mounted, in the frame of its link.
+            eye: Where it is [m], in the world or, if it is mounted, in the frame of its link.
             target: The point in the middle of the image [m].
             up: Direction that is upwards in the image.
 
@@ -306,7 +306,7 @@ class Camera:
         return self
 
     def mount(self, link: Link | None) -> Camera:
-        """Fastens the camera to a link, or, with None, takes it off; `place` or `look_at` says where.
+        """Mounts the camera on a link, or, with None, in the world; use `place` or `look_at` for its pose.
 
         Returns:
             The camera itself.
@@ -329,7 +329,7 @@ class Camera:
         """Takes an image.
 
         Args:
-            world: The world it looks at; left out, that of the link it is mounted on.
+            world: The world it looks at; by default that of the link it is mounted on.
 
         Raises:
             ValueError: No world is given and the camera is not mounted, the image is too large, or the

@@ -1,4 +1,4 @@
-"""Numbers from users, as arrays, refused where they make no sense."""
+"""Checks of numbers from users, which become arrays."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def positive(value: ArrayLike, name: str) -> Array:
     """A copy of `value` as an array of finite doubles greater than 0.
 
     Raises:
-        ValueError: Something in it is not.
+        ValueError: A number is not.
     """
     array = _numbers(value, name)
     if not (np.isfinite(array).all() and (array > 0.0).all()):
@@ -66,7 +66,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
     """A copy of `value` as an array of doubles >= 0; infinity is allowed.
 
     Raises:
-        ValueError: Something in it is not.
+        ValueError: A number is not.
     """
     if isinstance(value, OnDevice):
         return value  # type: ignore[return-value]
@@ -78,7 +78,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
 
 def _numbers(value: ArrayLike, name: str) -> Array:
     try:
-        # PyTorch's tensors do not know how to make a copy for NumPy, and warn.
+        # PyTorch's tensors warn when NumPy asks them for a copy.
         return np.asarray(value, dtype=np.float64).copy()
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be a number or an array of numbers, not {value!r}") from None

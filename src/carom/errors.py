@@ -1,4 +1,4 @@
-"""The exceptions Carom raises on purpose. The drop-in turns them into `pybullet.error`."""
+"""The exceptions that Carom raises. The drop-in turns them into `pybullet.error`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 class CaromError(Exception):
-    """Base of everything Carom raises on purpose."""
+    """Base class of Carom's exceptions."""
 
 
 class DescriptionError(CaromError):
@@ -35,12 +35,12 @@ class SimulationError(CaromError):
 
 
 class StateError(CaromError):
-    """A saved state does not fit the bodies there are; the world is as it was."""
+    """A saved state does not fit the present bodies; the world is unchanged."""
 
 
 class SimulationWarning(RuntimeWarning):
-    """A world among many has been halted."""
+    """One of many worlds has been halted."""
 
 
 class NativeLibraryError(CaromError):
-    """The compiled kernels are missing, damaged or not those of this version; the message says what to do."""
+    """The compiled kernels are missing, damaged or of another version; the message says what to do."""

@@ -1,4 +1,4 @@
-"""Loggers made when they are first used: importing `logging` takes as long as ten modules of ours."""
+"""Loggers that import `logging` at first use: importing it takes as long as ten of our modules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was meant by a misspelt argument, said below the error that ends a script."""
+"""Suggestions for misspelt arguments ("did you mean"), printed below the error that ends a script."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]
 
 
 def suggestion(problem: BaseException) -> str | None:
-    """The argument that was meant; None for other problems, and where nothing is like it.
+    """The argument that was probably meant; None for other errors, and if no name is similar.
 
-    Looked up when a script has failed, so that no call pays for it.
+    Computed when a script has failed, so that it costs nothing in calls.
     """
     found = _UNKNOWN.match(str(problem)) if isinstance(problem, TypeError) else None
     if found is None:
@@ -30,13 +30,13 @@ def suggestion(problem: BaseException) -> str | None:
     from difflib import get_close_matches
 
     names = [name for name in inspect.signature(function).parameters if name != "self"]
-    # Names that differ in their beginning alone are likelier meant than those as long.
+    # Names that differ only at their beginning are more likely than names of the same length.
     near = get_close_matches(found[2], names, 1, _LIKENESS)
     return f"Did you mean {near[0]!r}?" if near else f"Its arguments are {', '.join(names)}."
 
 
 def install() -> None:
-    """Adds suggestions to what Python or a notebook prints of errors; doing so again changes nothing."""
+    """Adds suggestions to the errors that Python or a notebook prints; calling it again changes nothing."""
     _install_in_notebook()
     if getattr(sys.excepthook, "suggests", False):
         return

@@ -1,10 +1,10 @@
 """PyBullet's interface, on Carom.
 
 The module has the names, arguments, defaults, results and errors of PyBullet 3.2.7, so that scripts
-written for it run unmodified. Physics is in `carom`; here is what scripts see of it.
+written for it run unmodified. Physics is in `carom`; this module is the interface for scripts.
 
 Lengths are in metres, masses in kilograms, times in seconds, angles in radians except for cameras;
-quaternions are (x, y, z, w). A link has the index of the joint that carries it; -1 is the base.
+quaternions are (x, y, z, w). A link has the index of its parent joint; -1 is the base.
 """
 
 # ruff: noqa: F403  (each module lists in __all__ what it exports)

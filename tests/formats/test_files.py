@@ -76,7 +76,7 @@ def test_large_and_unreadable_files_are_refused(tmp_path: Path) -> None:
     assert read_bounded(file, 10)[0] == b"0123456789"
     with pytest.raises(DescriptionError, match="10 bytes are more than the 9"):
         read_bounded(file, 9)
-    with pytest.raises(DescriptionError, match="it is no regular file"):
+    with pytest.raises(DescriptionError, match="it is not a regular file"):
         read_bounded(tmp_path, 10**9)
 
 

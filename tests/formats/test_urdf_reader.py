@@ -258,7 +258,7 @@ BROKEN = [
     ([A, B, joint('<limit lower="1e400"/>')], 4, "<limit>", "sensible size"),
     ([A, B, joint('<axis xyz="0 0 0"/>')], 4, "<axis>", "no length"),
     ([A, B, joint('<axis xyz="0 0 1e300"/>')], 4, "<axis>", "out of range"),
-    ([A, B, joint(), joint(name="k")], 5, '<joint name="k">', "already hangs on joint 'j'"),
+    ([A, B, joint(), joint(name="k")], 5, '<joint name="k">', "is already the child of joint 'j'"),
     ([A, B], 1, '<robot name="r">', "2 root links, where one is needed: 'a', 'b'"),
     ([A, A], 3, '<link name="a">', "taken already, on line 2"),
     ([A, link("b"), joint(child="c")], 4, "<child>", "there is no link 'c'"),

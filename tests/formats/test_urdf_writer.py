@@ -105,7 +105,7 @@ def test_a_shape_urdf_cannot_say_is_named(tmp_path: Path) -> None:
         '<mujoco><worldbody><body name="egg"><geom type="ellipsoid" size="1 1 2"/></body>'
         "</worldbody></mujoco>"
     )
-    with pytest.raises(DescriptionError, match="link 'egg' has a shape that URDF cannot say: ConvexHull"):
+    with pytest.raises(DescriptionError, match="link 'egg' has a shape that URDF does not have: ConvexHull"):
         urdf_text(read_mjcf(source)[0].robot, tmp_path)
 
 

@@ -181,7 +181,7 @@ def test_a_log_ends_when_bodies_come(tmp_path: Path) -> None:
     world.step()
     for _ in range(5):
         world.load_urdf(file)
-    with pytest.raises(StateError, match="come or gone"):
+    with pytest.raises(StateError, match="bodies were added or removed"):
         world.step()
     world.step()
     assert len(log) == 1

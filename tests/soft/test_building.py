@@ -74,7 +74,7 @@ def test_small_strains_are_those_of_a_linear_solid() -> None:
     [
         ({"mass": 0.0}, "mass is 0.0; it has to be finite and greater than 0"),
         ({"mass": float("nan")}, "mass is nan"),
-        ({"mass": 1e-320}, "1e-30 kg is the least that is accepted"),
+        ({"mass": 1e-320}, "1e-30 kg is the minimum"),
         ({"margin": -1.0}, "the collision margin is -1.0"),
         ({"friction": -0.5}, "friction is -0.5; it has to be finite and 0 or more"),
         ({"springs": Springs(-1.0)}, "the stiffness of springs is -1.0"),

@@ -1,4 +1,4 @@
-"""Questions about a robot that need no step: inverse dynamics and kinematics, Jacobians, mass matrices."""
+"""Algorithms that need no step: inverse dynamics and kinematics, Jacobians, mass matrices."""
 
 from carom.algorithms.inverse_dynamics import inverse_dynamics
 from carom.algorithms.inverse_kinematics import inverse_kinematics

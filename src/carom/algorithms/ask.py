@@ -1,9 +1,9 @@
-"""Functions that write a question to memory, have it answered, and read the answer, at the least cost.
+"""Functions that write a query to memory, have it answered, and read the answer, at minimum cost.
 
 Spreading several lists out in one call, `pack(memory, first, *positions, *rates)`, makes a list and then a
 tuple of all their items. For a few items it is quicker to unpack them into variables and to pass these, for
-many to write each list by itself. The former takes source code for each number of items; so it is made, as
-that of `namedtuple` is.
+many to write each list by itself. The former needs source code for each number of items, which is generated,
+as for `namedtuple`.
 """
 
 from __future__ import annotations
@@ -46,20 +46,20 @@ def asking(
     answer: memoryview[float],
     size: int,
 ) -> Ask:
-    """A function that asks questions that are lists of numbers.
+    """Makes a function for queries whose arguments are lists of numbers.
 
     Args:
-        counts: How many numbers are in each of its arguments. The first argument is a setting: taken for the
-            same as long as it is the same object.
-        question: Where they go, one list after the other.
-        answer_it: Answers the question.
-        answer: Where the answer is.
-        size: How many numbers it has, at least 1.
+        counts: Length of each of its arguments. The first argument is a setting, which counts as unchanged as
+            long as it is the same object.
+        question: Memory for them, one list after the other.
+        answer_it: Computes the answer.
+        answer: Memory of the answer.
+        size: Length of the answer, at least 1.
 
     Returns:
         The function. It raises `struct.error` or `ValueError` for a list of another length, `struct.error`
-        for what is no number, `TypeError` for what is no list, and `ValueError` if the first number of the
-        answer is NaN.
+        for items that are not numbers, `TypeError` for arguments that are not lists, and `ValueError` if the
+        first number of the answer is NaN.
     """
     memory = question.cast("B")
     setting, *lists = counts
@@ -82,7 +82,7 @@ def asking(
 
 @cache
 def _code(counts: tuple[int, ...]) -> CodeType:
-    """What defines `ask` for lists of so many numbers."""
+    """Source code of `ask` for lists of these lengths."""
     lists = [f"list_{number}" for number in range(len(counts))]
     if sum(counts) > _MOST_ITEMS:
         writing = [f"write_{number}(*list_{number})" for number in range(len(counts))]

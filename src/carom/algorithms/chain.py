@@ -18,7 +18,7 @@ from carom.native.tables import ArrayTable
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
-# Of an unlimited joint: the range that new starts are drawn from, either way from 0 [rad or m].
+# Range of random starts of a joint without limits, on both sides of 0 [rad or m].
 _UNLIMITED_RANGE = {code: 1.0 if code in SLIDING_JOINTS else pi for code in JointCode}
 
 
@@ -27,7 +27,7 @@ class BodyChain:
 
     Attributes:
         arrays: `Chain`, filled.
-        sizes: How many of everything there are.
+        sizes: The numbers of links, joints and so on.
     """
 
     def __init__(self, body: Body, links: Sequence[int]) -> None:
@@ -90,7 +90,7 @@ class BodyChain:
 
 
 def _ancestors(body: Body, links: Sequence[int]) -> list[int]:
-    """The links on the way from the base to the given ones, these included, parents first."""
+    """The links between the base and the given ones, these included, parents first."""
     found = set()
     for link in links:
         while link != BASE and link not in found:

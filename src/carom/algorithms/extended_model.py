@@ -1,6 +1,6 @@
-"""The equations of motion in extended coordinates: seven of the base, four of a spherical joint.
+"""The equations of motion in extended coordinates: seven for the base, four for a spherical joint.
 
-PyBullet's inverse dynamics and mass matrix see a body this way with `flags=1`.
+PyBullet's inverse dynamics and mass matrix use these coordinates with `flags=1`.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class ExtendedModel:
         """Mass matrix.
 
         Returns:
-            (size, size); zeros for what does not move, the fourth coordinate of quaternions.
+            (size, size); zeros for the fourth coordinate of quaternions.
         """
         moving = np.array(self._tree.mass_matrix(position[BASE_POSITIONS:]))
         turn = np.eye(self._tree.dofs)
@@ -88,7 +88,7 @@ def base_motion(
     vx, vy, vz = matrix_vector(to_base, (vx, vy, vz))
     own_omega = matrix_vector(to_base, (ox, oy, oz))
     gx, gy, gz = matrix_vector(to_base, gravity)
-    # Nothing but gravity would be left if PyBullet did not take omega along the body's axes here.
+    # Only gravity would remain if PyBullet did not take omega along the body's axes here.
     dx, dy, dz = own_omega[0] - ox, own_omega[1] - oy, own_omega[2] - oz
     acceleration = (dy * vz - dz * vy - gx, dz * vx - dx * vz - gy, dx * vy - dy * vx - gz)
     return (*own_omega, 0.0, 0.0, 0.0, *acceleration)
@@ -100,7 +100,7 @@ def _rotation(position: np.ndarray) -> np.ndarray:
 
 
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
-    """Mass matrix of a body in extended coordinates, ones for those that do not move anything.
+    """Mass matrix of a body in extended coordinates, with ones for coordinates that do not move anything.
 
     Args:
         body: The body.

@@ -1,6 +1,6 @@
-"""Bodies as trees of nodes, as PyBullet's stable PD controller makes them.
+"""Bodies as trees of nodes, as in PyBullet's stable PD controller.
 
-What PyBullet does differently from its own engine is kept, so that its torques are met: inertias come
+Differences between PyBullet's controller and its engine are kept, so that torques are equal: inertias come
 from the first collision shape of a link alone, capsules have their axis along y, sliders move along the
 x axis of their inertial frame, and a base without shapes is left out when a fixed link can stand in.
 """
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _X, _Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-# PyBullet looks for the axis of a slider where there is none; what it finds is half a quaternion.
+# PyBullet reads the axis of a slider from the wrong memory: half a quaternion.
 _SLIDER_TURN = (0.0, 0.0, 0.0, sqrt(0.5))
 
 
@@ -47,7 +47,7 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
 
     Args:
         body: The body.
-        as_pybullet: With the peculiarities named above; otherwise as the body is.
+        as_pybullet: With the differences named above; otherwise as the body is.
 
     Returns:
         Parents before children, the root first.
@@ -102,7 +102,7 @@ def _joint_frame(kind: JointCode, spec: LinkSpec, as_pybullet: bool, *, is_base:
 def _placement(
     carrier: LinkSpec, carrier_frame: _Frame, spec: LinkSpec, frame: _Frame
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Rotation and origin of the joint frame of a link in the joint frame of the link that carries it."""
+    """Rotation and origin of the joint frame of a link in the joint frame of its parent link."""
     joint = compose(inverse(carrier.inertial_frame), spec.joint_frame)
     at_rest = compose(joint, Pose((0.0, 0.0, 0.0), spec.inertial_frame.orientation)).orientation
     back = conjugate(carrier_frame.turn)

@@ -1,4 +1,4 @@
-"""Inverse dynamics: which forces cause a given motion."""
+"""Inverse dynamics: forces for a given motion."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def inverse_dynamics(
     accelerations: Sequence[float] | np.ndarray,
     base_orientation: Sequence[float] | None = None,
 ) -> np.ndarray:
-    """Generalized forces that give a body the stated accelerations, by recursive Newton-Euler.
+    """Generalized forces for given accelerations of a body, by the recursive Newton-Euler algorithm.
 
-    Gravity counts, damping and applied forces do not.
+    Gravity is included, damping and applied forces are not.
 
     Args:
         body: The body.
@@ -34,8 +34,8 @@ def inverse_dynamics(
         velocities: Joint rates, shape (n,); of a free body, angular (3) and linear (3) velocity of
             the base along its own axes before them.
         accelerations: Their derivatives, shape as `velocities`; the base's along its own axes.
-        base_orientation: How a fixed base is taken to be turned, quaternion of its inertial frame;
-            None for how it is.
+        base_orientation: Orientation assumed for a fixed base, quaternion of its inertial frame; None for the
+            present one.
 
     Returns:
         Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base

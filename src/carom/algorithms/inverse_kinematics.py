@@ -1,4 +1,4 @@
-"""Inverse kinematics: joint positions that bring links to given places."""
+"""Inverse kinematics: joint positions for given poses of links."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _NUMBER = np.dtype(NUMPY_REAL)
 _NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
 _FIRST_OPTION = 3
-# More would not help, but take forever.
+# More iterations would not help, but take very long.
 _MOST_ITERATIONS = 100_000
 Numbers = Sequence[float] | np.ndarray
 
@@ -53,38 +53,38 @@ def inverse_kinematics(
     threshold: float = DEFAULT_THRESHOLD,
     patience: float = 0.0,
 ) -> tuple[float, ...]:
-    """Joint positions at which links are where they ought to be.
+    """Joint positions at which links reach target poses.
 
-    The search starts at the present pose and follows PyBullet's damped least squares, with the same
-    result where that arrives. Where it does not, or a limit is violated, `further` steps may be taken
-    by a method that converges quadratically, keeps within the limits, and starts again from nearby
-    poses when it is stuck. The body itself does not move.
+    The search starts at the present pose and uses PyBullet's damped least squares, with the same result if
+    that reaches the target. If not, or if a limit is violated, up to `further` steps follow with a method
+    that converges quadratically, stays within the limits, and restarts from nearby poses if it is stuck. The
+    body itself does not move.
 
     Args:
         body: The body.
         links: Indices of the links; -1 is the base.
-        positions: Where the origin of each link frame ought to be [m], world axes.
-        orientations: What the axes of each link's inertial frame ought to be, quaternions (x, y, z, w),
-            of any length but 0.
-        lower: Limits that the result keeps [rad or m], one for each freedom of the joints. A joint whose
-            lower limit is above the upper one has none.
-        upper: The same, from above.
-        ranges: With `lower`, `upper` and `rest`, how far apart the limits are: the push back into them
-            goes down with it.
-        rest: Positions to which joints are drawn as far as the links do not mind.
-        damping: How unwilling each joint is to move, > 0; 0.5 where not given.
-        selective: Selectively damped least squares, without a pull to rest positions.
+        positions: Targets of the origins of the link frames [m], world axes.
+        orientations: Target orientations of the links' inertial frames, quaternions (x, y, z, w), of any
+            length but 0.
+        lower: Lower limits of the result [rad or m], one for each degree of freedom of the joints. A joint
+            whose lower limit is above the upper one has no limits.
+        upper: Upper limits.
+        ranges: With `lower`, `upper` and `rest`, differences of the limits: the push back into the limits
+            decreases with them.
+        rest: Preferred joint positions, approached as far as this does not move the links (null space).
+        damping: Damping of each joint in the search, > 0; default 0.5.
+        selective: Selectively damped least squares, without rest positions.
         start: Joint positions to start from, a quaternion for each spherical joint.
         in_base_frame: Targets are in the inertial frame of the base instead of the world's.
-        iterations: Most steps of PyBullet's method.
-        further: Most steps of the other one; where not given as many, and with limits 300 at least.
+        iterations: Maximum number of steps of PyBullet's method.
+        further: Maximum number of steps of the other method; by default the same, with limits at least 300.
         threshold: Distance [m] and angle [rad] that are close enough.
-        patience: The result of PyBullet's method is taken as it is if it keeps the limits and leaves not more
-            than this share of the first distance, or 2 cm; 0 takes it only where it arrives.
+        patience: The result of PyBullet's method is accepted if it is within the limits and leaves at most
+            this share of the first distance, or 2 cm; with 0 only if it reaches the target.
 
     Returns:
-        Joint positions in order, a quaternion for each spherical joint; the best that were found, if
-        none are close enough.
+        Joint positions in order, a quaternion for each spherical joint; the best found, if none are close
+        enough.
 
     Raises:
         ValueError: A sequence has the wrong length.
@@ -163,7 +163,7 @@ class _Solver:
                 write(*orientation)
 
     def set_base(self, body: Body | None) -> None:
-        """Say where the base is; without a body, that the targets are given in its frame."""
+        """Set the pose of the base; without a body, targets are in its frame."""
         if body is None:
             self._base[:] = _NO_POSE
         else:
@@ -230,7 +230,7 @@ class _Solver:
 
 
 def _writers(rows: np.ndarray) -> list[Callable[..., None]]:
-    """What writes the numbers of each row."""
+    """Functions that write the numbers of each row."""
     memory = numbers_of(rows).cast("B")
     row = Struct(f"{rows.shape[1]}{_NUMBER.char}")
     return [partial(row.pack_into, memory, place * row.size) for place in range(len(rows))]

@@ -1,4 +1,4 @@
-"""Frames of the joints of a body that move, whatever is fixed to what between them.
+"""Frames of the moving joints of a body, with links that are fixed to each other merged.
 
 The origin of a frame is at the joint, and the z axis along that of a hinge or slider; others have the axes of
 the link's inertial frame. The base has its inertial frame.
@@ -22,7 +22,7 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class JointFrames:
-    """Where joints and links are, at position 0, in the frames of the joints that carry them.
+    """Poses of joints and links, at position 0, in the frames of their parent joints.
 
     Args:
         body: The body.
@@ -50,13 +50,13 @@ class JointFrames:
         return BASE if carrier == BASE else self._place_of[carrier]
 
     def _seen(self, carrier: int, frame: Pose) -> tuple[int, Pose]:
-        """A frame given in the inertial axes of its carrier, seen from the carrier's frame."""
+        """A frame given in the inertial axes of its parent, in the parent's frame."""
         if carrier == BASE:
             return carrier, frame
         return carrier, compose(Pose(orientation=conjugate(self._turns[carrier])), frame)
 
     def _placement(self, link: int, *, moves: bool) -> tuple[int, Pose]:
-        """The link that carries a joint, or the link itself, and the frame at that link's joint."""
+        """The parent link of a joint, or the link itself, and the frame at that link's joint."""
         frame = IDENTITY
         if not moves and link in self._place_of:
             return link, frame
@@ -73,7 +73,7 @@ class JointFrames:
         return BASE, frame
 
     def _turn_of_axis(self, link: int) -> Quaternion:
-        """The turn that takes z to the axis of a hinge or slider, in the inertial frame of its link."""
+        """The rotation from z to the axis of a hinge or slider, in the inertial frame of its link."""
         if self._body.velocity_count[link] != 1:
             return _NO_TURN
         return turn_of_z(_vector(self._model["link_unit_axis"][self._row(link)]))

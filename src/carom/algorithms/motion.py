@@ -1,4 +1,4 @@
-"""Inverse dynamics, ready to be asked about again and again."""
+"""Inverse dynamics, prepared for many calls."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def forces_of_motion(tree: MovingTree, *, as_pybullet: bool = False) -> Ask:
-    """What is asked for the generalized forces behind a motion of a tree.
+    """A function for the generalized forces of a motion of a tree.
 
     Args:
         tree: The tree, of at least one dof; its output holds the answer.

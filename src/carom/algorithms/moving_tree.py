@@ -1,4 +1,4 @@
-"""A body's equations of motion, ready to be asked about again and again at any coordinates."""
+"""A body's equations of motion, prepared for many calls at any coordinates."""
 
 from __future__ import annotations
 
@@ -30,26 +30,26 @@ _JACOBIAN_ROWS = 6
 
 
 class MovingTree:
-    """A tree of nodes, with the memory of a question and its answer.
+    """A tree of nodes, with the memory of a query and its answer.
 
-    Everything is in the frame of the base. Sequences hold whatever `float` takes; one that holds something
-    else, or is not as long as is said here, raises `struct.error`.
+    Everything is in the frame of the base. Items of sequences may be anything that `float` accepts; other
+    items, or a sequence of the wrong length, raise `struct.error`.
 
     Attributes:
         free: The base moves.
         coordinates: Number of positions of the joints: a quaternion for each spherical one.
         joint_dofs: Number of their rates.
         dofs: The same with those of a free base, six before the others: angular, then linear.
-        structs: What kernels are given: the sizes and the arrays.
+        structs: The arguments of kernels: sizes and arrays.
         arrays: The arrays by name.
     """
 
     def __init__(self, nodes: Sequence[Node], ends: Sequence[End] = (), *, free: bool) -> None:
-        """Take over the nodes.
+        """Set up the nodes.
 
         Args:
-            nodes: Parents first, the base at the beginning.
-            ends: Links that Jacobians can be asked for, the base at the beginning.
+            nodes: Parents first, beginning with the base.
+            ends: Links for Jacobians, the base first.
             free: The base moves.
         """
         self.free = free
@@ -93,10 +93,10 @@ class MovingTree:
         )
 
     def set_base_motion(self, *motion: float) -> None:
-        """For later questions about forces: how the base moves.
+        """Set the motion of the base, for later queries of forces.
 
         Args:
-            *motion: Angular velocity, angular acceleration, and acceleration less gravity.
+            *motion: Angular velocity, angular acceleration, and acceleration minus gravity.
         """
         self._put_base(*motion)
 
@@ -109,7 +109,7 @@ class MovingTree:
             accelerations: As many as `joint_dofs`.
 
         Raises:
-            ValueError: Something given is not finite, too big for the forces to be, or not as long as said.
+            ValueError: A number is not finite, the forces overflow, or a length is wrong.
         """
         if not (
             len(positions) == self.coordinates
@@ -154,12 +154,12 @@ class MovingTree:
 
     @cached_property
     def forces_of_motion(self) -> Ask:
-        """What is asked for the forces behind its motions."""
+        """The function for the forces of its motions."""
         return forces_of_motion(self)
 
     @cached_property
     def forces_in_pybullet(self) -> Ask:
-        """The same with PyBullet's coordinates, and its idea of where gravity points."""
+        """The same with PyBullet's coordinates, and PyBullet's direction of gravity."""
         return forces_of_motion(self, as_pybullet=True)
 
     @cached_property
@@ -213,7 +213,7 @@ class MovingTree:
 
 
 def moving_tree(body: Body) -> MovingTree:
-    """The tree of a body as it is now; the same one until masses, inertias or the base's freedom change."""
+    """The tree of a body as it is now; cached until masses, inertias or the base's fixation change."""
     tree = body.derived.get(MovingTree)
     if tree is None:
         tree = body.derived[MovingTree] = MovingTree(*body_nodes(body), free=not body.fixed_base)

@@ -1,4 +1,4 @@
-"""Bodies as trees of nodes: joints that move, and what moves as one behind each."""
+"""Bodies as trees of nodes: moving joints, each with the rigid body behind it."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Node:
 
 @record
 class End:
-    """A link as points on it are given.
+    """A link, for points given on it.
 
     Attributes:
         node: The node it belongs to.
@@ -98,7 +98,7 @@ def _com_from_joint(body: Body, link: int) -> np.ndarray:
 
 
 def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
-    """What the dofs of a joint do, in the frame of its node, whose z axis is that of a hinge or slider."""
+    """Axes of a joint's dofs in the frame of its node, whose z axis is that of a hinge or slider."""
     if kind == JointCode.SPHERICAL:
         return joint_axes(kind)
     model, row = body.world.arrays.model.numpy, body.first_link + 1 + link

@@ -31,12 +31,12 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class JointTarget(NamedTuple):
-    """What a joint is to do. Lists of a length that does not fit the joint count as not given.
+    """Target of a joint. Lists of the wrong length count as not given.
 
     Attributes:
         position: One number [rad or m], or a quaternion (x, y, z, w); 0 or no rotation when not given.
         velocity: One number [rad/s or m/s], or three; 0 when not given.
-        force: Greatest torques [N m or N] by freedom; one number of a spherical joint holds for its first.
+        force: Largest torques [N m or N] by freedom; one number of a spherical joint holds for its first.
         kp: Torque by error.
         kd: Torque by error of velocity.
     """

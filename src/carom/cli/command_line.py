@@ -30,15 +30,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: Words of the command line; those of the process by default.
 
     Returns:
-        Exit status: 0 when all went well, 1 when a file cannot be used. argparse itself ends the
-        process with 2 when it does not understand the command.
+        Exit status: 0 when all went well, 1 when a file cannot be used. For a wrong command argparse ends the
+        process with status 2.
     """
     options = _parser().parse_args(arguments)
     try:
         options.command(options)
         sys.stdout.flush()
     except BrokenPipeError:
-        # Whoever reads the output has had enough, as `head` has; Python is not to write the rest at its end.
+        # The reader has closed its end, as `head` does; keep Python from writing the rest at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (CaromError, OSError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
@@ -54,9 +54,9 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
     info = commands.add_parser("info", help="print the joint and link tables of a robot file")
-    info.add_argument("file", type=Path, help="URDF file; one that pybullet_data ships is found by its name")
+    info.add_argument("file", type=Path, help="URDF file; files of pybullet_data are found by name")
     info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
-    info.add_argument("--fixed-base", action="store_true", help="hold the base where it is")
+    info.add_argument("--fixed-base", action="store_true", help="fix the base in the world")
     info.add_argument(
         "--inertia-from-file", action="store_true", help="use <inertia>, not the collision shapes"
     )
@@ -67,7 +67,7 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument(
         "file",
         type=Path,
-        help="URDF, SDF or MJCF (.xml) file; one that pybullet_data ships is found by its name",
+        help="URDF, SDF or MJCF (.xml) file; files of pybullet_data are found by name",
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(
@@ -79,14 +79,14 @@ def _parser() -> argparse.ArgumentParser:
     record.add_argument("script", type=Path, help="Python script, unchanged")
     record.add_argument("output", type=Path, help="HTML file to write")
     record.add_argument("arguments", nargs=argparse.REMAINDER, help="arguments of the script")
-    record.add_argument("--seconds", type=_positive, help="end the script after so much simulated time")
+    record.add_argument("--seconds", type=_positive, help="end the script after this much simulated time")
     record.add_argument("--fps", type=_positive, default=60.0, help="frames for each second (default 60)")
     record.set_defaults(command=_record)
 
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
     convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
     convert.add_argument("output", type=Path, help="URDF file to write")
-    convert.add_argument("--model", help="the one to take from a file with several, by name or number from 0")
+    convert.add_argument("--model", help="robot to convert if the file has several: name or number from 0")
     convert.set_defaults(command=_convert)
 
     serve = commands.add_parser("serve", help="serve a world that scripts in other processes can join")
@@ -104,7 +104,7 @@ def _parser() -> argparse.ArgumentParser:
         )
     serve.add_argument("--bind", default="127.0.0.1", help="address of these ports (default 127.0.0.1)")
     serve.add_argument(
-        "--key-file", type=Path, help="file with the key clients have to know; written if there is none"
+        "--key-file", type=Path, help="file with the key that clients need; created if it does not exist"
     )
     serve.add_argument("--gui", action="store_true", help="show the world in the browser")
     serve.add_argument("--gui-port", type=int, help="port to serve the page at")
@@ -145,7 +145,7 @@ def _view(options: argparse.Namespace) -> None:
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
-    # Terminals take what follows an address without a space for a part of it.
+    # Terminals take text that follows an address without a space as part of it.
     print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
     if tunnel := tunnel_command(view.viewer.address):
         print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)

@@ -19,11 +19,11 @@ from carom.model.mjcf_inertia import set_mjcf_inertias
 
 
 def convert(source: Path, target: Path, model: str | None = None) -> None:
-    """Writes a robot as URDF. Where the file puts it in the world is lost.
+    """Writes a robot as URDF. Its pose in the world of the file is not kept.
 
     A robot that the file fixes to the world gets a base without mass, which PyBullet and Carom do not
-    move. Links without moments of inertia, such as those of MJCF files, get those they have here, which are
-    found from their collision shapes. Meshes are not copied.
+    move. Links without moments of inertia, as in MJCF files, get those that Carom computes from their
+    collision shapes. Meshes are not copied.
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file; one that comes with `pybullet_data` is found by

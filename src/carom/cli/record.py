@@ -36,7 +36,7 @@ class Take:
 
 
 class _Enough(BaseException):
-    """Ends a script; no `except Exception` of its own holds it up."""
+    """Ends a script; `except Exception` does not catch it."""
 
 
 class _Watch:
@@ -51,7 +51,7 @@ class _Watch:
         """Nothing."""
 
     def after_step(self) -> None:
-        """Looks at the clock."""
+        """Checks the clock."""
         if self._world.time < self._seconds:
             return
         self.over = True
@@ -71,7 +71,7 @@ def record(take: Take) -> list[Path]:
         OSError: The script cannot be read, or a file not be written.
         Exception: Whatever the script raises.
     """
-    # Nobody is to be asked: what is recorded is what the script does by itself.
+    # There is no user: what the script does by itself is recorded.
     os.environ.setdefault("CI", "1")
     recorders: list[tuple[Path, ReplayRecorder]] = []
     watches: list[_Watch] = []

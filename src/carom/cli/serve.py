@@ -12,9 +12,9 @@ import pybullet
 from carom.cli.warmup import warmup
 from carom.errors import CaromError
 
-# What asks a process to end; Ctrl-Break is all that processes can send each other on Windows.
+# Signals that end a process; on Windows processes can send each other only Ctrl-Break.
 _REQUESTS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name)]
-# How often to look whether the window has been closed [s].
+# How often to check whether the window has been closed [s].
 _LOOK = 0.25
 
 

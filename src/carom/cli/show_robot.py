@@ -1,4 +1,4 @@
-"""Looking at a robot: a slider for each joint, and nothing that falls."""
+"""Looking at a robot: a slider for each joint, no gravity."""
 
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ _LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPA
 
 
 class RobotView:
-    """Shows the robots of a file, and moves their joints as the sliders say.
+    """Shows the robots of a file, and moves their joints by sliders.
 
     Args:
         file: URDF, SDF or MJCF file.
-        search: Where a file that is not there as named, and meshes, are looked for.
+        search: Folders in which the file, if not found as named, and meshes are searched.
         host: Address to serve the page at.
-        port: Port to serve it at; None for the usual one or any that is free.
+        port: Port to serve it at; None for the default port or any free one.
 
     Raises:
         DescriptionError: The file cannot be used, or there is no robot in it.
         OSError: The page cannot be served there.
 
     Attributes:
-        viewer: What shows it.
+        viewer: The viewer that shows it.
     """
 
     def __init__(self, file: Path, search: AssetSearch, host: str, port: int | None) -> None:
@@ -88,7 +88,7 @@ class RobotView:
             self._sliders.append((body, joint, slider))
 
     def _look_at_it(self) -> None:
-        """Moves the camera to where everything is in view."""
+        """Moves the camera so that everything is in view."""
         self.follow()
         points = self._world.link_pose[:, :3]
         lower, upper = points.min(axis=0), points.max(axis=0)

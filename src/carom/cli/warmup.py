@@ -1,4 +1,4 @@
-"""Having the native library ready before it is needed."""
+"""Builds and loads the native library before it is needed."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ def warmup() -> None:
     """Load the native library; where kernels have been edited it is compiled first.
 
     Raises:
-        NativeLibraryError: There is none, and none can be compiled.
+        NativeLibraryError: There is none, and it cannot be compiled.
     """
     library()

@@ -1,4 +1,4 @@
-"""What a rollout has collected."""
+"""The data collected by a rollout."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from carom.cluster.episode import Episode
 
 @dataclass(frozen=True)
 class Report:
-    """How a collection came about; what is in it does not depend on that.
+    """Statistics of a collection; its data do not depend on them.
 
     Attributes:
-        episodes_of_nodes: How many of its episodes each node played.
+        episodes_of_nodes: Number of its episodes that each node played.
         lost_nodes: Nodes, or processes on them, that died meanwhile, and what Ray says about it.
-        repeated: How many episodes were begun again elsewhere because of that.
+        repeated: Number of episodes that were therefore repeated on other nodes.
     """
 
     episodes_of_nodes: dict[str, int] = field(default_factory=dict)
@@ -31,10 +31,10 @@ class Steps:
     """The steps of many episodes, one after the other.
 
     Attributes:
-        observations: What was seen before each step, (steps, ...).
-        actions: What was done, (steps, ...).
+        observations: Observations before each step, (steps, ...).
+        actions: Actions, (steps, ...).
         rewards: (steps,).
-        next_observations: What was seen after it, (steps, ...).
+        next_observations: Observations after each step, (steps, ...).
         terminations: Where the episode was over, (steps,).
         truncations: Where it was cut off, (steps,).
         ids: The episode of each step, (steps,).
@@ -80,7 +80,7 @@ class Collection(Sequence[Episode]):
 
     @property
     def lengths(self) -> np.ndarray:
-        """How many steps each had, (episodes,)."""
+        """Number of steps of each, (episodes,)."""
         return np.array([episode.length for episode in self.episodes])
 
     @property
@@ -90,7 +90,7 @@ class Collection(Sequence[Episode]):
 
     @property
     def step_count(self) -> int:
-        """How many steps all had together."""
+        """Number of steps of all together."""
         return int(self.lengths.sum())
 
     def steps(self) -> Steps:

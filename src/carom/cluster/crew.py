@@ -1,4 +1,4 @@
-"""The actors of a rollout: who is idle, who does what, and who is gone."""
+"""The actors of a rollout: which are idle, busy or lost."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Returned:
-    """A batch that came back; `outcome` is None if the one who played it is gone, for the reason `lost`."""
+    """A batch that came back; `outcome` is None if its actor was lost, for the reason `lost`."""
 
     node: Node
     batch: range
@@ -54,9 +54,9 @@ class Crew:
 
     Args:
         make_env: Makes the vector environments; packed.
-        num_envs: How many environments each is.
-        max_episode_steps: After how many steps episodes are cut off.
-        nodes: On how many nodes at most, or "all".
+        num_envs: Number of environments of each.
+        max_episode_steps: Number of steps after which episodes are truncated.
+        nodes: Maximum number of nodes, or "all".
         cpus: Processors that Ray is to count as taken on each.
     """
 
@@ -79,7 +79,7 @@ class Crew:
         """
         self.lost.clear()
         self._losses.clear()
-        # Whoever still plays what nobody wants any more will turn to new work when done with it.
+        # Actors that play episodes no longer needed get new work when they have finished.
         self._jobs = {ref: job for ref, job in self._jobs.items() if job[1] is None}
         self.idle = [member for member in self.members if member.is_ready]
         living = {node.id for node in living_nodes(self.cpus)}
@@ -106,7 +106,7 @@ class Crew:
         self._jobs[member.actor.play.remote(policy, batch, seed, keep_steps)] = (member, batch)
 
     def wait(self) -> Returned | None:
-        """Wait until something happens; the batch that came back, if that is what it was.
+        """Wait for an event; returns a batch if one came back.
 
         Raises:
             ClusterError: No node is left, or an environment cannot be made on one of them.
@@ -152,7 +152,7 @@ class Crew:
             raise error from failure.cause()
 
     def _lose(self, member: Member, error: RayError) -> str:
-        """An actor is gone; its node may get another one."""
+        """An actor was lost; its node may get another one."""
         self._dismiss(member)
         self._losses[member.node.id] += 1
         reason = " ".join(str(error).split())
@@ -172,7 +172,7 @@ class Crew:
         starting = [str(member.node) for member in self.members if not member.is_ready]
         if starting:
             _log.warning(
-                "environments are still to be made on %s; Ray begins where %g processors are free",
+                "waiting for environments on %s; Ray starts them where %g processors are free",
                 ", ".join(starting),
                 self.cpus,
             )

@@ -16,13 +16,13 @@ class Episode:
 
     Attributes:
         id: Its number; no other of the same `Rollouts` has it.
-        seed: What it began with: `env.reset(seed=seed)` of a single environment begins the same one.
+        seed: Its seed: `env.reset(seed=seed)` of a single environment begins the same episode.
         observations: From the first to the last one, (length + 1, ...); (0, ...) if they were not kept.
         actions: (length, ...); (0, ...) if they were not kept.
         rewards: (length,).
         terminated: Whether the environment says that it is over.
         truncated: Whether it was cut off.
-        info: What the environment told of the last step.
+        info: The environment's info of the last step.
     """
 
     id: int
@@ -36,7 +36,7 @@ class Episode:
 
     @property
     def length(self) -> int:
-        """How many steps it had."""
+        """Number of its steps."""
         return len(self.rewards)
 
     @property
@@ -67,7 +67,7 @@ class StepLog:
         self._observations = self._actions = self._rewards = np.zeros((0, 0))
 
     def add(self, observations: np.ndarray, actions: np.ndarray) -> None:
-        """A step begins: what was seen, and what is done, (num_envs, ...)."""
+        """Adds the observations and actions of a step, (num_envs, ...)."""
         if self._length == 0:
             room = _FIRST_ROOM if self._keep_steps else 0
             self._observations = np.empty((room, *observations.shape), observations.dtype)

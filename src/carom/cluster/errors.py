@@ -10,7 +10,7 @@ _MOST_NAMED = 8
 
 
 class ClusterError(CaromError):
-    """A rollout cannot go on: there is no node left, or one cannot play at all."""
+    """A rollout cannot continue: no node is left, or a node cannot play at all."""
 
 
 class EpisodeError(ClusterError):

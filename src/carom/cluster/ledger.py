@@ -24,14 +24,14 @@ class Ledger:
 
     Attributes:
         counted: The episodes that count, in the order of their ids, without a gap.
-        repeated: How many episodes have been handed out again.
+        repeated: Number of episodes that were repeated.
 
     Args:
         first: The id of the first episode.
         batch_size: Episodes of a batch.
-        episodes: How many there are to be; None if steps decide.
-        steps: How many steps they are to have together; the last episode is the one that reaches it.
-        attempts: How often a batch is handed out before those that play it are believed to die of it.
+        episodes: Number of episodes; None if the number of steps is given.
+        steps: Minimum number of steps of all together; the last episode is the one that reaches it.
+        attempts: Number of attempts after which a batch is believed to kill its processes.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Ledger:
         return self._steps is not None and self._steps_counted >= self._steps
 
     def take(self) -> range | None:
-        """The ids of the next batch that is to be played; None if there is none now."""
+        """The ids of the next batch to play; None if there is none now."""
         if self._lost:
             batch = heapq.heappop(self._lost)[1]
             self.repeated += len(batch)
@@ -85,7 +85,7 @@ class Ledger:
         return True
 
     def lose(self, batch: range, reason: str) -> None:
-        """Whoever played a batch is gone.
+        """The actor of a batch was lost.
 
         Raises:
             ClusterError: It has happened to this batch too often.

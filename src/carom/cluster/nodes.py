@@ -38,7 +38,7 @@ def packed(value: Any, name: str) -> bytes:
 
 
 def unpacked(sent: bytes) -> Any:
-    """What has been sent."""
+    """Unpacks an object that was sent."""
     return cloudpickle.loads(sent)
 
 
@@ -104,7 +104,7 @@ class NodePlayer:
         self._player: Player | None = None
 
     def prepare(self, make_env: bytes, num_envs: int, max_episode_steps: int | None) -> Failure | None:
-        """Make the environment, with what is packed; tells what has gone wrong."""
+        """Makes the environment from packed arguments; returns what went wrong."""
         try:
             env = unpacked(make_env)(num_envs)
             if env.num_envs != num_envs:
@@ -142,7 +142,7 @@ class Node:
 
     def start(self, cpus: float) -> Any:
         """Start an actor there, and nowhere else; returns its handle."""
-        # Ray does not start it anew: it would come without its environment, and play a lost batch twice.
+        # Ray does not restart it: it would have no environment, and play a lost batch twice.
         options = {"num_cpus": cpus, "max_restarts": 0, "max_task_retries": 0}
         here = NodeAffinitySchedulingStrategy(self.id, soft=False)
         actor = ray.remote(NodePlayer).options(scheduling_strategy=here, **options)

@@ -21,7 +21,7 @@ class Player:
     Args:
         env: A vector environment that leaves it to others when episodes begin (`AutoresetMode.DISABLED`), and
             whose `reset` takes `options={"reset_mask": mask}` and a list of seeds.
-        max_episode_steps: After how many steps episodes are cut off; None leaves that to the environment.
+        max_episode_steps: Number of steps after which episodes are truncated; None: as in the environment.
 
     Raises:
         ValueError: The environment begins episodes on its own.
@@ -38,7 +38,7 @@ class Player:
         self._longest = np.inf if max_episode_steps is None else max_episode_steps
 
     def play(self, policy: Policy, ids: range, seed: int, *, keep_steps: bool = True) -> list[Episode]:
-        """Play episodes; they are the same whatever was played before.
+        """Play episodes, which do not depend on episodes played before.
 
         Args:
             policy: Says what to do.

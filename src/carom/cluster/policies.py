@@ -1,4 +1,4 @@
-"""What a policy is: something that is called with observations and returns actions."""
+"""Policies: functions from observations to actions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Policy(Protocol):
 
 
 class PolicyWithMemory(Policy, Protocol):
-    """A policy that draws random numbers, or remembers what it saw.
+    """A policy that draws random numbers, or has a memory.
 
     What it does in an episode must depend on nothing but that episode, lest one that is played again turns
     out differently: `begin_episodes` forgets the last one, and seeds a generator of its own for each row.

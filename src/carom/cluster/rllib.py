@@ -30,9 +30,9 @@ def train_on(config: Config, make_env: MakeEnv, num_envs_per_runner: int, *, nam
     Args:
         config: The algorithm's settings, of the new API stack. `env_runners(num_env_runners=...)` says how
             many runners there are: as many as nodes, say, since each uses all processors it is given.
-        make_env: Makes a vector environment of as many environments as it is told. Episodes that are over
+        make_env: Makes a vector environment with a given number of environments. Episodes that are over
             have to begin with the next step, as Gymnasium's do (`AutoresetMode.NEXT_STEP`).
-        num_envs_per_runner: How many environments each runner has.
+        num_envs_per_runner: Number of environments of each runner.
         name: What RLlib calls the environment.
 
     Returns:

@@ -30,16 +30,16 @@ class Rollouts:
     Args:
         make_env: Makes a vector environment of as many environments as it is told, on a node. It has to leave
             it to others when episodes begin (`autoreset_mode=AutoresetMode.DISABLED`).
-        num_envs_per_node: How many environments each is.
-        nodes: On how many nodes at most, or "all" that there are when a collection begins.
-        batch_size: How many episodes are given to a node at a time, and played again if it is lost; None for
+        num_envs_per_node: Number of environments of each.
+        nodes: Maximum number of nodes, or "all" nodes present when a collection begins.
+        batch_size: Number of episodes given to a node at a time, and repeated if the node is lost; None for
             as many as it has environments. With more of them fewer environments stand idle while the last
             episodes of a batch end.
-        max_episode_steps: After how many steps episodes are cut off; None leaves that to the environment.
+        max_episode_steps: Number of steps after which episodes are truncated; None: as in the environment.
         cpus_per_node: Processors that Ray is to count as taken on each node. How many an environment really
             uses is for `make_env` to say.
         seed: Seed of episode 0.
-        attempts: How many processes may die while they play the same batch before it is given up.
+        attempts: Maximum number of processes that may die while they play the same batch.
 
     Raises:
         ValueError: A number is too small.
@@ -133,7 +133,7 @@ class Rollouts:
             self._crew.give(member, batch, policy, self._seed, keep_steps)
 
     def close(self) -> None:
-        """End the processes on the nodes; Ray goes on."""
+        """End the processes on the nodes; Ray keeps running."""
         self._crew.close()
 
     def __enter__(self) -> Rollouts:

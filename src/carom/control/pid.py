@@ -60,8 +60,8 @@ class PID:
             kp: Proportional gain.
             ki: Integral gain.
             kd: Derivative gain.
-            output_limits: Least and greatest output; each a scalar or an array.
-            integral_limits: Least and greatest integral term, in units of the output.
+            output_limits: Minimum and maximum output; each a scalar or an array.
+            integral_limits: Minimum and maximum integral term, in units of the output.
             derivative_on: Differentiate the measurement (no kick on setpoint steps) or the error.
             derivative_filter: Time constant of the low-pass on the derivative [s]; 0 is no filter.
             tracking_time: Time constant of back-calculation [s]; None integrates conditionally.

@@ -74,8 +74,8 @@ class TrapezoidalTrajectory:
         Args:
             start: First position.
             goal: Last position.
-            max_velocity: Greatest speed of each joint [rad/s or m/s].
-            max_acceleration: Greatest acceleration of each joint [rad/s² or m/s²].
+            max_velocity: Maximum speed of each joint [rad/s or m/s].
+            max_acceleration: Maximum acceleration of each joint [rad/s² or m/s²].
 
         Raises:
             ValueError: Positions are not finite or differ in shape, or a bound is not positive.

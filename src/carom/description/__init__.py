@@ -1,4 +1,4 @@
-"""What a robot is, whatever file it came from: frozen dataclasses that know no physics."""
+"""Descriptions of robots, independent of file formats: frozen data classes without physics."""
 
 from carom.description.geometry import (
     Box,

@@ -50,7 +50,7 @@ class Deformable:
         gravity_factor: Share of the world's gravity that pulls it.
         springs: Springs, if there are any.
         neo_hookean: What its tetrahedra are like for any strain.
-        corotated: What they are like for small strains.
+        corotated: The material for small strains.
         stiffness_scale: Of a reduced body: factor on the stiffness of its modes.
         mode_damping: Of a reduced body: its damping, as a share of that stiffness [s].
     """

@@ -90,7 +90,7 @@ class ConvexHull:
 
 @record(eq=False)
 class TriangleMesh:
-    """Triangles that are what they are: no hull is made of them.
+    """A triangle mesh that is not replaced by its convex hull.
 
     Attributes:
         vertices: (n, 3) positions.
@@ -116,7 +116,7 @@ class Heightfield:
     Attributes:
         heights: (columns along y, rows along x) heights, unscaled.
         scale: Distance between neighbours along x and y, and factor on the heights.
-        middle: Height, unscaled, that lies at the origin of the frame.
+        middle: Unscaled height at the origin of the frame.
     """
 
     heights: NDArray[np.float64]

@@ -28,7 +28,7 @@ WITHOUT_LIMIT = (JointType.CONTINUOUS,)
 NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
 # Its positions are lengths, which scale with the robot.
 SLIDES = (JointType.PRISMATIC,)
-# What the engine takes it for.
+# Its type in the engine.
 JOINT_CODE = {
     JointType.REVOLUTE: JointCode.REVOLUTE,
     JointType.CONTINUOUS: JointCode.REVOLUTE,
@@ -46,10 +46,10 @@ class JointLimit:
 
     Attributes:
         lower: Least position [rad or m].
-        upper: Greatest position [rad or m].
-        effort: Greatest force the drive can give [N m or N].
-        velocity: Greatest speed [rad/s or m/s].
-        twist: Greatest twist of a spherical joint [rad]; negative means unlimited.
+        upper: Largest position [rad or m].
+        effort: Maximum force the drive can give [N m or N].
+        velocity: Maximum speed [rad/s or m/s].
+        twist: Largest twist of a spherical joint [rad]; negative means unlimited.
     """
 
     lower: float = 0.0

@@ -73,7 +73,7 @@ class ContactParameters:
         lateral_friction: Coulomb coefficient.
         rolling_friction: Torque per normal force about the tangents [m].
         spinning_friction: Torque per normal force about the normal [m].
-        restitution: Fraction of the normal speed that comes back.
+        restitution: Coefficient of restitution.
         stiffness: Contact spring [N/m].
         damping: Contact damper [N s/m].
         inertia_scaling: Factor on the link's inertia.

@@ -21,7 +21,7 @@ class Robot:
     Attributes:
         links: In file order.
         joints: In file order; `parent` and `child` index `links`.
-        root: Index of the link that is nobody's child.
+        root: Index of the link without parent.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
         deformable: What it is in place of links and joints, if it is soft; one link of that name stands for

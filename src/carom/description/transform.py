@@ -52,7 +52,7 @@ def quaternion_from_matrix(m: Matrix3) -> Quaternion:
 
 
 def turns_about_axes(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """The product of turns [rad] about the fixed axes x, then y, then z: of unit length but for rounding."""
+    """Product of rotations [rad] about the fixed axes x, y, z in this order; of unit length."""
     sr, cr = sin(roll / 2.0), cos(roll / 2.0)
     sp, cp = sin(pitch / 2.0), cos(pitch / 2.0)
     sy, cy = sin(yaw / 2.0), cos(yaw / 2.0)
@@ -133,7 +133,7 @@ def subtracted(a: Vector3, b: Vector3) -> Vector3:
 
 
 def rotate(quaternion: Quaternion, v: Vector3) -> Vector3:
-    """A vector turned by a quaternion."""
+    """Rotates a vector by a quaternion."""
     return matrix_vector(rotation_matrix(quaternion), v)
 
 

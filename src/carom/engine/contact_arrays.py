@@ -13,7 +13,7 @@ from carom.model.shape_arrays import ShapeArrays
 from carom.model.soft_arrays import SoftArrays
 from carom.native.tables import ArrayTable
 
-# Room for contacts in each of many worlds, before any have been found.
+# Initial number of contacts in each of many worlds.
 _LEAST_CONTACTS = 4
 
 
@@ -29,7 +29,7 @@ class ContactArrays:
         self.soft: SoftArrays = SoftArrays()
 
     def repeated(self, arrays: WorldArrays) -> ContactArrays:
-        """What bodies do to each other in the worlds of some arrays, in all of them as in the first."""
+        """Copies of the contact arrays for many worlds, all as in the first."""
         other = ContactArrays(arrays)
         other.shapes = deepcopy(self.shapes)
         other.contacts = self.contacts.copy(
@@ -46,13 +46,13 @@ class ContactArrays:
         return int(self.contacts.numpy["count_contacts"][0, THERE])
 
     def forget_contacts(self) -> None:
-        """Drop all contacts; the rows of their shapes are about to move."""
+        """Drop all contacts, because the rows of their shapes will change."""
         self.contacts.numpy["count_contacts"][:] = 0
 
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
-        """Let no contact be warm started in the next step: a body has been put elsewhere.
+        """Do not warm start contacts in the next step, because a body was moved.
 
-        So what follows depends on where everything is put, and not on what was there before.
+        So the next steps depend only on the new poses, not on those before.
 
         Args:
             worlds: In which worlds; None where there is one.
@@ -65,7 +65,7 @@ class ContactArrays:
             self.contacts.numpy["contact_warm_start"][0, :count] = 0.0
 
     def reserve(self) -> None:
-        """Bring arrays that go with others to the length of those."""
+        """Resize arrays to the length of the arrays they belong to."""
         self.shapes.reserve({"link": self._arrays.model.capacity["link"]})
         self.users.reserve({"user": self.user_count})
         self._arrays.state.reserve({"user": self.user_count})

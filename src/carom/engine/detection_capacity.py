@@ -9,7 +9,7 @@ CORNERS = 64
 
 
 def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
-    """Least number of rows per axis of `Pairs`, but for its `pair` axis, which grows on overflow.
+    """Minimum number of rows per axis of `Pairs`, except its `pair` axis, which grows on overflow.
 
     Args:
         shape_count: Number of shapes.

@@ -24,10 +24,10 @@ ProgramMaker = Callable[[KernelStructs, Plan], Program]
 
 MOST_STEPS = 64
 """Steps that can be asked for at once."""
-# Chunks of worlds for each thread: enough for uneven ones to even out.
+# Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 16
 _NONE = np.zeros(0, dtype=np.int64)
-# Contacts of many worlds take memory in each: their arrays become longer by so much at a time.
+# Contacts take memory in each of many worlds: factor by which their arrays grow.
 _GROWTH_OF_MANY = 1.25
 
 
@@ -35,27 +35,27 @@ class Engine:
     """Performs steps.
 
     A step of a world is a function of the model, its state and parameters and a workspace, and no Python
-    runs between the launches of one. Arrays are as long as they are while worlds are stepped. What did not
-    fit is counted per world, and read once at the end: the worlds concerned are where their steps began,
-    all arrays grow, and these worlds are stepped again.
+    runs between the launches of one. Arrays have a fixed length while worlds are stepped. Missing rows are
+    counted per world, and read once at the end: worlds with missing rows are restored to the start of their
+    steps, all arrays grow, and these worlds are stepped again.
 
     Attributes:
         arrays: Model and state of all bodies.
         contact_arrays: Shapes, contacts and user constraints.
-        status: What became of the last step of each world, (worlds, columns); see `carom.layouts.status`.
-        due: Substeps of each of the steps that are asked for at once.
-        changes: How often launches have had to be renewed.
-        growths: How often arrays have been replaced by longer ones because something did not fit.
-        run_prepared: A step of one substep of all worlds, once `prepare` has been called, at the least cost.
-            Afterwards `recover` has to be called if the status of a world is not `WELL`.
+        status: Result of the last step of each world, (worlds, columns); see `carom.layouts.status`.
+        due: Substeps of each of the steps of a call.
+        changes: Number of times that launches were renewed.
+        growths: Number of times that arrays were replaced by longer ones.
+        run_prepared: A step of one substep of all worlds, after `prepare`, at minimum cost. Then `recover`
+            has to be called if the status of a world is not `WELL`.
 
     Args:
         arrays: Model and state.
         contact_arrays: Shapes, contacts and user constraints.
-        threads: How many threads share the worlds.
+        threads: Number of threads.
     """
 
-    # What steps and the search for contacts consist of.
+    # The programs of steps and of collision detection.
     step_program: ProgramMaker = staticmethod(step_program)
     detection_program: Callable[[KernelStructs], Program] = staticmethod(detection_program)
 
@@ -72,12 +72,12 @@ class Engine:
         self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
         self._threads = Threads(threads)
         self._interpreters: list[Stepper] = self._make_interpreters(self.due)
-        # With no substep due, contacts are found and nothing moves.
+        # With no substep due, contacts are detected and nothing moves.
         self._detectors: list[Stepper] = self._make_interpreters(np.zeros(1, dtype=np.int32))
         self._steppers = self._interpreters
         self._make_program: ProgramMaker = self.step_program
         self.run_prepared: Callable[[], None] = self._steppers[0].run
-        # What an interpreter would do when the one launch of a step goes wrong that is run without one.
+        # What an interpreter would do after an error, for a step of a single launch that runs without one.
         self._abandon: list[Launch] = []
         self._plan: Plan | None = None
         # The plan before, where only constraints have changed since.
@@ -91,7 +91,7 @@ class Engine:
 
     @property
     def workspace(self) -> Workspace:
-        """That of the first thread, which questions about a world use as well."""
+        """That of the first thread, which queries use as well."""
         return self._workspaces[0]
 
     @property
@@ -118,7 +118,7 @@ class Engine:
         return self._bind([self.workspace])[0]
 
     def update_settings(self, parameters: EngineParameters) -> None:
-        """Bring the settings that kernels get up to date, those of launches that are there as well."""
+        """Update the settings for kernels, also those in existing launches."""
         if self._settings.update(parameters, self.arrays, self.contact_arrays):
             for workspace in self._workspaces:
                 workspace.structs.changed("settings")
@@ -137,10 +137,10 @@ class Engine:
     # Steps
 
     def prepare(self, *, watched: bool = False) -> None:
-        """Make the launches of a step for the bodies and constraints there are.
+        """Make the launches of a step for the present bodies and constraints.
 
         Args:
-            watched: Something is called after every substep.
+            watched: A function is called after every substep.
         """
         self._watched = watched
         plan = self._find_plan()
@@ -159,7 +159,7 @@ class Engine:
             self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
 
     def step_by(self, make_program: ProgramMaker, steppers: list[Stepper] | None = None) -> None:
-        """Step by other programs, and by other means than the usual, from now on."""
+        """Use other programs and steppers from now on."""
         self._make_program = make_program
         self._steppers = self._interpreters if steppers is None else steppers
         self.changed()
@@ -195,7 +195,7 @@ class Engine:
         """Perform one substep of a step of all worlds; the first begins it, the last ends it.
 
         Returns:
-            False if something did not fit: the worlds are where the step began, and it has to begin again.
+            False if arrays were too short: the worlds are at the start of the step, which has to be repeated.
         """
         self.due[0] = due
         self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
@@ -207,7 +207,7 @@ class Engine:
         return not len(short)
 
     def recover(self, **scalars: int) -> None:
-        """Step the worlds again in which something did not fit, with more room, until it does."""
+        """Repeat the steps of worlds whose arrays were too short, with longer arrays."""
         if self._first_status[STATUS] > WELL:
             for launch in self._abandon:
                 launch()
@@ -230,13 +230,13 @@ class Engine:
         self.run(self._detectors, worlds)
 
     def _short_of_room(self) -> np.ndarray:
-        """The worlds in which something did not fit."""
+        """The worlds whose arrays were too short."""
         if len(self.status) == 1 and self._first_status[STATUS] >= WELL:
             return _NONE
         return np.flatnonzero(self.status[:, STATUS] == OVERFLOW)
 
     def _grow(self, short: np.ndarray) -> None:
-        """Make room for what did not fit in some worlds."""
+        """Make arrays longer as needed by some worlds."""
         pairs, contacts = self.status[short, PAIRS_WANTED], self.status[short, CONTACTS_WANTED]
         growth = 2.0 if self.arrays.world_count == 1 else _GROWTH_OF_MANY
         self.contact_arrays.contacts.reserve({"contact": int(contacts.max())}, growth)
@@ -245,14 +245,14 @@ class Engine:
         self.growths += 1
         self.changed()
 
-    # What depends on where the worlds are
+    # Depends on the device
 
     def take(self, value: Any) -> Any:
-        """Numbers that a user gave, where they are if that is where the worlds are, else as they are."""
+        """A user's numbers; those on the device of the worlds stay there."""
         return value
 
     def table(self, struct: Any) -> ArrayTable:
-        """A table that kernels can work on along with those of the worlds."""
+        """A table that kernels can use together with those of the worlds."""
         return ArrayTable(struct)
 
     def _make_status(self) -> np.ndarray:
@@ -268,19 +268,19 @@ class Engine:
         status, due = np.zeros_like(self.status), np.zeros(1, dtype=np.int32)
         return [Interpreter(status, self._worlds, due, self._counter) for _ in self._workspaces]
 
-    # Whatever else is to be done in all worlds
+    # Other tasks in all worlds
 
     def task(self, make_launches: Callable[[KernelStructs], list[Launch]]) -> Task:
-        """Something that is done in all worlds whenever it is called.
+        """A task that runs in all worlds when it is called.
 
         Args:
-            make_launches: Makes its launches over the structs of a thread, again after arrays have moved.
+            make_launches: Makes its launches over a thread's structs; called again after arrays have moved.
                 Each has an argument `first_world`.
         """
         return Task(self, make_launches, self._make_task_interpreters())
 
     def spread(self, table: str, field: str) -> None:
-        """Give each world a value of its own of a parameter, so far the one that all share.
+        """Give each world its own value of a parameter that was shared.
 
         Args:
             table: "model", "shapes" or "users".
@@ -290,13 +290,13 @@ class Engine:
             self.changed()
 
     def set_parameter(self, table: str, field: str, rows: int | slice, values: np.ndarray) -> None:
-        """Set a parameter, world by world.
+        """Set a parameter in each world.
 
         Args:
             table: "model", "shapes" or "users".
             field: The field in it.
             rows: Which rows.
-            values: With the worlds in front.
+            values: First axis: worlds.
         """
         self.spread(table, field)
         parameters = self._parameters(table)
@@ -311,7 +311,7 @@ class Engine:
         }[table]
 
     def steps_done(self, worlds: np.ndarray) -> np.ndarray:
-        """How many of the steps asked for last some worlds have done."""
+        """Number of steps of the last call that some worlds have done."""
         return self.status[worlds, STEPS_DONE]
 
     def sleep_changed(self) -> None:
@@ -334,7 +334,7 @@ class Engine:
             interpreter.load(program(structs))
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
-        """Run programs on some worlds, None for all; afterwards they are ready to run as `run_prepared`."""
+        """Run programs on some worlds, None for all; afterwards `run_prepared` can run them."""
         if worlds is None and not scalars and len(interpreters) == 1:
             interpreters[0].run()
             return
@@ -357,7 +357,7 @@ class Engine:
 
 
 class Task:
-    """Something that is done in all worlds whenever it is called; see `Engine.task`."""
+    """A task that runs in all worlds when it is called; see `Engine.task`."""
 
     def __init__(
         self,
@@ -375,7 +375,7 @@ class Task:
         self._made_at = -1
 
     def __call__(self, worlds: np.ndarray | None = None) -> None:
-        """Do it in some worlds, by their numbers; None for all."""
+        """Run it in some worlds, by index; None for all."""
         if self._made_at != self._engine.changes:
             self._engine.load(self._interpreters, self._program)
             self._made_at = self._engine.changes

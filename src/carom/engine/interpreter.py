@@ -1,6 +1,6 @@
 """Performs programs of launches, world after world, without Python in between.
 
-What calls the launches in turn is a native function, `carom_perform` in `native/source/perform.cpp`.
+The launches are called by a native function, `carom_perform` in `native/source/perform.cpp`.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ _HEADER = 7
 # Numbers of a launch: addresses of the function, the bounds, the arguments, and among these of the world and
 # of the number of substeps, 0 if it has none.
 _PER_LAUNCH = 5
-# More than any program has.
+# More than in any program.
 _MOST_LAUNCHES = 32
 
 ALL_SUBSTEPS = 2**31 - 1
 
 
 class _Run(ctypes.Structure):
-    """What is asked for."""
+    """The arguments of a run."""
 
     _fields_: ClassVar[Any] = [
         ("program", ctypes.c_void_p),  # the launches, as `Interpreter` writes them
@@ -46,18 +46,18 @@ class _Run(ctypes.Structure):
 
 
 class Stepper(Protocol):
-    """What performs programs.
+    """Executes programs.
 
     Attributes:
-        run: Performs what has been asked for.
-        program: What was loaded last.
+        run: Runs the steps that were asked for.
+        program: The program loaded last.
     """
 
     run: Callable[[], None]
     program: Program
 
     def load(self, program: Program) -> None:
-        """Perform another program from now on."""
+        """Use another program from now on."""
         ...
 
     def ask(self, **asked: int) -> None:
@@ -72,7 +72,7 @@ class Interpreter(Stepper):
         status: `State.status_entry`.
         worlds: Numbers of the worlds; changed in place.
         due: Substeps of the steps; changed in place.
-        counter: One number that all threads share; None for a thread alone.
+        counter: One number that all threads share; None for a single thread.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class Interpreter(Stepper):
         self._status = status
         self._numbers = np.zeros(_HEADER + _PER_LAUNCH * _MOST_LAUNCHES, dtype=np.int64)
         self.program = Program([], [], [], [], [])
-        # What a run points to has to be kept.
+        # The memory that a run points to has to be kept alive.
         self._kept = (worlds, due, counter)
         self._asked = _Run(
             self._numbers.ctypes.data,
@@ -93,11 +93,11 @@ class Interpreter(Stepper):
             chunk=len(worlds),
             end_substep=ALL_SUBSTEPS,
         )
-        # What it does is changed in place, so that it never changes itself.
+        # Its arguments are changed in place, so the function itself never changes.
         self.run: Callable[[], None] = partial(library().perform, ctypes.byref(self._asked))
 
     def load(self, program: Program) -> None:  # noqa: D102
-        # Launches are changed in place where arrays have moved, so that most changes leave them as they are.
+        # If arrays have moved, launches are changed in place, so most changes keep the launches.
         if program == self.program:
             return
         ends = np.cumsum([len(part) for part in program])

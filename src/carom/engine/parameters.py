@@ -11,33 +11,33 @@ DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 
 @record(frozen=False)
 class EngineParameters:
-    """What `setPhysicsEngineParameter` and its relatives set.
+    """The parameters of `setPhysicsEngineParameter` and similar functions.
 
     After changing a field call `World.apply_parameters`.
 
     Attributes:
         time_step: Duration of one step [s].
-        substeps: Parts a step is solved in; 0 is the same as 1.
+        substeps: Number of substeps; 0 is the same as 1.
         gravity: [m/s²] in world axes.
-        solver_iterations: Greatest number of sweeps over the constraint rows.
-        solver_residual_threshold: Sweeps end when no row changed its velocity by more, squared.
-        erp: Share of a joint limit's or user constraint's error taken back per step.
+        solver_iterations: Maximum number of sweeps over the constraint rows.
+        solver_residual_threshold: Sweeps end when no row's squared velocity change exceeds this.
+        erp: Share of a joint limit's or user constraint's error corrected per step.
         contact_erp: The same for penetrations.
         friction_erp: The same for friction anchors.
         global_cfm: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
-        contact_breaking_threshold: Distance at which a contact point is given up [m].
-        contact_slop: Penetration that is left alone [m].
+        contact_breaking_threshold: Distance at which a contact point is removed [m].
+        contact_slop: Penetration that is not corrected [m].
         restitution_velocity_threshold: Slower impacts do not bounce [m/s].
         split_impulse: Deep errors are not turned into velocity.
-        split_impulse_penetration_threshold: What counts as deep (negative) [rad or m].
-        cone_friction: Friction is bounded by a cone, not by a box.
+        split_impulse_penetration_threshold: Threshold of a deep error (negative) [rad or m].
+        cone_friction: Friction is bounded by a cone, not by a pyramid.
         deterministic_overlapping_pairs: Pairs are kept in a fixed order.
         joint_feedback_mode: Bit 1: force-torque sensors in world axes; bit 2: about the joint.
         allowed_ccd_penetration: Depth that continuous collision detection allows [m].
         warm_starting_factor: PyBullet's parameter of this name, which has no effect on multibodies.
         contact_warm_starting: Share of their last impulses that the contacts of rigid bodies at rest start
-            from. 0 is what PyBullet does; the rest poses are the same, but take more sweeps to hold.
-        noncontact_inner_iterations: Passes over joint rows per sweep.
+            from. 0 is PyBullet's behaviour; rest poses are the same, but need more sweeps.
+        noncontact_inner_iterations: Iterations over joint rows per sweep.
         minimum_island_size: Islands are solved together until they have more constraints.
         report_solver_analytics: `stepSimulation` returns solver statistics.
         constraint_solver: 1 sequential impulses, 2 projected Gauss-Seidel, 3 Dantzig.
@@ -80,11 +80,11 @@ class EngineParameters:
     def substeps_due(self, unspent_time: float) -> tuple[int, float]:
         """Substeps of the next step, and the time that they leave to the one after it [s].
 
-        Like Bullet's clock it counts as many as fit the time that has passed, which rounding can make
-        one fewer, then one more, than asked for; never more.
+        As with Bullet's clock, it is the number that fits into the elapsed time; by rounding it can be one
+        fewer, then one more than set, but never exceeds that.
 
         Args:
-            unspent_time: What the steps before have left [s].
+            unspent_time: Time left by the steps before [s].
         """
         if self.substeps <= 1:
             return 1, 0.0

@@ -1,4 +1,4 @@
-"""Which kernels a step consists of, and in which order they run."""
+"""The kernels of a step, and their order."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ SOFT_MOTION = (
     soft_motion_kernel,
     constraints_kernel,
     integration_kernel,
-    # Afterwards, for fixed bases move on by their velocities as well.
+    # Afterwards, because fixed bases also move by their velocities.
     follow_nodes_kernel,
 )
 
 
 class Plan(NamedTuple):
-    """What a step has to look for.
+    """What a step has to handle.
 
     Attributes:
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
-        coupled: Something could tie bodies together: they touch, or users have tied them.
+        coupled: Bodies could be coupled by contacts or user constraints.
         soft: There are soft bodies.
     """
 
@@ -64,11 +64,11 @@ class Program(NamedTuple):
     """The launches of a step of one world, in the order in which they run.
 
     Attributes:
-        begin: At its beginning; all of a step of bodies that have nothing to do with each other.
+        begin: At its beginning; for bodies that cannot interact, the whole step.
         detection: In each substep: collision detection.
         motion: After that.
         end: At its end.
-        abandon: In place of all that is left, as soon as the world's status is no longer `WELL`.
+        abandon: Instead of all remaining launches, as soon as the world's status is not `WELL`.
     """
 
     begin: list[Launch]
@@ -79,7 +79,7 @@ class Program(NamedTuple):
 
     @property
     def whole(self) -> Launch | None:
-        """The one launch that a step of one substep consists of, if it does."""
+        """The launch of a step with one substep, if it has only one."""
         return None if self.detection or self.motion or self.end else self.begin[0]
 
 

@@ -1,4 +1,4 @@
-"""What quick calls know of a world: kernels that bring its poses up to date, and its contacts."""
+"""Addresses for quick calls of a world: kernels that update its poses, and its contacts."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _MASS, _INERTIA, _FIXED_BASE = intern("mass"), intern("inertia"), intern("fixed_
 
 
 class QuickScene:
-    """Addresses that hold until bodies, constraints or arrays of the world change.
+    """Addresses that are valid until bodies, constraints or arrays of the world change.
 
     Attributes:
-        record: The addresses; functions that are not known are null.
+        record: The addresses; unknown functions are null.
     """
 
     __slots__ = ("_kept", "record")
@@ -42,14 +42,14 @@ class QuickScene:
         self._kept.clear()
 
     def forget_queries(self) -> None:
-        """Forget what answers questions about contacts and shapes: it is about to be made anew."""
+        """Forget the addresses for queries of contacts and shapes, which will be replaced."""
         self.record.report.function = None
         self.record.placement.place.function = None
         self.record.placement.changes = -1
         self.record.nearest.search.function = None
 
     def know_poses(self, launch: TreeLaunch, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Take what brings the link poses of a body up to date, and where contacts and surfaces are."""
+        """Set the addresses that update the link poses of a body, and those of contacts and surfaces."""
         contacts, shapes = contact_arrays.contacts.struct(), contact_arrays.shapes.table.struct()
         model = arrays.model.struct()
         self._kept += (launch, contacts, shapes, model)
@@ -65,27 +65,27 @@ class QuickScene:
         _know(self.record.find_poses, launch)
 
     def know_twists(self, launch: TreeLaunch) -> None:
-        """Take what brings the link velocities of a body up to date."""
+        """Set the addresses that update the link velocities of a body."""
         self._kept.append(launch)
         _know(self.record.find_twists, launch)
 
     def keep(self, *what: Any) -> None:
-        """Keep what addresses in the record point to, until they are forgotten."""
+        """Keep the memory that addresses in the record point to, until they are forgotten."""
         self._kept += what
 
     def know_contacts(self, question: Question, there: int, keep: Any) -> None:
-        """Take what lists contacts.
+        """Set the addresses that list contacts.
 
         Args:
             question: The question, whose arrays are a `ContactReport`.
-            there: Address of how many contacts there are.
+            there: Address of the number of contacts.
             keep: What this address points to.
         """
         report = question.arrays.struct()
         launch = question.launch
         self._kept += (launch, report, keep)
         record = self.record.report
-        # The function last: without it nothing else is looked at.
+        # The function last: without it the other addresses are not used.
         function, record.bounds, record.arguments, *asked = launch.addresses(*REPORT_SCALARS)
         for name, address in zip(REPORT_SCALARS, asked, strict=True):
             setattr(record, f"asked_{name}", address)
@@ -96,11 +96,11 @@ class QuickScene:
 
     @property
     def address(self) -> int:
-        """Address of the record, which is there as long as this is."""
+        """Address of the record, which lives as long as this object."""
         return addressof(self.record)
 
 
 def _know(record: Launch, launch: TreeLaunch) -> None:
-    # The function last: without it nothing else is looked at.
+    # The function last: without it the other addresses are not used.
     function, record.bounds, record.arguments, record.tree = launch.addresses()
     record.function = function

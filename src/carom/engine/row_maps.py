@@ -1,4 +1,4 @@
-"""What the rows of the link arrays stand for."""
+"""Bodies and links of the rows of the link arrays."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,7 +8,7 @@ from carom.native.tables import ArrayTable
 
 
 def row_map_struct(places: Sequence[tuple[int, int]], table: ArrayTable | None = None) -> Any:
-    """A struct of the bodies and links that the rows of the link arrays stand for.
+    """A struct of the bodies and links of the rows of the link arrays.
 
     Args:
         places: Body and link of each row.

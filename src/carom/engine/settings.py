@@ -1,4 +1,4 @@
-"""The engine's parameters as kernels take them."""
+"""The engine's parameters for kernels."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class EngineSettings:
     """`Settings`: the parameters of worlds, and how much of their arrays is in use.
 
     Attributes:
-        struct: What kernels are given: always the same struct, whose fields change.
+        struct: The argument of kernels: always the same struct, whose fields change.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class EngineSettings:
     def update(
         self, parameters: EngineParameters, arrays: WorldArrays, contact_arrays: ContactArrays
     ) -> bool:
-        """Bring the struct up to date, and the gravity of all worlds; true if the struct has changed."""
+        """Update the struct, and the gravity of all worlds; true if the struct has changed."""
         if parameters.gravity != self._gravity:
             arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
             arrays.model.written("gravity_vector")

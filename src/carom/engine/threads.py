@@ -14,7 +14,7 @@ class Threads:
     """Runs functions that release the interpreter's lock, each in a thread of its own.
 
     Args:
-        count: How many functions there will be.
+        count: Number of functions.
     """
 
     def __init__(self, count: int) -> None:
@@ -31,7 +31,7 @@ class Threads:
         if self._pool is None or self._process != os.getpid():
             from concurrent.futures import ThreadPoolExecutor
 
-            # The threads of a process do not come along when it forks.
+            # Threads do not exist in a forked process.
             self._pool = ThreadPoolExecutor(self._count - 1, "carom-worlds")
             self._process = os.getpid()
         started = [self._pool.submit(function) for function in others]

@@ -1,4 +1,4 @@
-"""What stepping a world needs besides that world."""
+"""The workspace of a step."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from carom.native.tables import ArrayTable
 
 
 class Workspace:
-    """Room for the intermediate results of one world's step, whichever world it is: one for each thread.
+    """Memory for the intermediate results of a step of any world: one for each thread.
 
-    Nothing in it lasts from one step to the next. Where worlds are stepped side by side, each has its own.
+    Nothing in it persists from one step to the next. If worlds are stepped in parallel, each has its own.
 
     Attributes:
-        scratch: Of single trees.
+        scratch: For single trees.
         pairs: Of collision detection.
         pair_rows: Of the solver.
         soft_work: Of soft bodies.
@@ -39,7 +39,7 @@ class Workspace:
         self.structs: KernelStructs = KernelStructs()
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Bring arrays that go with others to the length of those."""
+        """Resize arrays to the length of the arrays they belong to."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
         self.scratch.reserve(arrays.used)
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
@@ -72,11 +72,11 @@ class Workspace:
             )
 
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:
-        """Rows that collision detection needs, by axis of `Pairs`, but for its pairs."""
+        """Rows that collision detection needs, by axis of `Pairs`, except its pairs."""
         return scratch_capacity(shape_count, contacts)
 
     def grow(self, pairs: int, *, rows: bool) -> None:
-        """Make room for so many pairs of shapes, and if asked for twice as many rows over two trees."""
+        """Make room for a number of pairs of shapes, and on request for twice as many rows over two trees."""
         self.pairs.reserve({"pair": pairs})
         if rows:
             capacity = self.pair_rows.capacity

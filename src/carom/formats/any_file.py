@@ -15,11 +15,11 @@ MJCF_SUFFIXES = (".xml", ".mjcf")
 
 
 def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[PlacedRobot]:
-    """All robots of a file, and where it puts them.
+    """All robots of a file, and their poses.
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
-        search: Where a file that is not there as named, and meshes, are looked for.
+        search: Folders in which the file, if not found as named, and meshes are searched.
 
     Raises:
         DescriptionError: The file cannot be used, or its kind is not known.

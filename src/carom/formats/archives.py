@@ -48,7 +48,7 @@ class Archive:
                     raise DescriptionError(
                         f"{len(members)} members of {size} bytes are too many to unpack", file=path
                     )
-                # Names that point out of the folder are turned into ones within.
+                # Names that point out of the folder are changed to names within.
                 archive.extractall(self.folder)
         except _DAMAGES as problem:
             self.close()

@@ -28,7 +28,7 @@ class FileStamp(NamedTuple):
     Attributes:
         modified: Time of the last modification [ns].
         size: [bytes].
-        inode: Tells a file moved into place from the one it replaced.
+        inode: Distinguishes a file moved into place from the one it replaced.
         taken: When the stamp was taken [ns]; not compared.
     """
 
@@ -54,7 +54,7 @@ class FileStamp(NamedTuple):
 
 
 def is_fresh(file: Path) -> bool:
-    """Whether a file has just been written, so that it may be gone in a moment, as temporary ones are."""
+    """Whether a file was written very recently, so that it may be a temporary one."""
     try:
         stamp = FileStamp.of(file)
     except OSError:
@@ -71,8 +71,8 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
     try:
         stamp = FileStamp.of(file)
         if not file.is_file():
-            # A pipe would wait for somebody to write, and a device may have no end.
-            raise DescriptionError("it is no regular file", file=file)
+            # A pipe would block until it is written to, and a device may have no end.
+            raise DescriptionError("it is not a regular file", file=file)
         if stamp.size > most_bytes:
             raise DescriptionError(f"{stamp.size} bytes are more than the {most_bytes} accepted", file=file)
         with open(file, "rb") as stream:
@@ -92,7 +92,7 @@ class FileCache(Generic[Key, Value]):
 
     Args:
         capacity: Most values kept.
-        outlive: Serve values of files that are gone, too.
+        outlive: Also return values of deleted files.
     """
 
     def __init__(self, capacity: int, *, outlive: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""A robot and where a file puts it."""
+"""A robot and its pose in a file."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from pathlib import Path
 _CALL = "p.setAdditionalSearchPath(pybullet_data.getDataPath())"
 # How alike names have to be for one to be meant by the other.
 _LIKENESS = 0.75
-# Longer ones are nobody's, and take long to compare.
+# Longer names match none, and take long to compare.
 _LONGEST_NAME = 255
 
 
@@ -25,13 +25,13 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
     """What to do about a file that was not found, as the end of a sentence; empty if there is nothing to say.
 
     Args:
-        name: What was looked for.
+        name: The name that was searched.
         searched: Directories that were searched besides the working directory.
     """
     folder = shipped_folder()
     near = _near(name, Path(name).parent)
     if folder is not None and not name.is_absolute() and folder not in searched:
-        # `os.path`, for which a name that no file can have is none.
+        # `os.path`, which accepts names that no file can have.
         if os.path.isfile(folder / name):
             return f"; pybullet_data has one: call {_CALL} before"
         if meant := _near(name, folder / name.parent, name.parent):

@@ -50,7 +50,7 @@ def urdf_text(robot: Robot, folder: Path) -> str:
         folder: Where the file will be: meshes and textures are named as seen from there.
 
     Raises:
-        DescriptionError: It has a shape that URDF cannot say, or is a soft body.
+        DescriptionError: It has a shape that URDF does not have, or is a soft body.
     """
     if robot.deformable is not None:
         raise DescriptionError("soft bodies are not written as URDF", file=robot.source)
@@ -122,7 +122,7 @@ class _Writer:
                 return f"<cdf filename={self._file(path)}/>"
             case _:
                 raise DescriptionError(
-                    f"link {link.name!r} has a shape that URDF cannot say: {type(geometry).__name__}",
+                    f"link {link.name!r} has a shape that URDF does not have: {type(geometry).__name__}",
                     file=self.robot.source,
                 )
 

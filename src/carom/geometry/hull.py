@@ -32,7 +32,7 @@ FLAT = 1e-6
 """Relative thickness below which points are thought to lie in a plane, on a line or in one point."""
 
 THICKEST_SLAB = 1e-4
-"""Greatest half thickness given to what has none [m]."""
+"""Largest half thickness given to what has none [m]."""
 
 _SLAB = 1e-3
 """Half thickness given to what has none, relative to its size."""

@@ -56,7 +56,7 @@ def merged_loops(
         else:
             loops.append(loop)
     merged = _without_middles(loops)
-    # What is thinner everywhere than the tolerance would lose its faces.
+    # A shape thinner than the tolerance would lose its faces.
     return merged if len(merged) >= LEAST_FACES else [list(triangle) for triangle in triangles]
 
 

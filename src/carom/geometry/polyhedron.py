@@ -17,7 +17,7 @@ class Polyhedron:
         vertices: (n, 3) positions [m].
         planes: (m, 4) planes of the faces: a unit normal that points out, and n · x on the plane.
         first_corner: (m,) where the corners of each face begin in `corners`.
-        corner_count: (m,) how many corners each face has.
+        corner_count: (m,) number of corners of each face.
         corners: Indices into `vertices`, counter-clockwise around each face as seen from outside.
     """
 

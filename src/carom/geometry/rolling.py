@@ -18,7 +18,7 @@ FLAT = 1.0 / 16.0
 
 
 def flat_faces_first(solid: Polyhedron) -> tuple[Polyhedron, int]:
-    """The solid with the faces on which it can lie before the others, and how many these are."""
+    """The solid with the faces on which it can lie before the others, and their number."""
     areas = solid.face_areas()
     is_flat = areas >= FLAT * areas.sum()
     count = int(is_flat.sum())

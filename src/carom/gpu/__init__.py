@@ -1,1 +1,1 @@
-"""Steps of many worlds in fine launches, for CUDA devices. Needs Warp, which the extra `gpu` brings."""
+"""Steps of many worlds in fine launches, for CUDA devices. Needs Warp, from the extra `gpu`."""

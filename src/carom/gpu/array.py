@@ -73,7 +73,7 @@ class DeviceArray(OnDevice):
 
     @classmethod
     def of(cls, array: Any) -> DeviceArray:
-        """What an array of Warp shows; its entries are numbers, or vectors and matrices of them."""
+        """A view of a Warp array; its entries are numbers, or vectors and matrices of numbers."""
         inner = tuple(getattr(array.dtype, "_shape_", ()))
         dtype = np.dtype(wp.dtype_to_numpy(getattr(array.dtype, "_wp_scalar_type_", array.dtype)))
         strides = (*array.strides, *_compact_strides(inner, dtype.itemsize))
@@ -245,7 +245,7 @@ class DeviceArray(OnDevice):
             return DeviceArray.zeros((), _REAL, self.device)._here(value)
         return value if value.dtype == _REAL else value.astype(_REAL)
 
-    # What is compared is read back, and gives arrays of NumPy.
+    # Comparisons read the array back, and return NumPy arrays.
 
     def __eq__(self, other: object) -> Any:
         return self.numpy() == np.asarray(other)

@@ -36,7 +36,7 @@ class Device(Protocol):
     Arrays are NumPy's, or can be used like them as far as `carom.gpu.array.DeviceArray` says.
 
     Attributes:
-        name: What users call it.
+        name: Its name for users.
     """
 
     name: str
@@ -63,7 +63,7 @@ class Device(Protocol):
         ...
 
     def take(self, value: Any) -> Any:
-        """What a user gave: as an array on the device if it is there already, else as it is."""
+        """A user's value: as an array on the device if it is there already, otherwise unchanged."""
         ...
 
     def launch(
@@ -79,14 +79,14 @@ class Device(Protocol):
         Args:
             module: The module in `carom.kernels` that it is in.
             kernel: Its name.
-            dim: How many times it runs, along one or two axes.
+            dim: Number of threads, along one or two axes.
             structs: Structs by the names that kernels give them.
             scalars: Numbers by these names.
         """
         ...
 
     def capture(self, launches: Callable[[], None]) -> Callable[[], None]:
-        """A sequence of launches as one, which does what they would do now.
+        """A captured sequence of launches, to be run as one.
 
         What cannot be captured is launched one by one, in the same order.
         """

@@ -50,10 +50,10 @@ class DeviceEngine(Engine):
         """So many worlds like one there is.
 
         Args:
-            device: Where they are to be.
+            device: The device of the worlds.
             arrays: Model and state of the one.
             contact_arrays: Its shapes, contacts and user constraints.
-            count: How many there are to be.
+            count: Number of worlds.
 
         Raises:
             MemoryError: There is no room for them.

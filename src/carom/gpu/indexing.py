@@ -1,4 +1,4 @@
-"""What an index of an array means: which part of its memory, and which of that by a list."""
+"""Indexing of arrays: a strided part of the memory, and a list of indices in it."""
 
 from __future__ import annotations
 

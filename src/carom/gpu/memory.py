@@ -61,7 +61,7 @@ def check_room(device: Device, count: int, make: Callable[[CountingDevice], Any]
 
     Args:
         device: The device.
-        count: How many there are to be.
+        count: Number of worlds.
         make: Makes all their arrays on a device that only counts them.
 
     Raises:

@@ -15,7 +15,7 @@ from carom.layouts.status import STEPS_DONE
 
 
 class _Asked:
-    """What a stepper is asked for; see `carom.engine.interpreter`."""
+    """The arguments of a stepper; see `carom.engine.interpreter`."""
 
     def __init__(self, world_count: int) -> None:
         self.program = Program([], [], [], [], [])
@@ -33,8 +33,8 @@ class _Asked:
 class StepStepper(_Asked, Stepper):
     """Performs steps of all worlds at once, each number of substeps as a graph.
 
-    What has become of the worlds is read when all steps asked for are launched: one number, and only if that
-    is not 0 what it was in each.
+    The status of the worlds is read after all steps were launched: one number, and only if it is not 0 that
+    of each world.
 
     Args:
         structs: Structs on the device.
@@ -142,7 +142,7 @@ class TaskStepper(_Asked, Stepper):
 
 
 def consecutive(numbers: np.ndarray) -> list[tuple[int, int]]:
-    """Runs of numbers that follow each other: the first of each, and how many they are."""
+    """Runs of consecutive numbers: the first of each, and its length."""
     runs = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
     return [(int(run[0]), len(run)) for run in runs if len(run)]
 

@@ -48,7 +48,7 @@ class DeviceTable(ArrayTable):
             device: Where.
             table: A table on the host.
             struct: Its struct.
-            world_count: How many worlds there are to be.
+            world_count: Number of worlds.
             rows: Of these axes, keep so many rows.
         """
         other = cls(device, struct, world_count)

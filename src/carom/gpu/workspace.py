@@ -27,13 +27,13 @@ MOST_WORKERS = 32768
 """Threads that look for contacts: more than a GPU runs at a time. Each needs 23 kB."""
 # Room for pairs of shapes, rows over two trees and their blocks to begin with; it doubles where it is short.
 _FIRST_ROOM = {"pair": 16, "row": 64, "jacobian": 256, "matrix": 64}
-# What the search in one pair takes, which workers have and worlds do not.
+# Memory for the search in one pair, which belongs to workers, not to worlds.
 _OF_WORKERS = ("candidate", "polygon", "polytope")
 
 
 @dataclass(frozen=True)
 class Extent:
-    """How many of everything there are in a step.
+    """Sizes of a step.
 
     Attributes:
         worlds: Worlds.
@@ -60,7 +60,7 @@ class DeviceStructs(KernelStructs):
 
     Attributes:
         device: The device.
-        extent: How many of everything there are.
+        extent: The numbers of links, joints and so on.
         arrays: The arrays of `IslandWork`, `PairWork` and `RunWork`, by the names of these structs.
         parts: What `RunWork.world_part` has been set to.
     """
@@ -94,7 +94,7 @@ class DeviceWorkspace(Workspace):
 
     Args:
         device: The device.
-        world_count: How many worlds there are.
+        world_count: Number of worlds.
     """
 
     def __init__(self, device: Device, world_count: int) -> None:
@@ -109,7 +109,7 @@ class DeviceWorkspace(Workspace):
         self._extent: Extent | None = None
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Bring arrays that go with others to the length of those."""
+        """Resize arrays to the length of the arrays they belong to."""
         touching = can_collide(arrays, contact_arrays)
         if touching:
             self.pairs.reserve(_FIRST_ROOM)

@@ -1,4 +1,4 @@
-"""What the kernels of inverse kinematics work on: the moving part of a body, and a search for a pose.
+"""Data of the kernels of inverse kinematics: the moving part of a body, and a search for a pose.
 
 A *chain* holds the joints between the base and the ends that are to reach their targets; what is fixed
 together is folded into constant frames, so that placing the ends costs as little as possible. It may
@@ -38,7 +38,7 @@ DAMPED, NULL_SPACE, SELECTIVE = 0, 1, 2
 
 @struct
 class ChainSizes:
-    """How many of everything there are."""
+    """The numbers of links, joints and so on."""
 
     joints: Int32
     ends: Int32
@@ -66,7 +66,7 @@ class JointModel:
 
 @struct
 class ColumnModel:
-    """A freedom of a joint of the chain."""
+    """A degree of freedom of a joint of the chain."""
 
     dof: Int32
     low: real  # where new starts are drawn from
@@ -83,7 +83,7 @@ class JointPlace:
 
 @struct
 class DofChoice:
-    """What is asked of a dof, and its next step."""
+    """The options of a dof, and its next step."""
 
     damping: real
     lower: real
@@ -95,7 +95,7 @@ class DofChoice:
 
 @struct
 class ColumnChoice:
-    """How much a column may do."""
+    """The options of a column."""
 
     weight: real
     held: Int32  # 1 at a bound that its step would pass

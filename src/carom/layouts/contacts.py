@@ -202,7 +202,7 @@ class UserConstraints:
     user_axis: Vectors3  # in the inertial frame of link a
     user_max_impulse: Reals
     user_gear_ratio: Reals
-    user_gear_auxiliary: Ints  # link row of a joint whose motion is taken off, -1 for none
+    user_gear_auxiliary: Ints  # link row of a joint whose motion is subtracted, -1 for none
     user_relative_target: Reals
     user_erp: Reals
     user_enabled: IntRows  # 0: as if it were not there

@@ -52,7 +52,7 @@ else:
 
 @struct
 class Scene:
-    """Everything there is to be drawn, at rest: changes only when bodies or their looks change."""
+    """Everything visible, in link frames: changes only when bodies or their appearance change."""
 
     vertex_position: Vectors3  # in the inertial frame of the link
     vertex_normal: Vectors3
@@ -87,7 +87,7 @@ class View:
     facet_second: Vectors3
     facet_third: Vectors3
     facet_depth: Vectors3
-    facet_box: Indices4  # least column and row, greatest column and row
+    facet_box: Indices4  # least column and row, largest column and row
     facet_triangle: Ints
     chunk_facet_count: Ints
     pixel_depth: Reals

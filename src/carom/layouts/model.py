@@ -160,7 +160,7 @@ class Model:
 
 @struct
 class State:
-    """What changes from step to step, and what users set for the next one."""
+    """Data that change in each step, and inputs for the next step."""
 
     position: RealRows
     dof_velocity: RealRows
@@ -177,7 +177,7 @@ class State:
     tree_residual: RealRows
     tree_activity: IntRows  # see `codes.Activity`
     tree_wants_sleep: IntRows  # 1: it sleeps as soon as all of its island are
-    tree_idle_time: RealRows  # for how long it has hardly moved [s]
+    tree_idle_time: RealRows  # time for which it has hardly moved [s]
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
     node_position: Vector3Rows  # of soft bodies, see `layouts.soft`
     node_velocity: Vector3Rows

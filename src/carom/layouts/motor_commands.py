@@ -1,4 +1,4 @@
-"""What the kernel that sets the motors of several joints works on."""
+"""Data of the kernel that sets the motors of several joints."""
 
 from carom.layouts.types import Ints, Reals, struct
 
@@ -11,7 +11,7 @@ POSITIONS, VELOCITIES, FORCES, KPS, KDS = 1, 2, 4, 8, 16
 
 @struct
 class MotorCommands:
-    """What motors of one freedom each are told."""
+    """Commands of motors with one degree of freedom each."""
 
     joint_dof: Ints
     joint_lower: Reals  # least target position

@@ -1,4 +1,4 @@
-"""What the kernels of inverse dynamics, mass matrices, Jacobians and stable PD control work on.
+"""Data of the kernels of inverse dynamics, mass matrices, Jacobians and stable PD control.
 
 A *node* is a joint that moves, with all links that move as one behind it; node 0 is the base. A node's frame
 has its origin at the joint. Hinges turn about z; the other axes are as convenient. Everything about a node
@@ -23,7 +23,7 @@ POSE = 3
 
 @struct
 class TreeSizes:
-    """How many of everything there are."""
+    """The numbers of links, joints and so on."""
 
     nodes: Int32
     coordinates: Int32
@@ -110,13 +110,13 @@ class Tree:
 
 @struct
 class Control:
-    """What the joints are to do, and the memory for finding out how."""
+    """Targets of the joints, and workspace of the controller."""
 
     coordinate_target: Reals
     dof_target_rate: Reals
     dof_kp: Reals
     dof_kd: Reals
-    dof_most: Reals  # greatest torque
+    dof_most: Reals  # maximum torque
     dof_torque: Reals  # the answer
     dof_acceleration: Reals
     entry_factor: Reals  # triangular factor of the mass matrix with the controller's damping, row after row

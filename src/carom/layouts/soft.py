@@ -1,4 +1,4 @@
-"""What soft bodies consist of: `SoftModel`, and `SoftWork`, what a step of them needs.
+"""Data of soft bodies: `SoftModel`, and `SoftWork`, the workspace of a step.
 
 A soft body is *nodes* (points with mass), *springs* between two and *tetrahedra* between four of them, and a
 surface of triangular *faces*. A tree without links stands for it among all other bodies: a fixed base whose

@@ -29,7 +29,7 @@ class Type:
     Attributes:
         scalar: NumPy's name of the numbers.
         shape: () for a number.
-        kind: What a kernel takes it for: "scalar", "vector", "quaternion", "transform" or "matrix".
+        kind: Its type in kernels: "scalar", "vector", "quaternion", "transform" or "matrix".
     """
 
     scalar: str

@@ -38,8 +38,8 @@ class LinkSpec:
         lower: Lower limit as the file states it [rad or m].
         upper: Upper limit; `lower > upper` means none.
         limited: The engine enforces `lower` and `upper`.
-        effort: Greatest drive force the file states; not enforced.
-        velocity: Greatest speed the file states; not enforced.
+        effort: Largest drive force the file states; not enforced.
+        velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
         damping: Viscous joint damping [N m s/rad or N s/m].
         friction: Joint friction the file states; not simulated.
@@ -90,7 +90,7 @@ class BodySpec:
         flags: The loading flags it was made with.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
-        soft: What a soft body is made of; its base is fixed and has neither shapes nor links.
+        soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
     """
 
     name: str

@@ -36,7 +36,7 @@ _UNBOUNDED = 1e30
 def turned_box(
     center: Vector3, half: Vector3, rotation: Matrix3, position: Vector3
 ) -> tuple[Vector3, Vector3]:
-    """Centre and half sizes of the bounds of a box after it is turned and moved."""
+    """Centre and half sizes of the bounds of a box after rotation and translation."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
     cx, cy, cz = center
     hx, hy, hz = half
@@ -80,7 +80,7 @@ class Bounds(NamedTuple):
         return Bounds(self.center, (x + margin, y + margin, z + margin))
 
     def placed(self, rotation: Matrix3, position: Vector3) -> Bounds:
-        """Bounds of the box after it is turned and moved."""
+        """Bounds of the box after rotation and translation."""
         return Bounds(*turned_box(self.center, self.half, rotation, position))
 
     def joined(self, other: Bounds) -> Bounds:
@@ -99,7 +99,7 @@ class Bounds(NamedTuple):
 def placed_bounds(
     geometry: Geometry, rotation: Matrix3, position: Vector3, *, implicit_cylinder: bool
 ) -> Bounds:
-    """Bounds of a shape after it is turned and moved; those of all but balls and planes are boxes turned.
+    """Bounds of a shape after rotation and translation; except for balls and planes, of its rotated box.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

@@ -192,7 +192,7 @@ class WorldArrays:
             position += POSITION_COUNT[code]
 
     def set_base_freedom(self, rows: TreeRows, *, free: bool) -> None:
-        """Let the base of a body move, or hold it where it is."""
+        """Free the base of a body, or fix it in the world."""
         model = self.model.numpy
         tree, first, count = rows.tree, rows.first["dof"], rows.count["dof"]
         joints = first + BASE_VELOCITIES
@@ -283,14 +283,14 @@ class WorldArrays:
         self.used.update(used)
 
     def removal(self, rows: TreeRows, others: Sequence[TreeRows]) -> Callable[[], None]:
-        """Make ready to take a body's rows out.
+        """Prepare to remove a body's rows.
 
         Args:
             rows: Its rows.
             others: Those of all others; where they are behind it they move up.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         cuts = {axis: (rows.first[axis], count) for axis, count in rows.count.items() if count}
         remove_model = self.model.removal(cuts, self.used, _INDEX_FIELDS)

@@ -1,4 +1,4 @@
-"""From a file to what a world takes: bodies and where they are."""
+"""From a file to bodies and their poses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.model.body_spec import BodySpec
 from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.model.shape_pieces import shape_pieces
 
-# What PyBullet does not do with MJCF files, and what it always does.
+# Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
     LoadFlags.MERGE_FIXED_LINKS | LoadFlags.IGNORE_VISUAL_SHAPES | LoadFlags.IGNORE_COLLISION_SHAPES
 )
@@ -36,7 +36,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
     Args:
         path: The file.
-        search: Where it and what it refers to are looked for.
+        search: Folders in which it and the files it refers to are searched.
         flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
         as_mujoco: `axisangle` turns bodies, and named classes limit joints; in PyBullet they do not.
     """
@@ -59,7 +59,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:
-    """Make what collision detection needs, and keeps for later, so that what is wrong comes out now.
+    """Prepare the shapes for collision detection now, so that errors are raised now.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

@@ -256,7 +256,7 @@ def _squares(bounds: Bounds) -> Vector3:
 
 
 def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose]:
-    """Principal moments from the tensor of a link, and the inertial frame turned into its principal axes.
+    """Principal moments from the tensor of a link, and the inertial frame rotated to its principal axes.
 
     A tensor no body can have (a negative moment, or one larger than the sum of the others) counts as zero,
     with a warning.

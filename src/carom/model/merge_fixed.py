@@ -12,7 +12,7 @@ from carom.model.tree import TreeNode
 
 
 def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
-    """Merges every link on a fixed joint into its parent, in place, and numbers the nodes anew.
+    """Merges every link on a fixed joint into its parent, in place, and renumbers the nodes.
 
     All of it follows PyBullet, so that masses and link order agree. Shapes move over; contact parameters of
     merged links are lost. Inertial frames of the file are lost too: masses are joined as if each centre of
@@ -21,7 +21,7 @@ def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
 
     Args:
         root: The tree.
-        fixed_base: The base will not move, so what is merged into it adds no mass.
+        fixed_base: The base is fixed, so links merged into it add no mass.
     """
     pending = [root]
     while pending:
@@ -67,7 +67,7 @@ def _moved(joint: Joint | None, frame: Pose) -> Joint | None:
 
 
 def _joined(own: Inertial, merged: Inertial, frame: Pose) -> Inertial:
-    """Mass and principal moments of two bodies together; the second lies at the origin of `frame`."""
+    """Mass and principal moments of two bodies together; the second is at the origin of `frame`."""
     mass = own.mass + merged.mass
     if mass == 0.0:
         return own
@@ -87,7 +87,7 @@ def _joined(own: Inertial, merged: Inertial, frame: Pose) -> Inertial:
 
 
 def _number(root: TreeNode) -> None:
-    """Numbers the children of a node in a row, before what they carry."""
+    """Numbers the children of a node consecutively, before their own children."""
     root.index = 0
     count = 1
     pending = [root]

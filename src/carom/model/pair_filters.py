@@ -26,7 +26,7 @@ class PairFilters:
 
     @property
     def count(self) -> int:
-        """How many rules there are."""
+        """Number of rules."""
         return len(self._pairs)
 
     @property
@@ -36,7 +36,7 @@ class PairFilters:
         return [(a, b, bool(enabled[row])) for row, (a, b) in enumerate(self._pairs)]
 
     def set(self, link_a: int, link_b: int, *, enabled: bool) -> bool:
-        """Let two links collide, or keep them from it, whatever their groups and masks say.
+        """Enable or disable collisions of two links, overriding their groups and masks.
 
         Args:
             link_a: Row of a link.
@@ -63,15 +63,15 @@ class PairFilters:
             self._table.numpy[name][at] = value
 
     def way_back(self) -> Callable[[], None]:
-        """What brings the rules back that there are now."""
+        """A function that restores the present rules."""
         enabled = self._table.numpy["filter_enabled"][: len(self._pairs)].copy()
         return partial(self._write_all, self._pairs.copy(), enabled)
 
     def removal(self, first: int, count: int) -> Callable[[], None]:
-        """Make ready to drop the rules of links that are removed; later links move up.
+        """Prepare to drop the rules of removed links; later links move up.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         after = first + count
         kept, enabled = [], []

@@ -53,7 +53,7 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
 
 
 def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
-    """How many rows pieces need on each axis of shapes."""
+    """Number of rows that pieces need on each axis of shapes."""
     solids = [piece.polyhedron for piece in pieces if piece.polyhedron is not None]
     trees = [piece.hierarchy for piece in pieces if piece.hierarchy is not None]
     return {

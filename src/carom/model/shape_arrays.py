@@ -76,7 +76,7 @@ class BodyShapes:
     """Where the shapes of a body are.
 
     Attributes:
-        rows: Rows of its tree; somebody else keeps them up to date.
+        rows: Rows of its tree, which are updated elsewhere.
         first: First row on each axis of shapes.
         count: Rows on each axis of shapes.
         bounds: Bounds of each link, the base first, along the axes of its inertial frame.
@@ -98,7 +98,7 @@ class ShapeArrays:
         filters: Rules for pairs of links.
         used: Rows in use, by axis.
         breaking_fraction: See `BREAKING_FRACTION`.
-        changes: How often the bounds of a shape have changed in its link.
+        changes: Number of times that the bounds of a shape have changed in its link.
         looks_ahead: Whether some shape has ever had a swept sphere, for continuous detection.
     """
 
@@ -118,12 +118,12 @@ class ShapeArrays:
 
     @property
     def shape_count(self) -> int:
-        """How many shapes there are."""
+        """Number of shapes."""
         return self.used["shape"]
 
     @property
     def filter_count(self) -> int:
-        """How many pairs of links have a rule of their own."""
+        """Number of pairs of links with a rule of their own."""
         return self.filters.count
 
     def reserve(self, needed: dict[str, int]) -> bool:
@@ -253,10 +253,10 @@ class ShapeArrays:
         return go_back
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Make ready to take a body's shapes out, while its tree's rows are still the ones it has.
+        """Prepare to remove a body's shapes, while its tree's rows are still present.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]
@@ -333,7 +333,7 @@ class ShapeArrays:
         return body.bounds[link]
 
     def replace_pieces(self, link_row: int, spec: LinkSpec, *, implicit_cylinder: bool) -> None:
-        """Write a link's shapes anew after their data changed; there are as many rows as before.
+        """Write a link's shapes again after their data changed; the number of rows is the same.
 
         Args:
             link_row: The link.

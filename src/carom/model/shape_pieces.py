@@ -170,7 +170,7 @@ def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
     low, high = points.min(axis=0), points.max(axis=0)
     if (high - low).min() > SMALLEST:
-        # What is coplanar off the grid may not be on it, so faces are found before.
+        # Coplanar points may not be coplanar on the grid, so faces are found before.
         hull = hull.with_vertices(_on_grid(hull.vertices, low, high))
     return _polyhedral(ShapeKind.HULL, hull, MARGIN)
 
@@ -248,7 +248,7 @@ _mesh_geometries = _MeshGeometries()
 
 
 def mesh_geometries(mesh: Mesh) -> tuple[MeshGeometry, ...]:
-    """What a mesh file stands for when it collides, scaled.
+    """The scaled collision geometries of a mesh file.
 
     Returns:
         A hull for each group of an OBJ file, one for any other file; one triangle mesh if it is concave.
@@ -269,7 +269,7 @@ def _geometries_of_parts(mesh: Mesh, parts: list[MeshPart]) -> list[MeshGeometry
 
 
 def joined_parts(parts: Sequence[MeshPart], scale: Vector3) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Scaled vertices (n, 3) and triangles (m, 3) of all parts; a mirrored mesh is turned outside again."""
+    """Scaled vertices (n, 3) and triangles (m, 3) of all parts; those of mirrored meshes are reversed."""
     vertices = np.concatenate([part.vertices for part in parts]) * np.array(scale)
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     triangles = np.concatenate(

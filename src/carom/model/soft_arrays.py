@@ -36,8 +36,8 @@ class SoftRows:
     """Where a soft body is.
 
     Attributes:
-        rows: Rows of the tree that stands for it; somebody else keeps them up to date.
-        spec: What it is made of.
+        rows: Rows of the tree that stands for it, which are updated elsewhere.
+        spec: Its specification.
         first: First row on each axis.
         count: Rows on each axis.
     """
@@ -139,7 +139,7 @@ class SoftArrays:
         numpy["face_nodes"][rows["face"], :3] = spec.faces + first["node"]
 
     def write_anchors(self) -> None:
-        """Bring the arrays up to date with the anchors there are."""
+        """Update the arrays from the present anchors."""
         numpy = self.table.numpy
         for soft in self.bodies:
             nodes = slice(soft.first["node"], soft.first["node"] + soft.count["node"])
@@ -176,10 +176,10 @@ class SoftArrays:
         return go_back
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Make ready to take out what belongs to a body, soft or not, while its rows are still those it has.
+        """Prepare to remove what belongs to a body, soft or not, while its rows are still present.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         gone = next((soft for soft in self.bodies if soft.rows is rows), None)
         count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count

@@ -1,4 +1,4 @@
-"""What a soft body is made of, ready for the engine."""
+"""Specifications of soft bodies, ready for the engine."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Skin:
 
     Attributes:
         nodes: (v, k) nodes that each vertex follows.
-        weights: (v, k) by how much; they add up to 1.
+        weights: (v, k) weights, which add up to 1.
         triangles: (t, 3) its vertices.
     """
 
@@ -35,7 +35,7 @@ class Skin:
 
 @record(frozen=False, eq=False)
 class SoftSpec:
-    """Nodes, and what is between them.
+    """Nodes, springs and tetrahedra.
 
     Attributes:
         nodes: (n, 3) places at rest in the frame of the body [m].
@@ -49,7 +49,7 @@ class SoftSpec:
         damping: Viscosity of the tetrahedra as a share of these [s].
         damps_all_directions: Springs damp every relative motion of their ends, not only that along them.
         margin: Distance at which nodes rest on other surfaces [m].
-        self_collision: Its nodes do not go through its own faces.
+        self_collision: Its nodes collide with its own faces.
         gravity_factor: Share of the world's gravity that pulls it.
         skin: The mesh that is seen in place of the faces, if there is one.
     """

@@ -104,7 +104,7 @@ class IslandTags:
         self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))
 
     def way_back(self) -> Callable[[], None]:
-        """What takes out all objects that are added from now on, and undoes what is reordered."""
+        """A function that removes all objects added from now on, and restores the order."""
         objects, count = self._objects, len(self._objects)
 
         def go_back() -> None:
@@ -119,7 +119,7 @@ class IslandTags:
         self.removal(body, link_count)()
 
     def removal(self, body: Hashable, link_count: int) -> Callable[[], None]:
-        """Make ready to take out the links of a body; what is returned does it, and can be called again."""
+        """Prepare to remove the links of a body; the function returned does it, and can be called again."""
         kept = self._objects.copy()
         index = {key: i for i, (key, _) in enumerate(kept)}
         for link in range(link_count):

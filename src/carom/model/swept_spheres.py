@@ -22,7 +22,7 @@ def is_swept(collision: Collision) -> bool:
 
 
 def as_given(collision: Collision) -> Collision:
-    """A shape where the file has it; what is given by its ends is where they are given."""
+    """A shape at its pose in the file; for a shape given by its ends, at those."""
     return collision if collision.ends_frame is None else replace(collision, frame=collision.ends_frame)
 
 

@@ -11,7 +11,7 @@ from carom.record import record
 
 @record(frozen=False, eq=False)
 class TreeNode:
-    """A link, the joint that carries it, and what it carries.
+    """A link, its parent joint, and its children.
 
     Attributes:
         link: The link.
@@ -36,7 +36,7 @@ def make_tree(robot: Robot) -> TreeNode:
 
 
 def depth_first(root: TreeNode) -> list[TreeNode]:
-    """All nodes, each before what it carries, a whole branch before the next."""
+    """All nodes, each before its children, a whole branch before the next."""
     order: list[TreeNode] = []
     pending = [root]
     while pending:

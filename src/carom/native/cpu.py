@@ -1,4 +1,4 @@
-"""What the processor has: instructions, and cores for this process."""
+"""The processor's instruction sets, and the cores for this process."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _WINDOWS_FEATURES = {"v3": 40, "v4": 41}
 
 
 def core_count() -> int:
-    """How many cores this process may use."""
+    """Number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

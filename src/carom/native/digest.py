@@ -1,4 +1,4 @@
-"""What the native library was made of, as one number.
+"""The digest of the sources of the native library.
 
 A library carries the digest of its sources. It fits the sources that are here if they have the same one, so
 it has to be known at every start: it is worked out from the files' contents alone, in a few milliseconds.
@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 
 try:
-    # `hashlib` would bring OpenSSL along, which takes as long to load as all the rest of this.
+    # `hashlib` would import OpenSSL, which takes as long to load as all the rest.
     from _blake2 import blake2b
 except ImportError:
     from hashlib import blake2b
@@ -34,7 +34,7 @@ def source_digest(root: Path) -> str:
         root: The folder that the package `carom` is in.
 
     Returns:
-        32 hexadecimal digits; the same whatever the line endings.
+        32 hexadecimal digits; line endings make no difference.
 
     Raises:
         OSError: A folder is missing, or a file cannot be read.

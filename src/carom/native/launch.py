@@ -39,7 +39,7 @@ class Launch:
 
         Args:
             kernel: The kernel.
-            count: How many times it runs, along each axis if there are several.
+            count: Number of runs, along each axis if there are several.
             arguments: Its arguments: numbers, arrays (`carom.native.tables.array_view`) and structs.
 
         Raises:

@@ -1,4 +1,4 @@
-"""The native library: finding the one for this machine, loading it, and what is known about its kernels."""
+"""The native library: finding the one for this machine, loading it, and data of its kernels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Library:
 
     Args:
         path: The file; `manifest.json`, written when it was built, is beside it.
-        digest: What it has to be made from, as `source_digest` says.
+        digest: The required digest, as from `source_digest`.
 
     Attributes:
         path: The file.
@@ -154,5 +154,5 @@ def _built(target: Target, level: str, digest: str) -> Path:
 
 def _cure() -> str:
     if (_ROOT.parent / "pyproject.toml").exists():
-        return "Run `pip install --editable '.[build]'` in the clone, which brings what compiles it."
+        return "Run `pip install --editable '.[build]'` in the clone, which installs the compiler."
     return "Install Carom again: `pip install --force-reinstall carom`."

@@ -1,4 +1,4 @@
-"""Sums of products, and what is made of them, that are the same bits on every machine.
+"""Sums of products, matrix products and the like, with the same bits on every machine.
 
 Products of matrices by `@` are left to a library that adds in the order that suits the processor.
 """

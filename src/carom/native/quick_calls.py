@@ -56,7 +56,7 @@ class Launch(ctypes.Structure):
 
 
 class ContactReport(ctypes.Structure):
-    """The kernel that lists contacts, what it is asked and what it finds."""
+    """The kernel that lists contacts, its query and its results."""
 
     _fields_ = (
         ("function", ctypes.c_void_p),
@@ -99,7 +99,7 @@ class Placement(ctypes.Structure):
 
 
 class PairSearch(ctypes.Structure):
-    """The kernel that finds nearest points, what it is asked and what it finds."""
+    """The kernel that finds nearest points, its query and its results."""
 
     _fields_ = (
         ("search", KernelCall),
@@ -110,7 +110,7 @@ class PairSearch(ctypes.Structure):
 
 
 class Scene(ctypes.Structure):
-    """What follows from the bodies and arrays of a world."""
+    """Data derived from the bodies and arrays of a world."""
 
     _fields_ = (
         ("find_poses", Launch),
@@ -161,7 +161,7 @@ class Box(ctypes.Structure):
 
 
 class Joint(ctypes.Structure):
-    """Where the coordinates of a joint of one freedom are among those of its body; -1 for other joints."""
+    """Index of the coordinates of a joint with one degree of freedom in its body; -1 for other joints."""
 
     _fields_ = (("position", ctypes.c_int32), ("velocity", ctypes.c_int32))
 
@@ -280,7 +280,7 @@ class QuickCalls:
         self._symbols = symbols
         self._calls = (_QuickCall * symbols.carom_most_quick_calls()).from_address(calls)
         self._python = python
-        # What the library points to.
+        # Memory that the library points to.
         self._kept: list[Any] = []
         self._made = 0
 

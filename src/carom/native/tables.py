@@ -111,7 +111,7 @@ class ArrayTable:
         numpy: The arrays by the names of their fields. An array of structs is there as one array for
             each of their fields, named after both: `link_mass` is the field `mass` of `link`.
         capacity: Rows there are, by axis.
-        replacements: How often an array has been replaced by another.
+        replacements: Number of times that an array was replaced by another.
     """
 
     def __init__(
@@ -165,7 +165,7 @@ class ArrayTable:
         Undo().at_once(put)
 
     def _follow(self) -> None:
-        """Bring everything up to date that follows from the arrays."""
+        """Update everything derived from the arrays."""
         self.replacements += 1
         self._made = None
         self._bytes.clear()
@@ -282,7 +282,7 @@ class ArrayTable:
     def removal(
         self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int], targets: Mapping[str, str]
     ) -> Callable[[], None]:
-        """Make ready to remove a run of rows of some axes; later ones move up and the freed ones are zero.
+        """Prepare to remove consecutive rows of some axes; later rows move up and the freed rows are zero.
 
         Args:
             cuts: First row and number of rows, by axis.
@@ -290,7 +290,7 @@ class ArrayTable:
             targets: Fields whose values are rows of an axis, and which; they follow those rows.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         moves, freed, values = [], [], []
         for axis, (start, count) in cuts.items():

@@ -9,12 +9,12 @@ from typing import Any
 
 
 def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
-    """What a kernel gives for some numbers.
+    """The results of a kernel for some numbers.
 
     Args:
         kernel: Its name, without the prefix.
         numbers: As many as it takes.
-        count: How many it gives.
+        count: Number of results.
 
     Returns:
         These; None if there is no result for such numbers.

@@ -15,7 +15,7 @@ _PATIENCE = 100
 class Undo:
     """What leads back to a whole, noted before each part is changed.
 
-    A step *sets* a part to what it was, or, if all that is to come is known, to what it is going to be. It
+    A step *sets* a part to its old value, or, if the new value is known already, to the new one. It
     can be taken again. As a context it takes all steps that are left at the end, the last noted first:
 
         with undo:
@@ -39,7 +39,7 @@ class Undo:
             self._settle_patiently()
 
     def at_once(self, change: Callable[[], None]) -> None:
-        """Make a change that can be made again, to its end even if it is broken off."""
+        """Make a change that can be made again, to its end even if it is interrupted."""
         # A context would do it as well, but scripts change parameters at every step.
         try:
             self._steps.append(change)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-# What is smaller is not worth a mapping of its own [bytes].
+# Smaller arrays do not get a memory mapping of their own [bytes].
 _LEAST_MAPPED = 1 << 20
 # Where a process can fork, the memory must not be shared with its children; elsewhere there are no flags.
 _PRIVATE: dict[str, int] = (

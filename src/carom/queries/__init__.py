@@ -1,1 +1,1 @@
-"""Questions about a world: rays, nearest points, overlaps, contacts."""
+"""Queries of a world: rays, nearest points, overlaps, contacts."""

@@ -1,4 +1,4 @@
-"""Reading contacts: the memory of the questions and of the answers."""
+"""Reading contacts: the memory of queries and answers."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _VECTOR = Struct(f"3{np.dtype(NUMPY_REAL).char}")
 
 
 class ContactColumns(NamedTuple):
-    """Contacts in columns, which are to be read at once.
+    """Contacts in columns, to be read before the next query.
 
     Attributes:
-        found: How many there are.
+        found: Number of them.
         columns: An iterable for each of: number of the first body, of the second body, link of the first
             body, of the second body (-1: the base), point on the first body, on the second body (in world
             axes [m]), normal on the second body towards the first, distance (negative: penetration [m]),
@@ -43,7 +43,7 @@ class ContactSearch:
     Args:
         structs: Warp structs by the name kernels give them, `places` among them.
         contacts: The contacts.
-        quick: What is told of the arrays of questions and answers.
+        quick: The record for quick calls, which gets the addresses of the arrays.
     """
 
     def __init__(self, structs: KernelStructs, contacts: ArrayTable, quick: QuickScene) -> None:
@@ -58,7 +58,7 @@ class ContactSearch:
     def __call__(
         self, count: int, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """Those of the `count` contacts there are that were asked for.
+        """Those of the `count` contacts that match the query.
 
         For the arguments see `report_contacts_kernel`.
         """

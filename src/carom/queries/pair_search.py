@@ -1,4 +1,4 @@
-"""The nearest points of links: the memory of the questions and of the answers."""
+"""The nearest points of links: the memory of queries and answers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from carom.queries.quick_queries import tell_search
 
 _ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
 _INDEX = np.dtype(np.int32)
-# Pairs of links whose shapes are remembered: scripts ask for the same ones step by step.
+# Maximum number of cached pairs of links: scripts query the same ones in each step.
 _MOST_REMEMBERED = 64
 
 
@@ -50,7 +50,7 @@ class PairSearch:
     Args:
         structs: Warp structs by the name kernels give them.
         contact_arrays: The arrays of shapes.
-        quick: What is told of the arrays of questions and answers.
+        quick: The record for quick calls, which gets the addresses of the arrays.
     """
 
     def __init__(self, structs: KernelStructs, contact_arrays: ContactArrays, quick: QuickScene) -> None:

@@ -1,4 +1,4 @@
-"""Link poses as the coordinates are now, for as long as somebody asks about them."""
+"""Link poses for the present coordinates, during a query."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from carom.native.launch import KernelStructs
 class PresentPoses:
     """A context in which `link_pose` is up to date with the coordinates of all bodies; it gives its memory.
 
-    Afterwards it is as it was: after a step its rows are those of the start of the last substep, and
-    getters count on that. Contexts may be within each other.
+    Afterwards it is restored: after a step its rows are those of the start of the last substep, as getters
+    expect. Contexts may be nested.
 
     Args:
         poses: The memory of `link_pose`.

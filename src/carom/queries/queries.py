@@ -1,4 +1,4 @@
-"""Geometric questions about a world as it stands: rays, nearest points, overlaps."""
+"""Geometric queries of a world in its present state: rays, nearest points, overlaps."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from carom.queries.soft_bodies import SoftQueries
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
-# Of shapes that have not been placed.
+# For shapes that have not been placed.
 NEVER = -1
-# A distance that counts as none.
+# A distance that stands for none.
 _FAR = 1e30
 
 
@@ -43,7 +43,7 @@ class Queries:
     Args:
         structs: Structs by the name kernels give them.
         positions: The memory of the coordinates of all bodies.
-        places: Body and link that each row of the link arrays stands for.
+        places: Body and link of each row of the link arrays.
         present_poses: `World.present_poses`.
         contact_arrays: The arrays of shapes.
         pairs: Room for the intermediate results of collision detection.
@@ -73,7 +73,7 @@ class Queries:
             from carom.queries.soft_bodies import SoftQueries
 
             self._soft = SoftQueries(structs, contact_arrays, state, soft_work, places, present_poses)
-        # Quick calls know nothing of soft bodies: where there are some, they are told nothing.
+        # Quick calls do not handle soft bodies: in worlds with soft bodies they get no addresses.
         self._quick = quick if self._soft is None else QuickScene()
         self._positions = positions
         self._present_poses = present_poses
@@ -84,7 +84,7 @@ class Queries:
         self._pairs = pairs.numpy
         self._counts = memoryview(pairs.numpy["count_pairs"][0])
         self._contact_counts = memoryview(contact_arrays.contacts.numpy["count_contacts"][0])
-        # The coordinates for which shapes have been placed last; quick calls place them, too.
+        # The coordinates for which shapes were placed last; quick calls place them, too.
         self._placed_at = bytearray(positions.nbytes)
         self._placement = self._quick.record.placement
         self._placement.changes = NEVER
@@ -111,7 +111,7 @@ class Queries:
 
     @cached_property
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Of each shape the lowest and the highest corner, whether it has no bounds, and its link."""
+        """Minimum and maximum corner of each shape, whether it has no bounds, and its link."""
         rows = slice(self._shape_count)
         endless = self._shapes["shape_kind"][rows] == PLANE
         lowest, highest = (self._pairs[name][0, rows] for name in ("shape_lower", "shape_upper"))
@@ -137,14 +137,14 @@ class Queries:
         hit_number: int = 0,
         separation: float = 0.0,
     ) -> tuple[RayHit, ...]:
-        """What rays hit.
+        """Casts rays.
 
         Args:
             starts: Their starts in world axes [m], shape (n, 3).
             ends: Their ends, shape (n, 3).
-            mask: Collision groups that are hit.
+            mask: Mask of the collision groups that are hit.
             hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
-            separation: Later hits on a link less than this fraction of the ray after one do not count.
+            separation: Hits on the same link within this fraction of the ray after another are ignored.
         """
         self._prepare(IN_HIERARCHY)
         if self._soft is not None:
@@ -160,7 +160,7 @@ class Queries:
         hit_number: int,
         separation: float,
     ) -> tuple[RayHit, ...]:
-        """As `cast_rays`, with soft bodies among what is hit."""
+        """As `cast_rays`, including soft bodies."""
         from carom.queries.soft_bodies import nth_hit
 
         # The n-th hit of all is among the first n on shapes and those on soft bodies.
@@ -174,7 +174,7 @@ class Queries:
     def cast_ray(
         self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> RayHit:
-        """What one ray hits; the arguments are those of `cast_rays` for it."""
+        """Casts one ray; the arguments are those of `cast_rays`."""
         if self._soft is not None:
             hits = self.cast_rays((start,), (end,), mask=mask, hit_number=hit_number, separation=separation)
             return hits[0]
@@ -210,10 +210,10 @@ class Queries:
             link_a: Its link, -1 for the base, -2 and less for any.
             body_b: Number of the second body; negative for any.
             link_b: Its link.
-            time_step: Of a step [s]; makes forces of impulses.
+            time_step: Duration of a step [s], to convert impulses to forces.
 
         Returns:
-            The contacts, to be read at once.
+            The contacts, to be read before the next query.
         """
         count = self._contact_counts[THERE]
         rigid = self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
@@ -223,11 +223,11 @@ class Queries:
         return _one_after_the_other(rigid, soft)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
-        """Rows of the links whose bounds meet a box; those of links without shapes are a point, or nearly.
+        """Rows of the links whose bounds overlap a box; those of links without shapes are nearly a point.
 
         Args:
-            lower: Lowest corner of the box in world axes [m].
-            upper: Its highest corner.
+            lower: Minimum corner of the box in world axes [m].
+            upper: Its maximum corner.
         """
         found: set[int] = set()
         if self._shape_count:
@@ -248,10 +248,10 @@ class Queries:
         return sorted(found)
 
     def _prepare(self, readiness: int) -> None:
-        """Place the shapes by the present coordinates, unless they are there already.
+        """Place the shapes for the present coordinates, unless this was done already.
 
-        What steps leave is overwritten, and the other way round; everything else that could move a shape ends
-        these `Queries`.
+        Steps overwrite this and are overwritten by it; everything else that could move a shape ends these
+        `Queries`.
         """
         changes, positions = self._all_shapes.changes, self._positions.tobytes()
         if (
@@ -263,14 +263,14 @@ class Queries:
                 self._make_ready[readiness]()
             self._placed_at[:] = positions
             self._placement.changes = changes
-        # Not the first time: many ask once, and then change the scene.
+        # Not the first time: many scripts query once, and then change the scene.
         if self._has_asked and not self._placement.place.function:
             with self._present_poses() as poses:
                 self._tell(poses)
         self._has_asked = True
 
     def _tell(self, poses: memoryview[int]) -> None:
-        """Tell quick calls what places the shapes."""
+        """Give quick calls the kernels that place shapes."""
         tell_placement(
             self._quick,
             (self._make_ready[PLACED], self._structs.launch(link_poses_kernel, first_world=0)),

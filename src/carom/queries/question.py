@@ -1,4 +1,4 @@
-"""A kernel that is asked about a world again and again, with as many items to ask about as there may be."""
+"""A kernel for repeated queries of a world, with any number of items."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
 
-# A kernel is done with as many items as this before another thread would have had its turn.
+# With up to this many items a kernel finishes before another thread would get its turn.
 _FEW = 64
 
 
 class Question:
-    """A launch over arrays that belong to the question alone, which grow as needed.
+    """A launch over the query's own arrays, which grow as needed.
 
     The kernel takes these arrays as one of its structs, and how many of their rows are in use as `count`.
 
     Attributes:
         arrays: The arrays; all have one axis.
-        room: How many rows they have.
+        room: Number of their rows.
         launch: The launch over them.
 
     Args:
@@ -28,7 +28,7 @@ class Question:
         structs: Structs by the name kernels give them; that of the arrays is put there.
         name: Name of the arrays among these structs.
         arrays: The arrays.
-        asked: The scalars that may differ from time to time, as they are at first.
+        asked: The scalars that may differ between calls, with their initial values.
         **fixed: The other scalars.
     """
 

@@ -1,4 +1,4 @@
-"""What quick calls are told of the questions of a world about where its shapes are."""
+"""Addresses for quick calls of the kernels that place shapes."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def tell_placement(
     readiness: int,
     has_bare_links: bool,
 ) -> None:
-    """Tell what places the shapes of all links.
+    """Set the addresses of the kernels that place the shapes of all links.
 
     Args:
-        quick: What is told.
-        kernels: That which places shapes, and that which finds the poses of all links before.
+        quick: The record.
+        kernels: The kernel that places shapes, and the one that computes the poses of all links before.
         shapes: The shapes.
-        pairs: Where they are placed.
+        pairs: Their poses.
         state: The memory of the coordinates of all bodies, and that of the poses of all links.
-        placed_at: The coordinates for which shapes have been placed last.
+        placed_at: The coordinates for which shapes were placed last.
         places: Struct of the bodies and links that rows of links stand for.
-        readiness: Column of the counts of `pairs` that says how far shapes are.
+        readiness: Column of the counts of `pairs` with the state of the shapes.
         has_bare_links: There are links without shapes.
     """
     record = quick.record.placement
@@ -65,12 +65,12 @@ def tell_placement(
     record.has_bare_links = has_bare_links
     place, find_poses = kernels
     _tell_kernel(record.find_poses, find_poses)
-    # The last of all: without it nothing else is looked at.
+    # The last of all: without it the other addresses are not used.
     _tell_kernel(record.place, place)
 
 
 def tell_search(quick: QuickScene, question: Question) -> None:
-    """Tell what finds nearest points; the arrays of the question are `Searches`."""
+    """Set the addresses of the kernel for nearest points; the arrays of the query are `Searches`."""
     record = quick.record.nearest
     searches = question.arrays.struct()
     quick.keep(question.launch, searches)

@@ -1,4 +1,4 @@
-"""Casting rays: the memory of the questions and of the answers."""
+"""Casting rays: the memory of queries and answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What queries find of soft bodies: their faces on the way of rays, and the nodes that touch shapes."""
+"""Queries of soft bodies: faces hit by rays, and nodes that touch shapes."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 _NOTHING: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _BASE = -1
-# The group that rays belong to, as shapes' masks see it.
+# The collision group of rays, for the masks of shapes.
 _RAY_GROUP = 1
 # Nodes touch up to this gap beyond their margin [m].
 _GAP = 1.0e-4
-# Rays by faces looked at at a time, for want of memory.
+# Number of ray-face pairs handled at a time, to save memory.
 _CHUNK = 1 << 20
 _TINY = 1.0e-300
 
@@ -41,7 +41,7 @@ class SoftQueries:
         contact_arrays: The shapes and the soft bodies.
         state: The state of the world.
         work: The workspace of soft bodies.
-        places: Body and link that each row of the link arrays stands for.
+        places: Body and link of each row of the link arrays.
         present_poses: `World.present_poses`.
     """
 
@@ -80,15 +80,15 @@ class SoftQueries:
     # Rays
 
     def cast(self, starts: Points, ends: Points, mask: int) -> list[list[RayHit]]:
-        """All faces of soft bodies that each ray goes through, the nearest first.
+        """All faces of soft bodies that each ray crosses, the nearest first.
 
-        Cloth is hit from both sides, solids from outside only: a ray that starts in one leaves it, as it
-        leaves shapes.
+        Cloth is hit from both sides, solids from outside only: a ray that starts inside one does not hit it,
+        as with shapes.
 
         Args:
             starts: Their starts in world axes [m], shape (n, 3).
             ends: Their ends.
-            mask: Collision groups that are hit.
+            mask: Mask of the collision groups that are hit.
         """
         start = np.asarray(starts, dtype=np.float64).reshape(-1, 3)
         way = np.asarray(ends, dtype=np.float64).reshape(-1, 3) - start
@@ -159,7 +159,7 @@ class SoftQueries:
             normals = work["touch_normal"][0, rows]
             push = self._state["node_push"][0, node]
             along = dots(normals, push)
-            # Of several shapes the one that faces the force most gets all of it.
+            # If there are several shapes, the one whose normal is closest to the force gets all of it.
             strongest = int(along.argmax())
             for touch, gap in enumerate(gaps.tolist()):
                 force = push if touch == strongest and along[strongest] > 0.0 else np.zeros(3)
@@ -171,7 +171,7 @@ class SoftQueries:
     # Bounds
 
     def overlapping(self, lower: Sequence[float], upper: Sequence[float]) -> list[int]:
-        """Rows of the links that stand for soft bodies whose bounds, margins included, meet a box."""
+        """Rows of the links of soft bodies whose bounds, margins included, overlap a box."""
         found = []
         for soft in self._soft.bodies:
             nodes, margin = self._state["node_position"][0, self._nodes(soft)], soft.spec.margin
@@ -184,10 +184,10 @@ def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separa
     """The n-th of the hits of a ray, from 0.
 
     Args:
-        rigid: Those on shapes, nearest first, as many as could matter.
+        rigid: Those on shapes, nearest first, as many as needed.
         soft: Those on soft bodies, nearest first.
         number: n.
-        separation: Later hits on a soft body less than this fraction of the ray after one do not count.
+        separation: Hits on a soft body within this fraction of the ray after another are ignored.
     """
     last: dict[int, float] = {}
     hits = [hit for hit in rigid if hit[0] >= 0]
@@ -200,7 +200,7 @@ def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separa
 
 
 def _meets_box(start: np.ndarray, way: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Whether each ray meets a box (the slab test)."""
+    """Whether each ray crosses a box (slab test)."""
     # A ray along a slab has no crossing with it: its start is inside, or it misses.
     step = np.where(np.abs(way) < _TINY, _TINY, way)
     with np.errstate(over="ignore"):
@@ -279,7 +279,7 @@ def _is_other(place: tuple[int, int], body: int, link: int) -> bool:
 
 
 def _across(normal: np.ndarray) -> np.ndarray:
-    """Some unit vector across another one."""
+    """A unit vector perpendicular to another one."""
     aside = np.eye(3)[int(np.abs(normal).argmin())]
     across = np.cross(normal, aside)
     return across / length(across)

@@ -1,1 +1,1 @@
-"""Films of a world: pictures of its steps, written to a file."""
+"""Videos of a world: pictures of its steps, written to a file."""

@@ -1,4 +1,4 @@
-"""Filming a world while it is stepped."""
+"""Recording a video of a world while it is stepped."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from carom.recording.video import VideoFile
 if TYPE_CHECKING:
     from carom.world.world import World
 
-# Times are sums of time steps: how far a picture may be early [of the time between two].
+# Tolerance for rounding of times, which are sums of time steps [of the time between two pictures].
 _EARLY = 1e-6
-# So many pictures of one step at most: the film of a longer one is cut short.
+# Maximum number of pictures of one step: the video of a longer step is cut short.
 _MOST_OF_A_STEP = 240
 
 
 class Film:
     """Takes pictures at even intervals of simulated time; one of `World.observers`.
 
-    The first picture shows the world before the next step. Where a step is longer than the interval, its
-    picture is shown for as long.
+    The first picture shows the world before the next step. If a step is longer than the interval, its picture
+    is repeated.
 
     Args:
         world: The world.
-        file: Where the pictures go.
+        file: The file that the pictures are written to.
         interval: Simulated time between two pictures [s].
         take: Makes a picture, (height, width, 3) red, green and blue.
 
     Attributes:
-        automatic: Take pictures as time passes; else only `shoot` takes any.
+        automatic: Take pictures as time passes; otherwise only `shoot` takes pictures.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Film:
         """Takes the pictures that are due."""
         assert self._due is not None
         time = float(self._world.time)
-        # Time goes back when a state is restored: the film goes on.
+        # Time goes back when a state is restored: the video continues.
         self._due -= max(time - self._last, 0.0) / self._interval
         self._last = time
         if not self.automatic or self._due > _EARLY:
@@ -84,7 +84,7 @@ class Film:
 
 
 class Recorder:
-    """Films a world with a camera: an MP4 file. Needs PyAV: `pip install carom[video]`.
+    """Records a world with a camera into an MP4 file. Needs PyAV: `pip install carom[video]`.
 
         with Recorder("fall.mp4", camera, world):
             world.step(480)
@@ -92,9 +92,9 @@ class Recorder:
     It is a context manager, and stops when the context is left.
 
     Args:
-        path: The file; one that is there is replaced.
-        camera: The camera, mounted on a link or standing in the world; it may be moved while it films.
-        world: The world it looks at; left out, that of the link it is mounted on.
+        path: The file; an existing one is replaced.
+        camera: The camera, mounted on a link or fixed in the world; it may be moved while it records.
+        world: The world it looks at; by default that of the link it is mounted on.
         fps: Pictures a second.
         speed: Simulated time by time of the video; below 1 for slow motion.
 
@@ -132,7 +132,7 @@ class Recorder:
         self.stop()
 
     def stop(self) -> None:
-        """Films no more and finishes the file; stopping again does nothing."""
+        """Stops recording and finishes the file; calling it again does nothing."""
         if self._film in self._world.observers:
             self._world.observers.remove(self._film)
         self._film.close()

@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 
 from carom.checks import positive
 
-# H.264 plays everywhere; a PyAV without it (some are built so) has MPEG-4.
+# H.264 plays everywhere; some builds of PyAV lack it, but have MPEG-4.
 _CODECS = ("libx264", "mpeg4")
-# Clearly better than the encoder's own choice: edges of rendered surfaces are sharp.
+# Clearly better than the encoder's default: edges of rendered surfaces are sharp.
 _QUALITY = {"crf": "18", "preset": "veryfast"}
 
 
 class VideoFile:
-    """An MP4 file that is being written. It can be played once it is closed.
+    """An MP4 file being written. It can be played after it is closed.
 
     Args:
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
         width: Number of columns of its pictures.
         height: Number of rows.
         fps: Pictures a second.
@@ -64,7 +64,7 @@ class VideoFile:
         """Finishes the file; closing it again does nothing."""
         container, self._container = self._container, None
         if container is not None:
-            # Without a picture nothing has been begun yet.
+            # Without a picture nothing has been written yet.
             container.start_encoding()
             container.mux(self._stream.encode(None))
             container.close()

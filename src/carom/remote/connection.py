@@ -22,7 +22,7 @@ class Connection:
     Args:
         host: Where the server is.
         port: Its port.
-        key: What the server wants to be known.
+        key: The key of the server.
         timeout: How long to wait for an answer [s].
 
     Raises:
@@ -106,14 +106,14 @@ class Connection:
         return not gone
 
     def close(self) -> None:
-        """Closes the connection; the server goes on."""
+        """Closes the connection; the server keeps running."""
         # Closing alone would leave a thread waiting that is in the middle of a call.
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
         self._socket.close()
 
     def abandon(self) -> None:
-        """Closes what a forked process has inherited; its parent goes on with the connection."""
+        """Closes what a forked process has inherited; its parent keeps the connection."""
         self._socket.close()
 
     def _send(self, message: bytes, arrays: list[memoryview]) -> None:

@@ -18,4 +18,4 @@ class ServerGone(RemoteError):
 
 
 class Malformed(RemoteError):
-    """What came over the socket is not what was agreed on, or too much of it."""
+    """Data from the socket do not follow the protocol, or are too long."""

@@ -33,7 +33,7 @@ _ZEROS = bytes(ALIGNMENT)
 
 @dataclass(frozen=True)
 class Limits:
-    """The greatest sizes one side takes from the other [bytes].
+    """The largest sizes one side takes from the other [bytes].
 
     Attributes:
         message: Of a message.
@@ -127,7 +127,7 @@ class Reader:
             self._filled += self._read(usual[self._filled :])
         number, message, contents = _HEADER.unpack_from(usual)
         if message > self._limits.message or contents > self._limits.contents:
-            raise Malformed(f"A message of {message + contents:,} bytes is more than is taken.")
+            raise Malformed(f"A message of {message + contents:,} bytes is too long.")
         begin = _HEADER.size + padded(message)
         size = begin + contents
         if size > _CHUNK:

@@ -26,7 +26,7 @@ _WELCOME, _FULL = b"+", b"-"
 
 
 def new_key() -> bytes:
-    """A key nobody can guess."""
+    """A random key that cannot be guessed."""
     return secrets.token_hex(32).encode()
 
 
@@ -41,15 +41,15 @@ def enter(peer: socket.socket, key: bytes) -> None:
     try:
         peer.sendall(_GREETING + mine)
         if talk.receive(len(_GREETING)) != _GREETING:
-            raise NoServer("What answers there is no physics server of this version of Carom.")
+            raise NoServer("The program that answers there is not a physics server of this version of Carom.")
         theirs = talk.receive(_NONCE)
         if not hmac.compare_digest(talk.receive(_DIGEST), _digest(key, b"server", mine, theirs)):
             raise NoServer("The server has another key.")
         peer.sendall(_digest(key, b"client", mine, theirs))
         if talk.receive(len(_WELCOME)) != _WELCOME:
-            raise NoServer("The server has as many clients as it can have.")
+            raise NoServer("The server has its maximum number of clients.")
     except (OSError, EOFError) as problem:
-        raise NoServer(f"The server turns away: {problem}") from problem
+        raise NoServer(f"The server refuses the connection: {problem}") from problem
 
 
 def admit(peer: socket.socket, key: bytes, take_place: Callable[[], bool]) -> bool:
@@ -57,8 +57,8 @@ def admit(peer: socket.socket, key: bytes, take_place: Callable[[], bool]) -> bo
 
     Args:
         peer: The client.
-        key: What it has to know.
-        take_place: Tells whether there is room for a client that knows the key, which it then takes.
+        key: The key that it needs.
+        take_place: Whether another client can be accepted; it then counts as connected.
 
     Returns:
         Whether the client knows the key. It has a place then, unless none was left, and knows about that.
@@ -85,7 +85,7 @@ def _digest(key: bytes, side: bytes, of_client: bytes, of_server: bytes) -> byte
 
 
 class _Talk:
-    """What the other side says within the time it has, however slowly it says it."""
+    """Data from the other side within a time limit, even if they come slowly."""
 
     def __init__(self, peer: socket.socket) -> None:
         self._peer = peer

@@ -33,11 +33,11 @@ Answer = Callable[[Frame], tuple[bytes, list[memoryview]]]
 class Listener:
     """Listens, admits clients that know the key, and has their calls answered, each client's one by one.
 
-    A client that sends what is no call loses its connection; one that hangs keeps its own thread waiting.
+    A client that sends anything but calls loses its connection; one that hangs blocks only its own thread.
 
     Args:
         addresses: Hosts and ports to listen at; port 0 for any that is free.
-        key: What clients have to know.
+        key: The key that clients need.
         answer: Called with each frame, by several threads at once.
 
     Attributes:
@@ -72,11 +72,11 @@ class Listener:
 
     @property
     def client_count(self) -> int:
-        """How many connections there are, admitted or not."""
+        """Number of connections, admitted or not."""
         return len(self._talks)
 
     def close(self) -> None:
-        """Ends all connections; calls in progress are completed, but nobody hears the answer."""
+        """Ends all connections; calls in progress are completed, but their answers are dropped."""
         self._closing.set()
         self._close_sockets()
         with self._lock:
@@ -88,13 +88,13 @@ class Listener:
                 thread.join(_PATIENCE)
 
     def abandon(self) -> None:
-        """Closes what a forked process has inherited, of which its parent sees nothing; it has no threads."""
+        """Closes what a forked process has inherited, without effect on its parent; it has no threads."""
         for inherited in (*self._sockets, *self._talks.values()):
             inherited.close()
 
     def _close_sockets(self) -> None:
         for listening in self._sockets:
-            # Wakes up the thread that waits for somebody to come, on some systems.
+            # Wakes up the thread that waits for clients, on some systems.
             with suppress(OSError):
                 listening.shutdown(socket.SHUT_RDWR)
             listening.close()
@@ -106,7 +106,7 @@ class Listener:
             except TimeoutError:
                 continue
             except OSError:
-                # Either it is closing, the connection has gone before it came, or there are no more files.
+                # The server is closing, the connection was closed, or there are no more file descriptors.
                 self._closing.wait(0.05)
                 continue
             thread = Thread(target=self._talk, args=(peer,), name="carom client", daemon=True)

@@ -35,7 +35,7 @@ def make_private(folder: Path) -> None:
 
 def is_private(status: os.stat_result) -> bool:
     """Whether a file or folder belongs to this user alone."""
-    # On Windows what lies in the user's own folder is private by its access list.
+    # On Windows files in the user's own folder are private by its access list.
     if os.name == "nt":
         return True
     return status.st_uid == os.getuid() and not status.st_mode & 0o077

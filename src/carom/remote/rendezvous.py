@@ -38,7 +38,7 @@ class Note:
         """Leaves the note under a name, in place of an older one.
 
         Raises:
-            RemoteError: The folder belongs to somebody else.
+            RemoteError: The folder belongs to another user.
             OSError: It cannot be written to.
         """
         folder = private_folder()
@@ -67,7 +67,7 @@ def find(name: str) -> Note | None:
                 return None
             content = json.loads(file.read(_GREATEST_SIZE))
         host, port, key = content["host"], content["port"], bytes.fromhex(content["key"])
-    # It is not there, it is no JSON, or not what a server writes.
+    # It does not exist, is not JSON, or was not written by a server.
     except (OSError, ValueError, RecursionError, KeyError, TypeError):
         return None
     return Note(host, port, key) if isinstance(host, str) and isinstance(port, int) else None

@@ -16,7 +16,7 @@ _GREATEST_SIZE = 64
 
 
 def fresh_token() -> str:
-    """A token that nobody can guess."""
+    """A random token that cannot be guessed."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 
@@ -29,7 +29,7 @@ def user_token() -> str:
     path = folder / _NAME
     with suppress(OSError, RemoteError):
         make_private(folder)
-        # Whoever comes first writes it, and the others read that.
+        # The first process writes it, and others read it.
         with suppress(FileExistsError):
             _write(path, fresh_token())
         if token := _read(path):

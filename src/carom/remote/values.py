@@ -80,7 +80,7 @@ def unpack(message: bytes | memoryview, contents: memoryview, *, lists: bool) ->
         )
     except Malformed:
         raise
-    # Whatever the library or NumPy make of nonsense: not all of it is documented.
+    # Any exception of the library or NumPy for invalid data: not all are documented.
     except Exception as problem:
         raise Malformed(f"A message cannot be read: {problem!r}.") from problem
 

@@ -1,7 +1,6 @@
-"""How the shapes of a world look now: colours and textures, changed since loading or not.
+"""The present colours and textures of the shapes of a world.
 
-This is the one place that knows it. The camera draws from here, and whoever reports or changes the looks
-of a shape asks here.
+All code that draws, reports or changes colours and textures uses this module.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ _log = Logger("carom")
 
 WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 GREY: Rgba = (0.8, 0.8, 0.8, 1.0)
-"""Colour of a material that states something, but no colour."""
+"""Colour of a material without a colour."""
 
 _GOOGLY: tuple[Rgba, ...] = (
     (60 / 256, 186 / 256, 84 / 256, 1.0),
@@ -45,7 +44,7 @@ _GOOGLY: tuple[Rgba, ...] = (
 
 @record(frozen=False)
 class ShapeLook:
-    """One shape of a link that is seen.
+    """One visible shape of a link.
 
     Attributes:
         geometry: The shape.
@@ -54,7 +53,7 @@ class ShapeLook:
         rgba: Present colour. It multiplies the texture; only alpha 0 matters: such a shape is not drawn.
         specular: Present colour of its highlights.
         texture: Number of its present texture, -1 if it has none.
-        two_sided: Its triangles are drawn from behind, too.
+        two_sided: Its back faces are drawn, too.
     """
 
     geometry: Geometry
@@ -72,8 +71,8 @@ class Appearance:
 
     Attributes:
         textures: Its textures by number.
-        light: The light as it was last set; the drop-in keeps what one image sets for the next ones.
-        changes: Grows with every change of a shape's looks.
+        light: The light as last set; in the drop-in the light of an image is kept for the next ones.
+        changes: Increases with every change of a shape's appearance.
     """
 
     textures: Textures = field(default_factory=Textures)
@@ -82,7 +81,7 @@ class Appearance:
     _looks: WeakKeyDictionary[Body, list[list[ShapeLook]]] = field(default_factory=WeakKeyDictionary)
 
     def shapes(self, body: Body, link: int) -> Sequence[ShapeLook]:
-        """What is seen of a link; -1 is the base."""
+        """The visible shapes of a link; -1 is the base."""
         return self._of(body)[link - BASE]
 
     def change(
@@ -96,7 +95,7 @@ class Appearance:
         texture: int | None = None,
         two_sided: bool | None = None,
     ) -> None:
-        """Changes the looks of a link.
+        """Changes the appearance of a link.
 
         Args:
             body: The body.
@@ -105,7 +104,7 @@ class Appearance:
             rgba: New colour.
             specular: New colour of highlights.
             texture: Number of the new texture, -1 for none.
-            two_sided: Draw triangles from behind, too.
+            two_sided: Draw back faces, too.
 
         Raises:
             IndexError: There is no such link or shape.
@@ -122,11 +121,11 @@ class Appearance:
         self.changes += 1
 
     def knows(self, body: Body) -> bool:
-        """Whether anybody has asked for the looks of a body yet."""
+        """Whether the appearance of a body has been read already."""
         return body in self._looks
 
     def number_textures(self, world: World) -> None:
-        """Gives the textures of all bodies their numbers, in the order the bodies were loaded."""
+        """Numbers the textures of all bodies, in the order the bodies were loaded."""
         for body in world.bodies.values():
             self._of(body)
 
@@ -138,13 +137,13 @@ class Appearance:
                 self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
             ]
             if body.spec.soft is not None:
-                # Cloth is seen from both sides.
+                # Cloth is visible from both sides.
                 looks[0] = [replace(look, two_sided=True) for look in looks[0]]
             self._looks[body] = looks
         return looks
 
     def _first_looks(self, spec: LinkSpec, link: int, flags: LoadFlags) -> list[ShapeLook]:
-        # A link that states no looks shows what it collides with.
+        # A link without visual shapes shows its collision shapes.
         if not spec.visuals:
             undefined = _undefined_colour(link, flags)
             return [self._look(shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions]
@@ -157,7 +156,7 @@ class Appearance:
         return looks
 
     def _look(self, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags) -> ShapeLook:
-        # Kept from now on: the file may go, as it may once PyBullet has loaded a body.
+        # Kept in memory: as in PyBullet, the file may be deleted after loading.
         mesh = shape_mesh(geometry)
         look = ShapeLook(geometry, frame, mesh, rgba)
         if isinstance(geometry, (Plane, Heightfield)):
@@ -175,7 +174,7 @@ class Appearance:
         try:
             return self.textures.add(read_image(mesh.texture_file))
         except DescriptionError as error:
-            # Looks stop no robot.
+            # An error in a visual shape does not stop loading.
             _log.warning("%s; the mesh goes without texture", error)
             return NO_TEXTURE
 
@@ -193,7 +192,7 @@ def _undefined_colour(link: int, flags: LoadFlags) -> Rgba:
 
 
 def appearance_of(world: World) -> Appearance:
-    """The looks of a world. A world that has been reset has no textures any more."""
+    """Colours and textures of a world. A world that has been reset has no textures any more."""
     entry = _appearances.get(world)
     if entry is None:
         appearance = Appearance()
@@ -208,7 +207,7 @@ def appearance_of(world: World) -> Appearance:
 
 
 def copy_appearance(world: World, other: World) -> None:
-    """Give a copy of a world, whose bodies have the same numbers, the looks of the first."""
+    """Copy the appearance of a world to a copy of it, whose bodies have the same numbers."""
     if world not in _appearances:
         return
     appearance = appearance_of(world)

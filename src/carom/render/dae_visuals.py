@@ -1,4 +1,4 @@
-"""COLLADA (DAE) with everything that is seen: normals and texture coordinates.
+"""COLLADA (DAE) files for drawing: normals and texture coordinates.
 
 Images and colours are not read: PyBullet's software renderer does not show them either.
 """

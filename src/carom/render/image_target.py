@@ -23,14 +23,14 @@ from carom.render.view_buffers import Task, ViewBuffers
 
 @record(eq=False)
 class RawImage:
-    """What one image shows; row 0 is the top.
+    """The results of one image; row 0 is the top.
 
     Attributes:
         rgba: (height, width, 4) uint8 red, green, blue and 255.
         depth: (height, width) float32 depth as in OpenGL's buffer: 0 at the near plane, 1 at the far one.
-        distance: (height, width) float32 distance from the plane of the eye [m]; infinite where there is
-            nothing. Of use for perspective only.
-        label: (height, width) int32: body id + (link + 1) << 24; -1 where there is nothing.
+        distance: (height, width) float32 distance from the plane of the eye [m]; infinite for the
+            background. Meaningful for perspective only.
+        label: (height, width) int32: body id + (link + 1) << 24; -1 for the background.
     """
 
     rgba: NDArray[np.uint8]
@@ -40,7 +40,7 @@ class RawImage:
 
     @classmethod
     def blank(cls, width: int, height: int) -> RawImage:
-        """An image of nothing."""
+        """An empty image."""
         size = (height, width)
         return cls(
             np.full((*size, 4), 255, np.uint8),
@@ -143,6 +143,6 @@ class ImageTarget:
 
     def _set_bias(self, camera: ShadowCamera) -> None:
         lighting = self._lighting[0]
-        # What (depth w, w) change by where a point comes nearer to the light.
+        # The change of (depth w, w) when a point comes nearer to the light.
         lighting["bias_depth"] = -camera.bias * camera.projection[2, 2]
         lighting["bias_w"] = -camera.bias * camera.projection[3, 2]

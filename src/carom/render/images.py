@@ -17,7 +17,7 @@ MAX_FILE_BYTES = 256 << 20
 """Largest image file that is read."""
 
 MAX_TEXELS = 8192 * 8192
-"""Largest image that is unpacked."""
+"""Largest image that is decoded."""
 
 
 def read_image(path: Path) -> Texels:
@@ -26,8 +26,8 @@ def read_image(path: Path) -> Texels:
     Unchanged files are served from a cache.
 
     Returns:
-        (height, width, 3) red, green and blue, the top row first; read-only. What is transparent has the
-        colour it would have without transparency.
+        (height, width, 3) red, green and blue, the top row first; read-only. Transparent pixels have their
+        colour without transparency.
 
     Raises:
         DescriptionError: The file is missing, too large, broken or no image.
@@ -53,7 +53,7 @@ def _decoded(data: bytes, file: Path) -> Texels:
                 raise DescriptionError(reason, file=file)
             texels = np.array(image.convert("RGB"))
     except UnidentifiedImageError:
-        raise DescriptionError("this is no image that can be read", file=file) from None
+        raise DescriptionError("the image cannot be read", file=file) from None
     # Pillow's decoders raise almost anything for what they cannot decode.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
         raise DescriptionError(f"the image is broken: {error}", file=file) from error

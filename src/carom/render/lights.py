@@ -17,8 +17,8 @@ class Light:
         colour: Red, green and blue of the directed light.
         distance: From the origin of the world to the lamp that casts the shadows [m]; infinite for parallel
             light.
-        ambient: Share of a surface's colour that is seen without any light.
-        diffuse: Share that is seen more the more it faces the light.
+        ambient: Ambient share of a surface's colour, visible without light.
+        diffuse: Diffuse share: brighter the more a surface faces the light.
         specular: Strength of highlights.
         shadow: Things cast shadows.
         shade: What remains of the directed light in a shadow.

@@ -19,7 +19,7 @@ MAX_FILE_BYTES = 16 << 20
 
 @record(frozen=False)
 class ObjMaterial:
-    """What a material file says of one material.
+    """One material of a material file.
 
     Attributes:
         rgba: Diffuse colour and opacity.
@@ -31,7 +31,7 @@ class ObjMaterial:
 
 
 def read_materials(path: Path) -> dict[str, ObjMaterial]:
-    """The materials of an MTL file by name; none if the file cannot be read, which is common and harmless."""
+    """The materials of an MTL file by name; empty if it cannot be read, which is harmless."""
     try:
         data, _ = read_bounded(path, MAX_FILE_BYTES)
     except DescriptionError as error:

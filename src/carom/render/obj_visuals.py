@@ -1,4 +1,4 @@
-"""Wavefront OBJ with everything that is seen: normals, texture coordinates and the material's texture."""
+"""Wavefront OBJ files for drawing: normals, texture coordinates and the material's texture."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class _Lines:
 def read_obj_visual(file: Path) -> RenderMesh:
     """Reads an OBJ file for drawing.
 
-    As in PyBullet one material serves the whole mesh: the first one in use that has a texture, else the
+    As in PyBullet the whole mesh has one material: the first one in use that has a texture, otherwise the
     last one in use. Faces without normals are flat.
 
     Raises:
@@ -90,7 +90,7 @@ def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path)
     """The first `width` numbers of each line, 0 for those left out after `least`."""
     words = [line.split()[:width] for _, line in lines]
     rows = np.zeros((len(lines), width))
-    # Lines of a file usually are alike and right: then NumPy does the work.
+    # Lines of a file usually have the same form and are correct: then NumPy parses them.
     if all(len(line) == width for line in words):
         with suppress(ValueError):
             rows[:] = np.array([*map(float, chain.from_iterable(words))]).reshape(-1, width)
@@ -137,7 +137,7 @@ def _indices(words: list[bytes]) -> NDArray[np.int64]:
     result = np.zeros((len(words), 3), dtype=np.int64)
     text = b" ".join(words)
     slashes, double = text.count(b"/"), text.count(b"//")
-    # All words of a file usually have the same form: then NumPy does the work.
+    # All words of a file usually have the same form: then NumPy parses them.
     if slashes == 0:
         result[:, _VERTEX] = _integers(text.split())
     elif slashes == 2 * len(words) and double == 0 and all(word.count(b"/") == 2 for word in words):

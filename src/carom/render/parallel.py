@@ -1,4 +1,4 @@
-"""Running kernels of one image side by side: while they run they leave Python to other threads."""
+"""Running kernels of one image in parallel; they release Python's lock while they run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MAX_WORKERS = 8
 
 
 def worker_count() -> int:
-    """How many threads share the work: one for each processor this process may use."""
+    """Number of threads: one for each processor that this process may use."""
     return min(core_count(), MAX_WORKERS)
 
 
@@ -24,7 +24,7 @@ def run_all(tasks: Sequence[Callable[[], None]]) -> None:
             task()
         return
     pool = _pool()
-    # This thread takes its share, too: most often it is done before a sleeping one has woken up.
+    # This thread does its share, too: often it is done before a sleeping thread has woken up.
     pending = iter(tasks)
     others = [pool.submit(_work, pending) for _ in range(min(worker_count(), len(tasks)) - 1)]
     _work(pending)
@@ -47,6 +47,6 @@ def _pool() -> ThreadPoolExecutor:
     return _pools[0]
 
 
-# The threads of a process do not live on in its forks.
+# Threads do not exist in a forked process.
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_pools.clear)

@@ -14,10 +14,10 @@ _LEAST_DETERMINANT = 1e-300
 
 
 def to_pixels(width: int, height: int) -> Matrix:
-    """From clip coordinates, as OpenGL has them, to homogeneous pixel coordinates.
+    """From clip coordinates, as in OpenGL, to homogeneous pixel coordinates.
 
-    As in PyBullet the middle of the view lies at column width / 2 and the same height above the lowest
-    row: half a pixel from the middle of the image.
+    As in PyBullet the centre of the view is at column width / 2, and height / 2 above the lowest row: half a
+    pixel from the centre of the image.
     """
     return np.array(
         [
@@ -45,12 +45,12 @@ def facing_sign(world_to_pixel: Matrix) -> float:
 
 
 def is_singular(matrix: Matrix) -> bool:
-    """The matrix squeezes space flat."""
+    """The matrix is singular."""
     return not abs(np.linalg.det(matrix)) > _LEAST_DETERMINANT
 
 
 def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:
-    """World to eye: x to the right, y up, z backwards; another up direction where `up` is no help."""
+    """World to eye: x to the right, y up, z backwards; `up` may be parallel to the view."""
     forward = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
     forward = unit_vector(forward)
     right = np.cross(forward, up)
@@ -65,7 +65,7 @@ def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0,
 
 
 def unit_vector(vector: Matrix) -> Matrix:
-    """A vector of shape (3,), shortened to length 1."""
+    """A vector of shape (3,), normalised to length 1."""
     return vector / length(vector)
 
 
@@ -74,7 +74,7 @@ def _dot(a: Matrix, b: Matrix) -> float:
 
 
 def parallel_projection(half_size: float, near: float, far: float) -> Matrix:
-    """Eye to clip coordinates for parallel rays through a square, from `near` to `far` before the eye [m]."""
+    """Orthographic projection through a square, from `near` to `far` [m]: eye to clip coordinates."""
     matrix = np.diag([1.0 / half_size, 1.0 / half_size, -2.0 / (far - near), 1.0])
     matrix[2, 3] = -(far + near) / (far - near)
     return matrix

@@ -59,7 +59,7 @@ def face_normals(corners: NDArray[np.floating]) -> NDArray[np.float64]:
 
 
 def unit_vectors(vectors: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Rows shortened to length 1; zero, infinite and undefined rows become zero."""
+    """Rows normalised to length 1; zero, infinite and undefined rows become zero."""
     with np.errstate(all="ignore"):
         lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
         result = vectors / lengths

@@ -22,7 +22,7 @@ MAX_PIXELS = 64 << 20
 """Largest image: width and height, and their product."""
 
 KEPT_SIZES = 4
-"""For so many sizes of images the memory is kept between images."""
+"""Number of image sizes whose memory is kept between images."""
 
 
 class Renderer:
@@ -47,12 +47,12 @@ class Renderer:
         Args:
             world: The world.
             view: (4, 4) world to eye; the eye looks along -z, y is up.
-            projection: (4, 4) eye to clip coordinates, as OpenGL has them.
+            projection: (4, 4) eye to clip coordinates, as in OpenGL.
             width: Number of columns.
             height: Number of rows.
             light: The light.
-            projector: (4, 4) world to homogeneous texture coordinates, where textures are cast by a
-                projector; None where they stick to the shapes.
+            projector: (4, 4) world to homogeneous texture coordinates, if textures come from a projector;
+                None if they are fixed to the shapes.
 
         Raises:
             ValueError: The size is out of range, or a matrix is not finite.
@@ -66,7 +66,7 @@ class Renderer:
             if not np.isfinite(matrix).all():
                 raise ValueError(f"the {name} matrix is not finite")
         if is_singular(view) or is_singular(projection):
-            # What squeezes space flat shows nothing: the matrices of a window that is not there, all zeros.
+            # Singular matrices show nothing, such as those of a missing window, which are all zeros.
             return RawImage.blank(width, height)
         scene = self._present_scene(world)
         target = self._target(scene, width, height)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class SavedLook:
-    """How one shape looks; `texture` counts those of the file, -1 for none."""
+    """Colours and texture of one shape; `texture` is an index in the file, -1 for none."""
 
     rgba: Rgba
     specular: Vector3
@@ -32,12 +32,12 @@ class SavedLook:
 
 @dataclass(slots=True)
 class SavedLooks:
-    """The looks of a world.
+    """Colours and textures of a world.
 
     Attributes:
         textures: Their images (height, width, 3).
-        bodies: For each body that has been seen or changed its shapes by link, the base first; None for
-            the others, which look as their descriptions say.
+        bodies: For each body that was drawn or changed, its shapes by link, the base first; None for the
+            others, which look as in their descriptions.
     """
 
     textures: list[NDArray[np.uint8]]
@@ -45,7 +45,7 @@ class SavedLooks:
 
 
 def save(world: World, writer: Writer) -> Any:
-    """What to write."""
+    """The text."""
     appearance = appearance_of(world)
     places: dict[int, int] = {}
     bodies: list[list[list[SavedLook]] | None] = []
@@ -68,15 +68,15 @@ def save(world: World, writer: Writer) -> Any:
 
 
 def load(bodies: list[Body], reader: Reader, data: Any) -> None:
-    """Take over what was written for these bodies.
+    """Apply the saved colours and textures to these bodies.
 
     Raises:
-        carom.errors.DescriptionError: It is not what `save` writes.
-        ValueError: It is that of other bodies.
+        carom.errors.DescriptionError: It was not written by `save`.
+        ValueError: It belongs to other bodies.
     """
     saved = reader.record(SavedLooks, data, "parts.looks")
     if len(saved.bodies) != len(bodies):
-        raise ValueError("the looks are those of other bodies")
+        raise ValueError("the colours and textures are those of other bodies")
     if not bodies:
         return
     appearance = appearance_of(bodies[0].world)

@@ -90,7 +90,7 @@ class _Columns:
 
 
 class SceneArrays:
-    """Everything a world shows, at rest.
+    """Everything visible of a world, in link frames.
 
     Attributes:
         struct: The arrays, for kernels.
@@ -132,13 +132,13 @@ class SceneArrays:
         self._take_textures(appearance.textures)
 
     def shows(self, world: World, appearance: Appearance) -> bool:
-        """The arrays hold what the world shows now; textures may be out of date."""
+        """The arrays are up to date, except perhaps textures."""
         return self._changes == appearance.changes and [body() for body in self._bodies] == list(
             world.bodies.values()
         )
 
     def follow_nodes(self) -> None:
-        """Brings the surfaces of soft bodies up to date with their nodes."""
+        """Updates the surfaces of soft bodies from their nodes."""
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
@@ -166,7 +166,7 @@ class SceneArrays:
         return self._texture_slots.setdefault(number, len(self._texture_slots))
 
     def update_textures(self, textures: Textures) -> bool:
-        """Takes over changed textures; true if there were any, and `struct` has other arrays."""
+        """Copies changed textures; true if there were any, and `struct` has other arrays."""
         if self._texture_changes == textures.changes:
             return False
         self._take_textures(textures)
@@ -177,7 +177,7 @@ class SceneArrays:
         images = [textures.image(number) for number in self._texture_slots]
         # Bodies loaded from the same file share one image, though each has a texture of its own.
         distinct = {id(image): image for image in images}
-        # The lower row comes first, as texture coordinates have it.
+        # The lower row comes first, as in texture coordinates.
         texels = [image[::-1].reshape(-1, 3) for image in distinct.values()]
         starts = dict(zip(distinct, _starts(list(map(len, texels))).tolist(), strict=False))
         put_array(self.struct, "texture_first", np.array([starts[id(image)] for image in images]))

@@ -1,4 +1,4 @@
-"""Where a light looks from, to find out what it reaches."""
+"""The camera of a light, for shadows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PARALLEL_MAP_SIDE = 1024
 LARGEST_CASTER = 50.0
 """Shapes larger than this, such as floors, cast no shadows of parallel light [m]: radius around them."""
 
-# A surface this far behind what the light sees is still lit, or it would shade itself.
+# A surface this far behind the nearest one is still lit, or it would shade itself.
 _LAMP_BIAS = 0.05
 """Of a lamp [m]."""
 _PARALLEL_BIAS = 3.0
@@ -34,7 +34,7 @@ class ShadowCamera:
         projection: (4, 4) eye to clip coordinates.
         width: Columns of the shadow map.
         height: Rows of the shadow map.
-        bias: Distance behind what the light sees that is still lit [m].
+        bias: Distance behind the nearest surface that is still lit [m].
     """
 
     view: Matrix
@@ -47,7 +47,7 @@ class ShadowCamera:
 def shadow_camera(
     light: Light, scene: SceneArrays, link_to_world: Matrix, projection: Matrix, width: int, height: int
 ) -> ShadowCamera:
-    """The camera that finds what a light reaches.
+    """The camera of a light.
 
     A lamp at a finite distance sees, as in PyBullet, what the camera of the image would see from there.
     Parallel light sees everything that may cast a shadow.

@@ -35,7 +35,7 @@ def nodes_at_base(body: SoftBody) -> tuple[NDArray[np.float64], NDArray[np.int32
 
 
 def surface_mesh(body: SoftBody) -> RenderMesh:
-    """What a soft body looks like now, in the link frame of its base."""
+    """The present surface of a soft body, in the link frame of its base."""
     vertices, triangles = nodes_at_base(body)
     uvs = np.full((len(vertices), 2), NO_TEXTURE_UV)
     places = vertices + np.asarray(body.spec.base.inertial_frame.position)
@@ -61,7 +61,7 @@ class SoftSurface:
     part_starts: NDArray[np.int64]
 
     def write(self, arrays: dict[str, Any], centres: NDArray[np.float64], radii: NDArray[np.float64]) -> None:
-        """Bring the arrays of a scene up to date with the nodes.
+        """Update the arrays of a scene from the nodes.
 
         Args:
             arrays: Those that kernels see, by name.

@@ -1,4 +1,4 @@
-"""The textures of a world, by the numbers scripts know them by."""
+"""The textures of a world, by the numbers that scripts use."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from carom.render.images import Texels
 
 NO_TEXTURE = -1
 
-# Blue and white in a square that repeats: how a plane without a mesh looks.
+# Blue and white squares: the pattern of a plane without a mesh.
 _CHECKER = np.array([[(173, 199, 255), (255, 255, 255)], [(255, 255, 255), (173, 199, 255)]], dtype=np.uint8)
 
 
 class Textures:
-    """Images by number. Numbers are given once and never again.
+    """Images by number. Numbers are never used again.
 
     Attributes:
         changes: Grows with every change.
@@ -39,7 +39,7 @@ class Textures:
         return self.add(_CHECKER)
 
     def replace(self, number: int, image: Texels) -> None:
-        """Puts another image, of any size, in the place of one."""
+        """Replaces an image by another of any size."""
         self._images[number] = image
         self.changes += 1
 

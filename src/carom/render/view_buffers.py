@@ -1,4 +1,4 @@
-"""Memory of one eye's view of a scene, and the runs of the kernels that fill it."""
+"""Memory of one view of a scene, and the kernel runs that fill it."""
 
 from __future__ import annotations
 
@@ -55,19 +55,19 @@ class ViewBuffers:
         self.bands: list[int] = [height * band // count for band in range(count + 1)]
 
     def depth_tasks(self, scene: SceneArrays) -> list[Task]:
-        """Tasks that find what is nearest in each pixel, to be run after those of `project`."""
+        """Tasks that find the nearest depth in each pixel, to be run after those of `project`."""
         return [
             Launch(depth_kernel, 1, [scene.struct, self.struct, first, end]).function
             for first, end in pairwise(self.bands)
         ]
 
     def look(self, world_to_clip: Matrix, link_to_world: Matrix, *, two_sided: bool = False) -> None:
-        """Sets where the eye is.
+        """Sets the pose of the eye.
 
         Args:
             world_to_clip: (4, 4) product of projection and view matrix.
             link_to_world: (links, 4, 4) poses of the links.
-            two_sided: Triangles are seen from behind, too.
+            two_sided: Back faces are drawn, too.
         """
         world_to_pixel = product(self._to_pixels, world_to_clip)
         self._facing[0] = 0.0 if two_sided else facing_sign(world_to_pixel)

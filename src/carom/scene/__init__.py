@@ -1,1 +1,1 @@
-"""What a world consists of: bodies, joints, links, motors, constraints, and changes of these."""
+"""The parts of a world: bodies, joints, links, motors, constraints, and changes of these."""

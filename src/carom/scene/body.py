@@ -42,13 +42,13 @@ class Body:
     Attributes:
         id: Number of the body in its world.
         world: The world it lives in.
-        spec: What it was loaded from; keeps the values of the file.
+        spec: The specification it was loaded from, with the values of the file.
         joint_count: Number of joints, fixed ones included; also the number of links besides the base.
         joint_types: Code of each joint: 0 revolute, 1 prismatic, 2 spherical, 3 planar, 4 fixed.
         position_count: Number of position coordinates of each joint.
         velocity_count: Number of velocity coordinates of each joint.
-        fixed_base: The base does not move now.
-        derived: What algorithms keep about the body until its masses, inertias or freedom change.
+        fixed_base: The base is fixed in the world.
+        derived: Data that algorithms cache until masses or inertias change, or the base is fixed or freed.
         first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
         first_position: Row of the first coordinate in `World.position`.
         first_velocity: Row of the first coordinate in `World.velocity`.
@@ -80,7 +80,7 @@ class Body:
         self.relocate()
 
     def relocate(self) -> None:
-        """Take over the rows the body has in the flat arrays now."""
+        """Update the rows of the body in the flat arrays."""
         self.first_link: int = self.rows.first["link"]
         self.first_position: int = self.rows.first["position"]
         self.first_velocity: int = self.rows.first["dof"]
@@ -119,7 +119,7 @@ class Body:
         return Links(self)
 
     def link_spec(self, link: int) -> LinkSpec:
-        """What link `link` was loaded from; -1 is the base."""
+        """The specification of link `link`; -1 is the base."""
         return self.spec.link(link)
 
     def link_inertial_frame(self, link: int) -> Pose:
@@ -127,7 +127,7 @@ class Body:
         return self.link_spec(link).inertial_frame
 
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Place the inertial frame of the base; its velocity stays.
+        """Set the pose of the base's inertial frame; its velocity does not change.
 
         Args:
             position: [m], world axes.
@@ -135,7 +135,7 @@ class Body:
         """
         x, y, z, w = orientation
         squared = x * x + y * y + z * z + w * w
-        # A pose that was read and is written back stays the same to the last digit.
+        # A pose that was read and is written back must not change in the last digit.
         scale = 1.0 if abs(squared - 1.0) < ROUNDING else 1.0 / sqrt(squared)
         _POSE.pack_into(
             self.world.position_memory,
@@ -153,13 +153,13 @@ class Body:
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
-        """Place a joint without simulating the way there; its motor keeps its target.
+        """Set the state of a joint without simulation; its motor keeps its target.
 
         Args:
             joint: Index of the joint; nothing happens for a fixed one.
-            position: As many coordinates as the joint has (a spherical joint: quaternion xyzw,
-                normalised here); None leaves them.
-            velocity: As many rates as the joint has; None leaves them.
+            position: All coordinates of the joint (of a spherical joint: quaternion xyzw, normalised here);
+                None keeps them.
+            velocity: All velocity coordinates of the joint; None keeps them.
         """
         if position is not None:
             first, count = self.position_index[joint], self.position_count[joint]
@@ -179,15 +179,15 @@ class Body:
         self.update_link_poses()
 
     def update_link_poses(self) -> None:
-        """Bring this body's rows of `World.link_pose` up to date with its coordinates."""
+        """Update the body's rows of `World.link_pose` from its coordinates."""
         self.world.update_link_poses(self)
 
     def update_link_velocities(self) -> None:
-        """Fill this body's rows of `World.link_velocity` for its present coordinates."""
+        """Update the body's rows of `World.link_velocity` from its coordinates."""
         self.world.update_link_velocities(self)
 
     def dynamics(self, link: int) -> LinkDynamics:
-        """Present inertia, surface and joint bounds of a link; -1 is the base."""
+        """Present inertia, surface and joint limits of a link; -1 is the base."""
         return self._dynamics[link + 1]
 
     @property
@@ -197,11 +197,11 @@ class Body:
 
     @property
     def is_asleep(self) -> bool:
-        """Whether the body did not take part in the last step, for it and all near it had been at rest."""
+        """Whether the body slept in the last step, because it and all bodies near it had been at rest."""
         return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
 
     def change_dynamics(self, link: int, **changes: Any) -> None:
-        """Change inertia, surface or joint bounds of a link, or damping of the whole body.
+        """Change inertia, surface or joint limits of a link, or damping of the whole body.
 
         Args:
             link: The link; -1 is the base.
@@ -214,7 +214,7 @@ class Body:
         change_dynamics(self, link, changes)
 
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
-        """Take over all numbers of a link at once, but for the bounds of its joint; -1 is the base."""
+        """Set all numbers of a link at once, except the limits of its joint; -1 is the base."""
         self._dynamics[link + 1] = dynamics
         write_link(self, link)
 

@@ -1,7 +1,7 @@
-"""Changes of what there is in a world: each is made as a whole, or not at all.
+"""Changes of the bodies and constraints of a world: each is made completely or not at all.
 
-An exception may come at any line: from a handler of signals, or for want of memory. What is noted in
-`World.undo` then brings the world back to what it was, or the change to its end.
+An exception may come at any line: from a signal handler, or for lack of memory. The steps recorded in
+`World.undo` then undo the change or complete it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def note_additions(world: World, undo: Undo) -> None:
-    """Note what takes away all bodies and constraints that are added from now on."""
+    """Record how to remove all bodies and constraints that are added from now on."""
     for part in (
         world.arrays,
         world.contact_arrays.shapes,
@@ -65,7 +65,7 @@ def add_bodies(
 
 
 def append(world: World, spec: BodySpec, pose: Pose) -> Body:
-    """Add a body within a change; its link poses are not known yet."""
+    """Add a body within a change; its link poses are computed later."""
     rows = world.arrays.append(spec, compose(pose, spec.base.inertial_frame))
     *free_ids, body_id = world.free_ids or [world.next_id]
     body = (Body if spec.soft is None else SoftBody)(world, body_id, spec, rows)
@@ -81,7 +81,7 @@ def append(world: World, spec: BodySpec, pose: Pose) -> Body:
 
 
 def remove_body(world: World, body: Body) -> None:
-    """Take a body out of a world, and all that belongs to it."""
+    """Remove a body from a world, with everything that belongs to it."""
     with begin(world) as undo:
         later = [other for other in world.bodies.values() if other.rows.tree > body.rows.tree]
         free_ids = [*world.free_ids, body.id]
@@ -133,7 +133,7 @@ def untie(world: World, constraint: UserConstraint) -> None:
 
 
 def free_base(world: World, body: Body, *, free: bool) -> None:
-    """Let the base of a body move, or hold it where it is."""
+    """Free the base of a body, or fix it in the world."""
     with begin(world) as undo:
         undo.note(world.constraints.way_back())
         undo.note(partial(set_base_freedom, world, body, free=not body.fixed_base))

@@ -1,4 +1,4 @@
-"""Changing the inertia, the surface or the bounds of a body while it runs."""
+"""Changing the inertia, the surface or the limits of a body during the simulation."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ _NOT_OF_SURFACE = {
 
 
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
-    """Change a link, the joint that carries it, or what holds for a whole body: all of it or nothing."""
+    """Change a link, its joint, or parameters of the whole body: all of it or nothing."""
     undo = body.world.undo
     undo.settle()
     undo.at_once(dynamics_change(body, link, changes))
 
 
 def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
-    """Make ready to change the dynamics of a link.
+    """Prepare a change of the dynamics of a link.
 
     Returns:
-        What does it. Broken off, it can be called again, and then comes to the same end.
+        A function that does it; if interrupted, it can be called again, with the same result.
 
     Raises:
         AttributeError: There is no such field.
@@ -75,7 +75,7 @@ def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callab
 
 
 def _surface_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
-    """What changes how a link touches."""
+    """The changes of contact parameters of a link."""
     shapes = body.world.contact_arrays.shapes
     will_look_ahead = not shapes.looks_ahead and changes.get("ccd_swept_sphere_radius", 0.0) > 0.0
     return partial(_change_surface, body, link, changes, will_look_ahead)
@@ -91,7 +91,7 @@ def _change_surface(body: Body, link: int, changes: Mapping[str, Any], will_look
 
 
 def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
-    """Refuse what could not be written, before anything is."""
+    """Check everything before anything is written."""
     if name in _VECTORS:
         x, y, z = value
         _ = float(x), float(y), float(z)
@@ -102,7 +102,7 @@ def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
 
 
 def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Callable[[], None]]:
-    """What changes anything but the surface of a link; each can be called again."""
+    """The changes of anything except the surface of a link; each can be called again."""
     steps: list[Callable[[], None]] = []
     model, tree = body.world.arrays.model.numpy, body.rows.tree
     for name, field in OF_BODY.items():
@@ -131,10 +131,10 @@ def _put(array: np.ndarray, row: int, value: float) -> None:
 
 
 def _activation_change(body: Body, change: ActivationChange) -> Callable[[], None]:
-    """Put a body to sleep, wake it up, or change whether it may do so by itself.
+    """Put a body to sleep, wake it up, or change whether it may fall asleep by itself.
 
-    As in Bullet it takes effect at the end of the next step, and a body that must not wake up keeps
-    whether it can sleep.
+    As in Bullet it takes effect at the end of the next step, and a body that must not wake up keeps its
+    permission to sleep.
     """
     model, state = body.world.arrays.model.numpy, body.world.arrays.state.numpy
     tree = body.rows.tree
@@ -167,7 +167,7 @@ def _joint_changes(body: Body, joint: int, changes: Mapping[str, Any]) -> Iterat
 
 
 def write_link(body: Body, link: int) -> None:
-    """Bring the engine up to date with `Body.dynamics` of a link, but for the bounds of its joint."""
+    """Write `Body.dynamics` of a link to the engine, except the limits of its joint."""
     dynamics = body.dynamics(link)
     _write(body, link)
     if link != BASE:
@@ -176,7 +176,7 @@ def write_link(body: Body, link: int) -> None:
 
 
 def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) -> Callable[[], None]:
-    """Set the mass and the inertia, by default that of the collision shapes; a massless base is fixed."""
+    """Set the mass and the inertia, by default that of the collision shapes; a base without mass is fixed."""
     world, dynamics = body.world, body.dynamics(link)
     moments = shape_inertia(body, link, mass) if inertia is None else inertia
     frees_or_fixes = link == BASE and (mass > 0.0) == body.fixed_base
@@ -193,13 +193,13 @@ def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) ->
 
 
 def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """Let the base of a body move, or hold it where it is, within a change; can be called again."""
+    """Free the base of a body, or fix it in the world, within a change; can be called again."""
     set_base_freedom(world, body, free=free)
     world.constraints.base_freedom_changed(body)
 
 
 def set_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """The same without numbering the islands anew."""
+    """The same without renumbering the islands."""
     world.arrays.set_base_freedom(body.rows, free=free)
     body.fixed_base = not free
     body.derived.clear()
@@ -249,7 +249,7 @@ def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:
 
 
 def _set_limit_force(body: Body, joint: int, force: float) -> None:
-    """A limit's bound is an impulse: it keeps the substep at the time of the call."""
+    """The bound of a limit is an impulse: force times the substep at the time of the call."""
     impulse = force * body.world.parameters.substep_time
     limit = body.world.constraints.limit_of(body, joint)
     if limit is not None:

@@ -1,4 +1,4 @@
-"""Why a step could not be completed, as far as what is left tells: what scripts wrote into the state."""
+"""Why a step could not be completed: looks for NaN that scripts have written into the state."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _PD = ("target position", "target velocity", "position gain", "velocity gain", "
 
 
 def cause_in(body: Body) -> str:
-    """The first number of a body's drives or coordinates that is no number (NaN), in words; empty if none is.
+    """Describes the first NaN among a body's drives and coordinates; empty if there is none.
 
-    Infinite bounds of drives are none.
+    Infinite limits of drives are allowed.
     """
     world = body.world
     for joint in range(body.joint_count):

@@ -1,4 +1,4 @@
-"""Handles outlive what they stand for; their rows then belong to others."""
+"""Handles can outlive their body; its rows then belong to other bodies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of what there is in a world, in HTML, for notebooks."""
+"""Tables of a world and its bodies, in HTML, for notebooks."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def body_table(body: Body) -> str:
 
 
 def joints_table(joints: Iterable[Joint], caption: str = "Joints") -> str:
-    """Joints with their limits and what they do now."""
+    """Joints with their limits and present state."""
     header = ["index", "name", "type", "position", "velocity", "limits", "motor force"]
     rows = []
     for joint in joints:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Joint:
-    """One joint of a body. Positions are in rad or m, forces in N m or N, whichever its type moves in.
+    """One joint of a body. Positions are in rad or m, forces in N m or N, depending on its type.
 
     The scalar attributes and methods are for joints with one degree of freedom (revolute,
     continuous, prismatic) and raise `ValueError` on others; `coordinates` and `rates` serve all.
@@ -44,7 +44,7 @@ class Joint:
 
     @property
     def spec(self) -> LinkSpec:
-        """What the file says about the joint and the link it moves."""
+        """The specification of the joint and the link it moves, from the file."""
         return self.body.spec.links[self.index]
 
     @property
@@ -54,7 +54,7 @@ class Joint:
 
     @property
     def type(self) -> JointType:
-        """How it moves."""
+        """The type of the joint."""
         return self.spec.joint_type
 
     @property
@@ -68,12 +68,12 @@ class Joint:
 
     @property
     def parent(self) -> Link:
-        """The link that carries it; the base is link -1."""
+        """The parent link; the base is link -1."""
         return self.body.links[self.spec.parent]
 
     @property
     def child(self) -> Link:
-        """The link it moves."""
+        """The child link, which it moves."""
         return self.body.links[self.index]
 
     @property
@@ -83,16 +83,16 @@ class Joint:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Least and greatest position that are enforced now; -inf and inf where there is no limit."""
+        """Minimum and maximum position that are enforced now; -inf and inf without a limit."""
         spec, dynamics = self.spec, self.body.dynamics(self.index)
         limits = (dynamics.joint_lower_limit, dynamics.joint_upper_limit)
-        # A file can state limits that do not count, those of a continuous joint for example.
+        # Some limits of a file are ignored, those of a continuous joint for example.
         only_stated = not spec.limited and limits == (spec.lower, spec.upper)
         return (-np.inf, np.inf) if only_stated or limits[0] > limits[1] else limits
 
     @property
     def effort_limit(self) -> float:
-        """Greatest force of the drive according to the file; inf where it states none."""
+        """Maximum force of the motor according to the file (effort); inf if the file states none."""
         return self.spec.effort or np.inf
 
     @property
@@ -125,11 +125,11 @@ class Joint:
         return world_of(self.body).velocity[self._dofs].copy()
 
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
-        """Place the joint without simulating the way there; its motor keeps its target.
+        """Set the state of the joint without simulation; its motor keeps its target.
 
         Args:
-            position: As many numbers as `coordinates` has; a quaternion is normalised.
-            velocity: As many numbers as `rates` has, or one for all.
+            position: All position coordinates, as in `coordinates`; a quaternion is normalised.
+            velocity: All velocity coordinates, as in `rates`, or one number for all.
 
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
@@ -153,18 +153,18 @@ class Joint:
         max_force: float | None = None,
         max_velocity: float = np.inf,
     ) -> None:
-        """Let the motor move the joint to a position and hold it there.
+        """Position control: the motor moves the joint to a position and holds it there.
 
-        In every substep it aims for a velocity that takes away the share `gain` of the position error
-        and the share `velocity_gain` of the velocity error, with at most `max_force`.
+        In every substep it aims for a velocity that corrects the share `gain` of the position error and the
+        share `velocity_gain` of the velocity error, with at most `max_force`.
 
         Args:
-            target: Where to go, clipped to the limits.
-            gain: Share of the position error per substep, in general within 0 ... 1.
-            velocity: Velocity to arrive with.
-            velocity_gain: Share of the velocity error per substep.
-            max_force: Greatest force; `effort_limit` by default.
-            max_velocity: Greatest velocity the motor asks for.
+            target: Target position, clipped to the limits.
+            gain: Position gain: share of the position error corrected per substep, usually 0 ... 1.
+            velocity: Target velocity.
+            velocity_gain: Velocity gain: share of the velocity error corrected per substep.
+            max_force: Maximum force; `effort_limit` by default.
+            max_velocity: Maximum velocity of the motor.
         """
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
         world = world_of(self.body)
@@ -183,12 +183,12 @@ class Joint:
     def set_velocity_target(
         self, target: float, *, gain: float = 1.0, max_force: float | None = None
     ) -> None:
-        """Let the motor keep a velocity.
+        """Velocity control: the motor keeps a velocity.
 
         Args:
             target: The velocity.
-            gain: Share of the velocity error taken away per substep.
-            max_force: Greatest force; `effort_limit` by default.
+            gain: Share of the velocity error corrected per substep.
+            max_force: Maximum force; `effort_limit` by default.
         """
         world = world_of(self.body)
         joint_motor.aim_at_velocity(
@@ -209,14 +209,14 @@ class Joint:
         velocity: float = 0.0,
         max_force: float | None = None,
     ) -> None:
-        """Pull the joint with a spring and a damper, beside its motor, which is not switched off.
+        """Add a spring and a damper (explicit PD control) to the joint; its motor stays on.
 
         Args:
             target: Rest position of the spring.
             stiffness: [N m/rad or N/m].
             damping: [N m s/rad or N s/m]. The force is explicit: too much for the inertia is unstable.
-            velocity: Velocity at which the damper rests.
-            max_force: Greatest force; `effort_limit` by default.
+            velocity: Velocity at which the damper exerts no force.
+            max_force: Maximum force; `effort_limit` by default.
         """
         joint_motor.pull_like_a_spring(
             world_of(self.body).pd,
@@ -236,13 +236,13 @@ class Joint:
         damping: float = 1.0,
         max_force: float | None = None,
     ) -> None:
-        """Let the motor turn a spherical joint to an orientation of the child in the parent.
+        """The motor rotates a spherical joint to an orientation of the child in the parent.
 
         Args:
             target: Quaternion (x, y, z, w); normalised here.
             gain: Share of the error per substep.
-            damping: Share of the angular velocity taken away per substep.
-            max_force: Greatest torque about each axis; `effort_limit` by default.
+            damping: Share of the angular velocity removed per substep.
+            max_force: Maximum torque about each axis; `effort_limit` by default.
         """
         if not self._has_quaternion:
             raise ValueError(f"joint {self.name!r} is {self.type.value}, not spherical")
@@ -262,7 +262,7 @@ class Joint:
         )
 
     def set_torque(self, torque: ArrayLike) -> None:
-        """Push with a force or torque during the next step, instead of any set for it before.
+        """Torque control: apply a force or torque in the next step, replacing one set before.
 
         The motor is not switched off; see `disable_motor`.
         """
@@ -270,26 +270,26 @@ class Joint:
         world_of(self.body).joint_torque[self._dofs] = torque
 
     def disable_motor(self) -> None:
-        """Let go of the joint: its motor, with which every joint starts, and its spring stop acting."""
+        """Switch off the motor, which every joint has at first, and the spring."""
         world = world_of(self.body)
         joint_motor.switch_off(world.motor, world.pd, self._dofs)
 
     @property
     def motor_torque(self) -> float:
-        """Force of the motor in the last substep."""
+        """Force or torque of the motor in the last substep."""
         world = world_of(self.body)
         return float(world.motor_impulse[self._dof] / world.parameters.substep_time)
 
     # Force-torque sensor
 
     def enable_sensor(self, enabled: bool = True) -> None:
-        """Switch the force-torque sensor on or off; it reads 0 until the step after."""
+        """Switch the force-torque sensor on or off; it reads 0 until the next step."""
         world_of(self.body)  # refuses joints of a body that is gone
         self.body.set_sensor(self.index, enabled)
 
     @property
     def reaction(self) -> Array:
-        """Force [N] and torque [N m] the sensor felt in the last substep, shape (6,).
+        """Force [N] and torque [N m] measured by the sensor in the last substep, shape (6,).
 
         What the joint carries from its parent to its link: weight and motion of the links on it, applied forces,
         contacts, user constraints and soft bodies, but not what its own motor or limit does.
@@ -345,7 +345,7 @@ class Joints(Named[Joint]):
 
     @property
     def movable(self) -> list[Joint]:
-        """The joints that are not fixed: what the arrays are about."""
+        """The joints that are not fixed, in the order of the arrays."""
         return self._movable.copy()
 
     @property
@@ -367,17 +367,17 @@ class Joints(Named[Joint]):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Least and greatest positions of the movable joints; -inf and inf where there is no limit."""
+        """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
         lower, upper = zip(*(joint.limits for joint in self._movable), strict=True)
         return np.array(lower), np.array(upper)
 
     @property
     def effort_limits(self) -> Array:
-        """Greatest forces of the drives according to the file; inf where it states none."""
+        """Maximum forces of the drives according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
-        """Place all movable joints without simulating the way there; motors keep their targets.
+        """Set the state of all movable joints without simulation; motors keep their targets.
 
         Args:
             positions: As many numbers as `positions` has.
@@ -402,7 +402,7 @@ class Joints(Named[Joint]):
         max_forces: ArrayLike | None = None,
         max_velocities: ArrayLike = np.inf,
     ) -> None:
-        """`Joint.set_position_target` for all movable joints; scalars are for all of them.
+        """`Joint.set_position_target` for all movable joints; scalars apply to all of them.
 
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
@@ -423,7 +423,7 @@ class Joints(Named[Joint]):
     def set_velocity_targets(
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
-        """`Joint.set_velocity_target` for all movable joints; scalars are for all of them."""
+        """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
         world = world_of(self._body)
         joint_motor.aim_at_velocity(
             world.motor,
@@ -456,7 +456,7 @@ class Joints(Named[Joint]):
         return self._dofs
 
     def _each(self, value: ArrayLike, name: str) -> Array:
-        """One number for each velocity coordinate; the message of an error names the joints."""
+        """One number for each velocity coordinate; an error message names the joints."""
         try:
             return one_or_each(value, sum(self._body.velocity_count), name)
         except ValueError as problem:

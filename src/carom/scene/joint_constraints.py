@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @record(frozen=False, eq=False)
 class JointConstraint:
-    """A motor or a limit on one joint, or a constraint that users created.
+    """A motor or a limit of one joint, or a user constraint.
 
     Attributes:
         body: The body it acts on.
@@ -30,8 +30,8 @@ class JointConstraint:
         lower: Lower limit; swing range about x of a spherical joint [rad or m].
         upper: Upper limit; swing range about y of a spherical joint [rad or m].
         twist: Twist range of a spherical joint [rad].
-        user: The constraint users created, if it is one.
-        max_impulse: Greatest impulse of a limit per substep.
+        user: The user constraint, if it is one.
+        max_impulse: Maximum impulse of a limit per substep.
     """
 
     body: Body
@@ -45,7 +45,7 @@ class JointConstraint:
 
     @property
     def moving_body(self) -> Body:
-        """The body, or where that cannot move, the other one of a user constraint."""
+        """The body; if it cannot move, the other body of a user constraint."""
         other = None if self.user is None else self.user.child
         return other if other is not None and not any(moving_links(self.body)) else self.body
 
@@ -54,8 +54,8 @@ class JointConstraints:
     """All motors and limits of a world.
 
     Attributes:
-        all: They and the constraints of users, in an order that matters: the solver's follows from it.
-        tags: The links of the bodies, in an order that matters likewise.
+        all: These and the user constraints, in an order that matters: the solver's order depends on it.
+        tags: The links of the bodies, in an order that matters as well.
     """
 
     def __init__(self) -> None:
@@ -86,7 +86,7 @@ class JointConstraints:
                 self.all.append(JointConstraint(body, joint, MOTOR_KIND[code]))
 
     def way_back(self) -> Callable[[], None]:
-        """What takes away all that is added from now on."""
+        """A function that removes all that is added from now on."""
         constraints, count = self.all, len(self.all)
         forget_links = self.tags.way_back()
 
@@ -98,10 +98,10 @@ class JointConstraints:
         return go_back
 
     def removal(self, body: Body) -> Callable[[], None]:
-        """Make ready to remove the constraints of a body, the last first.
+        """Prepare to remove the constraints of a body, the last first.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         kept = self.all.copy()
         for constraint in reversed(self.all):
@@ -131,7 +131,7 @@ class JointConstraints:
         self.all.append(JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user))
 
     def user_removal(self, user: UserConstraint) -> Callable[[], None]:
-        """Make ready to remove a constraint that a user created; what is returned can be called again."""
+        """Prepare to remove a user constraint; the function returned can be called again."""
         return partial(setattr, self, "all", self._all_but(next(c for c in self.all if c.user is user)))
 
     def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
@@ -142,8 +142,7 @@ class JointConstraints:
     def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
         """Constraints that can act, and the island of each.
 
-        A constraint between two bodies makes their islands one; one between two fixed bodies does
-        nothing.
+        A constraint between two bodies merges their islands; one between two fixed bodies does nothing.
         """
         tags = self.tags.tags()
         above = {tag: tag for tag in tags.values()}
@@ -179,7 +178,7 @@ class JointConstraints:
         return None
 
     def base_freedom_changed(self, body: Body) -> None:
-        """Number the islands anew after the base of a body was freed or held."""
+        """Renumber the islands after the base of a body was freed or fixed."""
         self.tags.move_base_to_end(body.id, moving_links(body))
 
     def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> None:
@@ -231,7 +230,7 @@ class JointConstraints:
 
 
 def moving_links(body: Body) -> list[bool]:
-    """Which links, base first, are not rigidly tied to a fixed base."""
+    """Which links, base first, are not rigidly connected to a fixed base."""
     moving = [not body.fixed_base]
     for link, code in zip(body.spec.links, body.joint_types, strict=True):
         moving.append(moving[link.parent + 1] or code != JointCode.FIXED)

@@ -1,4 +1,4 @@
-"""Links of a body: where they are, how they move, what pushes them."""
+"""Links of a body: poses, velocities, external forces."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Frame = Literal["world", "link"]
 
 
 class LinkPose(NamedTuple):
-    """Where a frame is in the world.
+    """Pose of a frame in the world.
 
     Attributes:
         position: Its origin [m], shape (3,).
@@ -35,7 +35,7 @@ class LinkPose(NamedTuple):
 
 
 class LinkVelocity(NamedTuple):
-    """How a link moves, in world axes.
+    """Velocity of a link, in world axes.
 
     Attributes:
         linear: Velocity of its centre of mass [m/s], shape (3,).
@@ -65,7 +65,7 @@ class Link:
 
     @property
     def spec(self) -> LinkSpec:
-        """What the file says about the link."""
+        """The specification of the link, from the file."""
         return self.body.link_spec(self.index)
 
     @property
@@ -80,7 +80,7 @@ class Link:
 
     @property
     def parent(self) -> Link | None:
-        """The link that carries it; None for the base."""
+        """The parent link; None for the base."""
         return None if self.index == BASE else self.body.links[self.spec.parent]
 
     @property
@@ -102,7 +102,7 @@ class Link:
 
     @property
     def pose(self) -> LinkPose:
-        """World pose of the link frame, the one the file speaks of."""
+        """World pose of the link frame, as defined by the file."""
         return _as_arrays(self._link_frame())
 
     @property
@@ -124,12 +124,12 @@ class Link:
     def apply_force(
         self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
     ) -> None:
-        """Push the link during the next step, in addition to what else pushes it.
+        """Apply a force in the next step, in addition to other forces.
 
         Args:
             force: [N], shape (3,).
             point: Where it acts [m], shape (3,); the centre of mass by default.
-            frame: Both are given in the world, or both in the link frame.
+            frame: Frame of both: the world or the link frame.
 
         Raises:
             ValueError: A vector is not three finite numbers, or the frame is unknown.
@@ -147,11 +147,11 @@ class Link:
         wrench[3:] += np.cross(arm, world_force)
 
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
-        """Twist the link during the next step, in addition to what else twists it.
+        """Apply a torque in the next step, in addition to other torques.
 
         Args:
             torque: [N m], shape (3,).
-            frame: Axes it is given in: those of the world or of the link frame.
+            frame: Axes of the torque: those of the world or of the link frame.
 
         Raises:
             ValueError: It is not three finite numbers, or the frame is unknown.
@@ -164,7 +164,7 @@ class Link:
 
     def _inertial_frame(self) -> Pose:
         world = world_of(self.body)
-        # After a step the rows of the poses are those of its start.
+        # After a step these rows have the poses of its start.
         self.body.update_link_poses()
         x, y, z, qx, qy, qz, qw = world.link_pose[self._row].tolist()
         return Pose((x, y, z), (qx, qy, qz, qw))

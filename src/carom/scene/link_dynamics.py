@@ -1,4 +1,4 @@
-"""The numbers of one link that users can read and change while it runs."""
+"""The parameters of one link that users can read and change during the simulation."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNSET = -1.0
 
 @record(frozen=False)
 class LinkDynamics:
-    """Inertia, surface and joint bounds of a link.
+    """Inertia, surface and joint limits of a link.
 
     Attributes:
         mass: [kg]; 0 for a fixed base.
@@ -24,18 +24,18 @@ class LinkDynamics:
         lateral_friction: Coulomb coefficient.
         rolling_friction: [m].
         spinning_friction: [m].
-        restitution: Fraction of the normal speed that comes back.
+        restitution: Coefficient of restitution.
         contact_stiffness: [N/m]; -1 if unset.
         contact_damping: [N s/m]; -1 if unset.
-        friction_anchor: Friction keeps a position anchor.
+        friction_anchor: Friction has a position anchor.
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
-        contact_processing_threshold: Greatest distance of a contact that is solved [m].
+        contact_processing_threshold: Maximum distance at which a contact is solved [m].
         anisotropic_friction: Factors on friction along the link's axes.
         joint_damping: [N m s/rad or N s/m].
         joint_lower_limit: [rad or m].
         joint_upper_limit: Less than the lower limit means none.
-        joint_limit_impulse: Greatest impulse of a limit per substep [N m s or N s].
+        joint_limit_impulse: Maximum impulse of a limit per substep [N m s or N s].
     """
 
     mass: float
@@ -58,7 +58,7 @@ class LinkDynamics:
 
     @classmethod
     def of(cls, link: LinkSpec) -> LinkDynamics:
-        """What a freshly loaded link has."""
+        """The parameters of a link after loading."""
         contact = link.contact
         dynamics = cls(
             mass=link.mass,

@@ -37,15 +37,15 @@ _MODES = (VELOCITY, TORQUE, POSITION)
 class MotorGroup:
     """Revolute and prismatic joints of a world, in any order.
 
-    It is of use until bodies come or go.
+    It is valid until bodies are added or removed.
 
     Args:
         world: The world.
         dofs: Rows of their velocities.
-        bounds: Least and greatest target position of each.
-        force: Of motors for which none is stated [N or N m].
-        kp: Gain likewise.
-        kd: Gain likewise.
+        bounds: Minimum and maximum target position of each.
+        force: Default force of motors [N or N m].
+        kp: Default gain.
+        kd: Default gain.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class MotorGroup:
         self._asked: tuple[float, ...] = ()
 
     def record(self, indices: Sequence[int]) -> Record:
-        """What quick calls are told of these joints, as long as this is kept.
+        """The record of these joints for quick calls; valid as long as this object exists.
 
         Args:
             indices: Their indices in the body.
@@ -115,20 +115,20 @@ class MotorGroup:
         kps: Iterable[float] | None = None,
         kds: Iterable[float] | None = None,
     ) -> None:
-        """Set the motors by one number for each joint, or by the default numbers where there is None.
+        """Set the motors by one number for each joint; None stands for the default numbers.
 
         Args:
             mode: `VELOCITY`, `TORQUE` or `POSITION` of `carom.layouts.motor_commands`.
             time_step: Of a step [s].
-            positions: Targets [rad or m], taken to the nearest bound when they are beyond; 0 by default.
+            positions: Targets [rad or m], clipped to the limits; 0 by default.
             velocities: Targets [rad/s or m/s]; 0 by default.
-            forces: Greatest forces of the motors, or torques [N m or N].
+            forces: Maximum forces of the motors, or torques [N m or N].
             kps: Gains.
             kds: Gains.
 
         Raises:
-            ValueError: The mode is none of these, or something given is not finite; nothing is set.
-            struct.error: Something given is not a number for each joint; nothing is set.
+            ValueError: The mode is unknown, or a number is not finite; nothing is set.
+            struct.error: An argument does not have a number for each joint; nothing is set.
         """
         if mode not in _MODES:
             raise ValueError("there is no such mode")

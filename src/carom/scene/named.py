@@ -1,4 +1,4 @@
-"""A sequence whose items can be looked up by name as well."""
+"""A sequence with access by name as well."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Named(Generic[Item]):
         """Number the items.
 
         Args:
-            kind: What an item is called in messages.
-            items: In order; of equal names the first counts.
+            kind: Name of an item in messages.
+            items: The items in order; of equal names the first is found.
             first: Index of the first item.
         """
         self._kind = kind

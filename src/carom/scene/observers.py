@@ -1,4 +1,4 @@
-"""What is told of the steps of a world."""
+"""Observers of the steps of a world."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ from typing import Protocol, runtime_checkable
 
 
 class Observer(Protocol):
-    """What `World.observers` holds: something that is told of every step."""
+    """An object in `World.observers`: it is called at every step."""
 
     def before_step(self) -> None:
-        """A step is about to be made."""
+        """Called before a step."""
         ...
 
     def after_step(self) -> None:
-        """It has been made."""
+        """Called after a step."""
         ...
 
 
 @runtime_checkable
 class SubstepObserver(Protocol):
-    """What `World.watch_substeps` takes: something that is told of every substep."""
+    """An argument of `World.watch_substeps`: it is called at every substep."""
 
     def after_substep(self) -> None:
-        """A substep has been made, or a step that has no substeps."""
+        """Called after a substep, or after a step without substeps."""
         ...
 
     def step_repeated(self) -> None:
-        """The step is made again from its beginning, since something did not fit into its arrays."""
+        """Called when a step is repeated because arrays were too short."""
         ...

@@ -1,8 +1,8 @@
-"""The state of a world at one moment, to go back to.
+"""The state of a world at one moment, which can be restored.
 
-What a step starts from is all here, contacts and the impulses they remember included, so a world that
-goes back to a snapshot then moves exactly, to the last bit, as it did after the snapshot was taken. What
-bodies are made of, constraints, gravity and the other parameters are not state.
+It contains everything that a step starts from, including contacts and their last impulses. So a world that is
+restored from a snapshot then moves exactly, bit for bit, as it did after the snapshot was taken. Masses and
+shapes of bodies, constraints, gravity and the other parameters are not part of the state.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
     from carom.world.world import World
 
-# Axes of what is not the state of bodies: what became of the last step, impulses of user constraints.
+# Axes that are not state of bodies: status of the last step, impulses of user constraints.
 _NOT_OF_BODIES = ("status", "user")
-# Axis of the contacts themselves.
+# Axis of contacts.
 _CONTACT = "contact"
-# Drives of joints; the rows of bases mean nothing.
+# Drives of joints; the rows of bases are unused.
 _DRIVES = ("dof_motor", "dof_pd")
 
 
 @record
 class BodyLayout:
-    """What has to be the same of a body so that a state fits it.
+    """The properties of a body that a state has to match.
 
     Attributes:
         id: Its number.
@@ -57,7 +57,7 @@ class BodyLayout:
         return f"{joints} joints with {freedoms} freedoms"
 
     def moves_like(self, other: BodyLayout) -> bool:
-        """Both have equally many links, coordinates and nodes."""
+        """Whether both have the same numbers of links, coordinates and nodes."""
         mine = (self.links, self.positions, self.dofs, self.nodes)
         return mine == (other.links, other.positions, other.dofs, other.nodes)
 
@@ -67,9 +67,9 @@ class Snapshot:
     """A state; get one from `World.snapshot`.
 
     Attributes:
-        layout: The bodies it is the state of.
+        layout: The bodies of the state.
         time: Simulated time [s].
-        unspent_time: Part of it that no substep has covered yet [s].
+        unspent_time: Part of it not yet covered by a substep [s].
         state: Fields of `State` by name, without the world axis: the rows in use; of drives, those of
             joints only.
         contacts: Fields of `Contacts`, likewise.
@@ -89,8 +89,8 @@ class Layout:
     """Which bodies a world has, in the order of their rows.
 
     Attributes:
-        bodies: What each is like.
-        joint_dofs: Rows of the velocity coordinates that are not those of bases.
+        bodies: The layout of each.
+        joint_dofs: Rows of the velocity coordinates of joints.
     """
 
     bodies: tuple[BodyLayout, ...]
@@ -107,7 +107,7 @@ class Layout:
 
 
 def layout(world: World) -> Layout:
-    """The layout of a world as it is."""
+    """The present layout of a world."""
     shape_count = world.contact_arrays.shapes.table.numpy["link_shape_count"]
     bodies = []
     for body in world.bodies.values():
@@ -128,7 +128,7 @@ def take(world: World, layout: Layout) -> Snapshot:
     }
     islands = snapshot.state["tree_island"]
     if islands.size and islands.max() >= len(islands):
-        # Those of the last step, since which a body has gone. The next step makes others.
+        # These are of the last step; a body was removed since. The next step replaces them.
         islands[:] = np.arange(len(islands))
     snapshot.contacts = {
         name: rows.copy() for name, rows in _contact_rows(world, world.contact_arrays.contact_count)
@@ -140,10 +140,10 @@ def take(world: World, layout: Layout) -> Snapshot:
 
 
 def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], None]:
-    """Make ready to give a world the state of a snapshot.
+    """Prepare to restore a world from a snapshot.
 
-    Contacts are forgotten, and found again at the next step, where bodies have other shapes now or have
-    been removed and loaded in another order.
+    Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
+    and loaded in another order.
 
     Args:
         world: The world.
@@ -151,7 +151,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         snapshot: The state.
 
     Returns:
-        What does it. It can be called again, after it was broken off.
+        A function that does it; it can be called again if it was interrupted.
 
     Raises:
         StateError: The world has other bodies.
@@ -179,7 +179,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
 
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
-    """Fields of the state and their rows in use, of the one world there is."""
+    """Fields of the state of a single world, and their rows in use."""
     for name, array in table.numpy.items():
         axis = name.partition("_")[0]
         if axis not in _NOT_OF_BODIES:
@@ -223,13 +223,13 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
         name: rows[order[_DRIVES if name in _DRIVES else name.partition("_")[0]]]
         for name, rows in snapshot.state.items()
     }
-    # An island has the number of a tree's row, and those have changed.
+    # Islands are numbered by rows of trees, which have changed.
     state["tree_island"] = np.arange(len(bodies), dtype=np.int32)
     return Snapshot(layout, snapshot.time, snapshot.unspent_time, state)
 
 
 def check_same(saved: Layout, present: Layout) -> None:
-    """See that bodies are those of a saved state.
+    """Check that bodies are those of a saved state.
 
     Raises:
         StateError: They are not.

@@ -1,4 +1,4 @@
-"""Nodes of soft bodies held by the world or by links: made and undone."""
+"""Anchors of soft bodies: nodes held by the world or by links."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Anchor:
-    """Hold a node where it is; see `SoftBody.anchor`."""
+    """Anchor a node; see `SoftBody.anchor`."""
     world = soft.world
     if not 0 <= node < len(soft.nodes):
         raise IndexError(f"body {soft.id} has {len(soft.nodes)} nodes; there is no node {node}")
@@ -47,7 +47,7 @@ def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Ancho
 
 
 def remove_anchor(world: World, number: int) -> None:
-    """Let go of a node, if there is an anchor of that number."""
+    """Remove an anchor, if there is one of that number."""
     with begin(world) as undo:
         anchors = {key: anchor for key, anchor in world.contact_arrays.soft.anchors.items() if key != number}
 

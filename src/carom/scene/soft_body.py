@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from carom.checks import Array
 
 
-# What cannot be changed of a soft body.
+# Parameters of a soft body that cannot be changed.
 _FIXED = ("mass", "inertia", "collision_margin")
 
 
 class SoftBody(Body):
     """Handle of a soft body; stays valid until the body is removed.
 
-    Its base stands for all of it: it is where the centre of mass of the nodes is, turned as they are on the
-    whole, and moves as they do.
+    Its base stands for the whole body: it is at the centre of mass of the nodes, with their mean rotation and
+    velocity.
     """
 
     @property
@@ -37,13 +37,13 @@ class SoftBody(Body):
 
     @property
     def soft_spec(self) -> SoftSpec:
-        """What it is made of."""
+        """Its specification."""
         assert self.spec.soft is not None
         return self.spec.soft
 
     @property
     def soft_rows(self) -> SoftRows:
-        """Where it is among the soft bodies."""
+        """Its rows in the arrays of soft bodies."""
         return next(soft for soft in self.world.contact_arrays.soft.bodies if soft.rows is self.rows)
 
     @property
@@ -53,9 +53,9 @@ class SoftBody(Body):
 
     @property
     def nodes(self) -> np.ndarray:
-        """Positions of the nodes in world axes [m], shape (n, 3): a view, until bodies come or go.
+        """Positions of the nodes in world axes [m], shape (n, 3), a view.
 
-        After a change by hand call `update`.
+        Call `update` after writing to it.
         """
         return self.world.arrays.state.numpy["node_position"][0, self.rows_of_nodes]
 
@@ -76,7 +76,7 @@ class SoftBody(Body):
 
     @property
     def surface(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is seen of it: (v, 3) vertices in world axes [m], a copy, and (t, 3) triangles."""
+        """Its visible mesh: (v, 3) vertices in world axes [m], a copy, and (t, 3) triangles."""
         skin = self.soft_spec.skin
         if skin is None:
             return self.nodes.copy(), self.soft_spec.faces
@@ -89,21 +89,21 @@ class SoftBody(Body):
 
     @property
     def anchors(self) -> list[Anchor]:
-        """What holds its nodes."""
+        """Its anchors."""
         return [it for it in self.world.contact_arrays.soft.anchors.values() if it.soft.rows is self.rows]
 
     def update(self) -> None:
-        """Bring the pose and the velocity as a whole up to date after nodes have been changed by hand."""
+        """Update the pose and the velocity of the base after nodes have been written."""
         self.world.update_soft_poses()
 
     def set_nodes(self, positions: Array | Sequence[Sequence[float]]) -> None:
-        """Put the nodes elsewhere; their velocities stay.
+        """Set the positions of the nodes; their velocities do not change.
 
         Args:
             positions: In world axes [m], shape (n, 3).
 
         Raises:
-            ValueError: They are not as many, or not all finite.
+            ValueError: Their number is wrong, or they are not all finite.
         """
         self.nodes[:] = _as_many(positions, self.nodes.shape, "positions")
         self.update()
@@ -112,13 +112,13 @@ class SoftBody(Body):
         """Set the velocities of the nodes [m/s], shape (n, 3).
 
         Raises:
-            ValueError: They are not as many, or not all finite.
+            ValueError: Their number is wrong, or they are not all finite.
         """
         self.node_velocities[:] = _as_many(velocities, self.node_velocities.shape, "velocities")
         self.update()
 
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Move and turn all of it so that its centre of mass is at `position`; see `Body.set_base_pose`."""
+        """Move and rotate all of it; the centre of mass goes to `position`; see `Body.set_base_pose`."""
         state = self.world.arrays.state.numpy
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
@@ -129,25 +129,25 @@ class SoftBody(Body):
         self.update()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Let it move as a rigid body would: velocity of its centre of mass [m/s], angular one [rad/s]."""
+        """Set the velocity of all nodes as of a rigid body: of the centre of mass [m/s], angular [rad/s]."""
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
         self.node_velocities[:] = np.asarray(linear) + np.cross(np.asarray(angular), self.nodes - center)
         self.update()
 
     def change_dynamics(self, link: int, **changes: Any) -> None:
-        """Change how it touches, as `Body.change_dynamics`; as in PyBullet its mass stays what it is."""
+        """Change contact parameters, as `Body.change_dynamics`; as in PyBullet the mass does not change."""
         super().change_dynamics(
             link, **{name: value for name, value in changes.items() if name not in _FIXED}
         )
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest corner of a box along the world's axes around it, its margin included [m]."""
+        """Minimum and maximum corner of its bounding box in world axes, margin included [m]."""
         margin = self.soft_spec.margin
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
 
     def anchor(self, node: int, body: Body | None = None, link: int = -1) -> Anchor:
-        """Hold a node where it is: in the world, or at a link, which feels its pull.
+        """Anchor a node at its present place: in the world, or on a link, which feels the force.
 
         Args:
             node: The node, from 0.
@@ -159,14 +159,14 @@ class SoftBody(Body):
 
         Raises:
             IndexError: There is no such node or link.
-            ValueError: A soft body is to hold it.
+            ValueError: The other body is soft.
         """
         from carom.scene.soft_anchors import add_anchor
 
         return add_anchor(self, node, body, link)
 
     def release(self, anchor: Anchor) -> None:
-        """Let go of a node."""
+        """Remove an anchor."""
         from carom.scene.soft_anchors import remove_anchor
 
         remove_anchor(self.world, anchor.id)

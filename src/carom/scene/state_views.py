@@ -1,4 +1,4 @@
-"""The state of a world as users read and write it: views of the engine's arrays."""
+"""The state of a world for users to read and write: views of the engine's arrays."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.native.tables import ArrayTable
 
-# Flat arrays of the state that users read or write: attribute of `StateViews`, field of `State`.
+# Flat arrays of the state for users: attribute of `StateViews`, field of `State`.
 VIEWS = {
     "position": "position",
     "velocity": "dof_velocity",

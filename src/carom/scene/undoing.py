@@ -1,4 +1,4 @@
-"""How a change of the scene begins, so that it is made as a whole or not at all."""
+"""The begin of a change of the scene, which is made completely or not at all."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ if TYPE_CHECKING:
 
 
 def begin(world: World) -> Undo:
-    """Begin a change; what may be left of one that was broken off comes to its end before."""
+    """Begin a change; first complete an earlier one that was interrupted."""
     world.undo.settle()
-    # Nothing that was made for the world as it was may be used before it is whole again.
+    # Derived data of the old world must not be used before the change is complete.
     world.undo.note(world.scene_changed)
     world.scene_changed()
     return world.undo

@@ -1,4 +1,4 @@
-"""Constraints between two links, or a link and the world, that users create and remove."""
+"""User constraints between two links, or a link and the world."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ class UserConstraint:
 
     Attributes:
         id: Number of the constraint in its world.
-        kind: What it holds.
+        kind: Its type.
         parent: First body.
         parent_link: Its link; -1 is the base.
-        child: Second body; None is the world.
+        child: Second body; None for the world.
         child_link: Its link; -1 is the base.
         axis: Axis of a prismatic constraint in the inertial frame of the parent's link.
         parent_frame: Pivot and axes in the inertial frame of the parent's link.
-        child_frame: The same of the child; in world axes where there is no child.
-        max_impulse: Greatest impulse of each row per substep.
-        max_force: What users last set as greatest force [N or N m].
-        gear_ratio: Joint rate of the parent is minus this times that of the child; 0 stands for 1.
-        gear_auxiliary_link: Link of the parent whose joint's motion is taken off; -1 for none.
-        relative_position_target: What the gear's joint positions are to add up to [rad].
-        erp: Share of a gear's position error that is taken back; 0 leaves positions alone.
-        enabled: Whether it holds anything.
+        child_frame: The same of the child; in world axes without a child.
+        max_impulse: Maximum impulse of each row per substep.
+        max_force: Maximum force as last set by users [N or N m].
+        gear_ratio: The joint velocity of the parent is minus this times that of the child; 0 stands for 1.
+        gear_auxiliary_link: Link of the parent whose joint's motion is subtracted; -1 for none.
+        relative_position_target: Target of the sum of the gear's joint positions [rad].
+        erp: Share of a gear's position error corrected per substep; 0 corrects velocities only.
+        enabled: Whether it is active.
     """
 
     id: int
@@ -84,7 +84,7 @@ class UserConstraints:
 
     @property
     def all(self) -> list[UserConstraint]:
-        """All constraints that are not hidden, in the order they were made."""
+        """All constraints that are not hidden, in order of creation."""
         return [constraint for number, constraint in self._by_id.items() if number > 0]
 
     def get(self, constraint_id: int) -> UserConstraint | None:
@@ -106,8 +106,8 @@ class UserConstraints:
     ) -> UserConstraint:
         """Create a constraint; see `UserConstraint` for the arguments.
 
-        One that is hidden, such as the hand of a user of the viewer, has a negative number, and takes none
-        from those that scripts see.
+        A hidden constraint, such as that of the mouse in the viewer, has a negative number, so that the
+        numbers of other constraints do not change.
         """
         number = self._next_hidden_id if hidden else self.next_id
         if hidden:
@@ -121,12 +121,12 @@ class UserConstraints:
         return constraint
 
     def take_id(self) -> int:
-        """The next number, for what is no constraint between links: the anchor of a soft body."""
+        """The next number, for something else than a constraint between links: the anchor of a soft body."""
         self.next_id += 1
         return self.next_id - 1
 
     def put(self, constraint: UserConstraint) -> None:
-        """Take in a constraint under the number it has; later ones get higher numbers."""
+        """Add a constraint with its own number; later ones get higher numbers."""
         self._by_id[constraint.id] = constraint
         self.next_id = max(self.next_id, constraint.id + 1)
 
@@ -135,7 +135,7 @@ class UserConstraints:
         self._by_id.pop(constraint_id, None)
 
     def way_back(self) -> Callable[[], None]:
-        """What takes away all that is added from now on."""
+        """A function that removes all that is added from now on."""
         count, numbers = len(self._by_id), (self.next_id, self._next_hidden_id)
 
         def go_back() -> None:
@@ -146,10 +146,10 @@ class UserConstraints:
         return go_back
 
     def removal(self, body: Body) -> Callable[[], None]:
-        """Make ready to remove every constraint of a body that goes.
+        """Prepare to remove every constraint of a body.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         kept = {
             number: constraint
@@ -165,7 +165,7 @@ class UserConstraints:
     @property
     def rows(self) -> dict[int, int]:
         """Row of each constraint in the arrays of the engine, by number."""
-        # The copy is made at once: others may look while the viewer's thread ties a body to a hand.
+        # Replace the list at once: other threads may read it while the viewer's thread adds a constraint.
         return {number: row for row, number in enumerate(tuple(self._by_id))}
 
     def write(self, contact_arrays: ContactArrays) -> None:

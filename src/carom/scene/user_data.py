@@ -9,7 +9,7 @@ from carom.native.undo import Undo
 from carom.record import record
 
 WHOLE = -1
-"""In the place of a visual shape: the text belongs to the link, or to the body if that is its base."""
+"""Instead of a visual shape: the text belongs to the link, or to the body if the link is its base."""
 
 
 @record(frozen=False)
@@ -34,7 +34,7 @@ class UserDatum:
 
 
 class UserData:
-    """The texts of a world. Numbers of removed ones are given out again, the last one first."""
+    """The texts of a world. Numbers of removed texts are used again, the last first."""
 
     def __init__(self) -> None:
         self._by_id: dict[int, UserDatum] = {}
@@ -42,7 +42,7 @@ class UserData:
         self._free: list[int] = []
 
     def of_body(self, body: int) -> list[UserDatum]:
-        """All texts of a body; removing one puts the last in its place."""
+        """All texts of a body; removing one moves the last to its place."""
         return self._of_body.get(body, [])
 
     def get(self, number: int) -> UserDatum | None:
@@ -57,7 +57,7 @@ class UserData:
         return None
 
     def add(self, body: int, link: int, shape: int, key: str, value: str) -> UserDatum:
-        """Attach a text; one of the same place and name is replaced and keeps its number."""
+        """Attach a text; an existing one of the same place and name is replaced and keeps its number."""
         datum = self.find(body, link, shape, key)
         if datum is not None:
             datum.value = value
@@ -75,7 +75,7 @@ class UserData:
         return datum
 
     def put(self, datum: UserDatum) -> None:
-        """Take over a text that has its number from elsewhere; others of that number or name go."""
+        """Add a text with its own number; existing ones of that number or name are removed."""
         same = self.find(datum.body, datum.link, datum.shape, datum.key)
         if same is not None and same.id == datum.id:
             same.value = datum.value
@@ -87,7 +87,7 @@ class UserData:
         self._of_body.setdefault(datum.body, []).append(datum)
 
     def add_stated(self, body: int, spec: BodySpec) -> None:
-        """Attach what the file of a new body states."""
+        """Attach the texts in the file of a new body."""
         for key, value in spec.user_data.items():
             self.add(body, BASE, WHOLE, key, value)
         for index, link in enumerate((spec.base, *spec.links), start=BASE):
@@ -98,7 +98,7 @@ class UserData:
                     self.add(body, index, place, key, value)
 
     def remove(self, datum: UserDatum) -> None:
-        """Take a text away."""
+        """Remove a text."""
         others = self._of_body[datum.body].copy()
         others[others.index(datum)] = others[-1]
         others.pop()
@@ -112,7 +112,7 @@ class UserData:
         Undo().at_once(remove)
 
     def way_back(self) -> Callable[[], None]:
-        """What takes away the texts of all bodies that are added from now on."""
+        """A function that removes the texts of all bodies that are added from now on."""
         texts, bodies, free = len(self._by_id), len(self._of_body), self._free.copy()
 
         def go_back() -> None:
@@ -125,10 +125,10 @@ class UserData:
         return go_back
 
     def removal(self, body: int) -> Callable[[], None]:
-        """Make ready to take away all texts of a body that goes.
+        """Prepare to remove all texts of a body.
 
         Returns:
-            What does it. It can be called again, after it was broken off.
+            A function that does it; it can be called again if it was interrupted.
         """
         gone = [datum.id for datum in self.of_body(body)]
         free = [*self._free, *gone]

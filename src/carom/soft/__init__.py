@@ -1,1 +1,1 @@
-"""What soft bodies are made of: cloths, ropes and solids from meshes or from numbers."""
+"""Specifications of soft bodies: cloths, ropes and solids from meshes or from parameters."""

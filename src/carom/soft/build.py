@@ -19,11 +19,11 @@ from carom.soft.skin import bind
 from carom.soft.topology import bending_pairs, edges_of, surface_of
 
 MOST_NODES = 1_000_000
-"""Most nodes of a soft body."""
+"""Maximum number of nodes of a soft body."""
 LEAST_MASS = 1.0e-30
-"""Least mass of a soft body [kg]; divided by less, numbers overflow."""
+"""Minimum mass of a soft body [kg]; smaller masses would overflow."""
 FARTHEST = 1.0e6
-"""Greatest coordinate of a node [m]."""
+"""Largest coordinate of a node [m]."""
 # Tetrahedra of less than this share of the cube of their longest edge are flat.
 _FLAT = 1.0e-9
 
@@ -50,11 +50,11 @@ def soft_body(
         cells: Its (m, 2) links, (m, 3) triangles or (m, 4) tetrahedra.
         mass: Of all nodes together [kg].
         springs: Springs along the edges of the cells, if there are any.
-        solid: What tetrahedra are like, if they resist to a change of shape.
+        solid: Material of tetrahedra, if they resist deformation.
         margin: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient, multiplied by that of what it touches.
-        self_collision: Its nodes do not go through its own faces.
-        seen: (v, 3) vertices and (t, 3) triangles that are seen in place of its surface.
+        self_collision: Its nodes collide with its own faces.
+        seen: (v, 3) vertices and (t, 3) triangles that are drawn instead of its surface.
         source: The file it comes from, for errors.
 
     Raises:
@@ -121,9 +121,7 @@ def _check_parameters(
     if solid is not None:
         others |= {"mu": solid.mu, "lambda": solid.lam, "the damping of the solid": solid.damping}
     if 0.0 < mass < LEAST_MASS:
-        raise DescriptionError(
-            f"mass is {mass}; {LEAST_MASS:g} kg is the least that is accepted", file=source
-        )
+        raise DescriptionError(f"mass is {mass}; {LEAST_MASS:g} kg is the minimum", file=source)
     for name, value in {**positive, **others}.items():
         if not np.isfinite(value) or value < 0.0 or (value == 0.0 and name in positive):
             least = "greater than 0" if name in positive else "0 or more"
@@ -149,7 +147,7 @@ def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source
     flat = determinants(edges) <= _FLAT * size**3
     if flat.any():
         raise DescriptionError(
-            f"tetrahedron {int(flat.argmax())} has no volume; mend the mesh, or leave it out", file=source
+            f"tetrahedron {int(flat.argmax())} has no volume; repair the mesh, or remove it", file=source
         )
 
 

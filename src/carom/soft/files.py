@@ -44,11 +44,11 @@ def soft_body_from_file(
         scale: Factor on all lengths.
         mass: Of all nodes together [kg].
         springs: Springs along the edges of the cells.
-        solid: What tetrahedra are like.
+        solid: Material of tetrahedra.
         margin: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient.
-        self_collision: Its nodes do not go through its own faces.
-        simulated: A file with the mesh that is simulated; that of `path`, an OBJ file, is only seen then.
+        self_collision: Its nodes collide with its own faces.
+        simulated: A file with the mesh that is simulated; that of `path`, an OBJ file, is then only drawn.
 
     Raises:
         DescriptionError: The file is missing or broken, of another kind, or its mesh cannot be used.

@@ -1,4 +1,4 @@
-"""Bodies from URDF files, which may be soft."""
+"""Bodies from URDF files, rigid or soft."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def urdf_body(
 
     Args:
         path: The file.
-        search: Where it and what it refers to are looked for.
+        search: Folders in which it and the files it refers to are searched.
         scale: Factor on all lengths.
         flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
-        fixed_base: Hold the base of a rigid body where it is.
-        older: Soft bodies are those of Bullet's world without deformables.
+        fixed_base: Fix the base of a rigid body in the world.
+        older: Soft bodies are those of Bullet's world without deformable bodies.
 
     Raises:
         DescriptionError: The file cannot be used.
@@ -51,7 +51,7 @@ def robot_body(
         return assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
     collides = bool(flags & LoadFlags.USE_SELF_COLLISION)
     spec = _deformable_body(robot.deformable, scale=scale, self_collision=collides, older=older)
-    # As in PyBullet the body has the name of the element, and its base has none.
+    # As in PyBullet the body has the name of the element, and its base has no name.
     spec.name, spec.base.name, spec.user_data = robot.links[robot.root].name, "", dict(robot.user_data)
     spec.source = robot.source
     return spec
@@ -91,7 +91,7 @@ def _springs(soft: Deformable) -> Springs | None:
 
 
 def _solid(soft: Deformable) -> NeoHookean | None:
-    """What its tetrahedra are like: the sum of all that is stated."""
+    """Material of its tetrahedra: the sum of all elements in the file."""
     from carom.soft.materials import NeoHookean
     from carom.soft.reduced import solid_of_modes
 
@@ -101,7 +101,7 @@ def _solid(soft: Deformable) -> NeoHookean | None:
     if soft.neo_hookean is not None:
         kinds.append(NeoHookean(soft.neo_hookean.mu, soft.neo_hookean.lam, soft.neo_hookean.damping))
     if soft.corotated is not None:
-        # Of these energies the parameters are Lamé's themselves.
+        # For these energies the parameters are Lamé's.
         kinds.append(NeoHookean.of_lame(soft.corotated.mu, soft.corotated.lam, soft.corotated.damping))
     mu, lam = sum(kind.mu for kind in kinds), sum(kind.lam for kind in kinds)
     if mu == lam == 0.0:

@@ -1,4 +1,4 @@
-"""What the cells of soft bodies are like."""
+"""Materials of soft bodies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Springs:
         stiffness: [N/m].
         damping: [N s/m], of springs that bend as well.
         bending: Stiffness of springs between nodes that have a neighbour in common [N/m]; 0 for none.
-        damps_all_directions: They damp every relative motion of their ends, not only that along them.
+        damps_all_directions: They damp all relative motion of their ends, not only that along the spring.
     """
 
     stiffness: float
@@ -24,11 +24,11 @@ class Springs:
 
 @dataclass(frozen=True, slots=True)
 class NeoHookean:
-    """A solid by the energy of Smith, de Goes and Kim (2018), as Bullet has it.
+    """A solid with the energy of Smith, de Goes and Kim (2018), as in Bullet.
 
     Attributes:
         mu: [Pa]; for small strains the shear modulus is 3/4 of it.
-        lam: [Pa]; for small strains Lamé's first parameter is this less 5/8 `mu`.
+        lam: [Pa]; for small strains Lamé's first parameter is this minus 5/8 `mu`.
         damping: Viscosity as a share of these [s].
     """
 
@@ -38,7 +38,7 @@ class NeoHookean:
 
     @classmethod
     def of(cls, youngs_modulus: float, poissons_ratio: float, damping: float = 0.0) -> NeoHookean:
-        """What behaves for small strains as a solid of that Young's modulus [Pa] and Poisson's ratio."""
+        """A material that for small strains has that Young's modulus [Pa] and Poisson's ratio."""
         shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
         return cls.of_lame(shear, 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio), damping)
 

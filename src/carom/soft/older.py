@@ -1,4 +1,4 @@
-"""Cloth as PyBullet has it outside its deformable world: it hardly stretches, whatever it weighs."""
+"""Cloth as in PyBullet without a deformable world: it hardly stretches, for any mass."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from carom.soft.materials import Springs
 _FREQUENCY = 720.0
 # Bullet's coefficient for it.
 _FRICTION = 0.5
-# Share of what would keep two nodes from swinging at all.
+# Share of critical damping of two nodes.
 _DAMPING = 0.05
 
 

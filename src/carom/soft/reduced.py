@@ -1,7 +1,7 @@
-"""Reduced deformable bodies: full solids that are as stiff as their modes say.
+"""Reduced deformable bodies, simulated as full solids with the stiffness of their modes.
 
 Bullet moves such bodies by a few modes of vibration, which it reads from files beside the mesh. Here all
-nodes move, so what is wanted of these files is how stiff the material is.
+nodes move, so only the stiffness of the material is read from these files.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MODULUS = 100.0
 """Young's modulus for each unit of stiffness where there are no files of modes [Pa]."""
 
 _LARGEST = 256 << 20
-# The lowest modes tell most of the shape as a whole, and least of single cells.
+# The lowest modes describe the whole shape best, and depend least on single cells.
 _MODES = 10
 
 
@@ -53,7 +53,7 @@ def solid_of_modes(soft: Deformable) -> NeoHookean:
 
 
 def _numbers(path: Path) -> NDArray[np.float64]:
-    """A count in 32 bits, and as many doubles or more."""
+    """A count in 32 bits, followed by at least as many doubles."""
     data, _ = read_bounded(path, _LARGEST)
     count = int(np.frombuffer(data[:4], "<u4")[0]) if len(data) >= 4 else 0
     if not count or len(data) < 4 + 8 * count:

@@ -1,4 +1,4 @@
-"""Meshes of simple shapes, made from numbers."""
+"""Meshes of simple shapes."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def box(
 
 
 def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A ball of tetrahedra around the origin: a cube of so many cells along each edge, its shells made round.
+    """A ball of tetrahedra around the origin, made from a cube of cells by rounding its layers.
 
     Returns:
         ((n, 3) nodes; (t, 4) tetrahedra of positive volume).

@@ -1,23 +1,23 @@
-"""A mesh that is seen in place of the one that is simulated, and follows it."""
+"""A visual mesh that follows the simulated one."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-# Cells whose middles are nearest to a vertex, among which the one that holds it is looked for.
+# Number of cells with the nearest centres to a vertex, among which its cell is searched.
 _CANDIDATES = 8
-# Vertices looked at at a time, for want of memory.
+# Number of vertices handled at a time, to save memory.
 _CHUNK = 256
 
 
 def bind(
     vertices: NDArray[np.float64], nodes: NDArray[np.float64], cells: NDArray[np.int32]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Which nodes each vertex follows, and by how much.
+    """The nodes that each vertex follows, and their weights.
 
-    A vertex is held at its place in the cell that it is in, or deepest in; outside of all cells its place
-    follows from how that cell changes, as in Bullet.
+    A vertex keeps its place in the cell that it is in, or nearest to; outside of all cells that cell is
+    extrapolated, as in Bullet.
 
     Args:
         vertices: (v, 3) places at rest [m].

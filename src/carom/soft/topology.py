@@ -1,4 +1,4 @@
-"""What follows from the cells of a mesh: edges, bending pairs, the surface."""
+"""Data derived from the cells of a mesh: edges, bending pairs, the surface."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def edges_of(cells: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 def bending_pairs(edges: NDArray[np.int32], node_count: int) -> NDArray[np.int32]:
-    """Pairs of nodes that have a neighbour in common and are no neighbours themselves, as Bullet bends cloth.
+    """Pairs of nodes with a common neighbour that are not neighbours, for bending springs as in Bullet.
 
     Args:
         edges: (e, 2) pairs of neighbours.

@@ -1,4 +1,4 @@
-"""Environments for learning, of which each is many: Gymnasium's vector interface over `carom.Worlds`.
+"""Vector environments for reinforcement learning: Gymnasium's vector interface over `carom.Worlds`.
 
 Importing this package registers Carom's own tasks with Gymnasium.
 """

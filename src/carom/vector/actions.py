@@ -1,4 +1,4 @@
-"""Actions for many environments, refused where they are none."""
+"""Actions for many environments, which are checked."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike
 
 
 class ActionChecker:
-    """Turns what a policy gives into arrays that can be relied on.
+    """Converts a policy's actions to checked arrays.
 
     Args:
         space: The actions of one environment: a `Box`, or `Discrete`.
-        count: How many environments there are.
+        count: Number of environments.
 
     Raises:
-        ValueError: The space is another.
+        ValueError: The space has another type.
     """
 
     def __init__(self, space: gymnasium.spaces.Space[Any], count: int) -> None:
@@ -30,10 +30,10 @@ class ActionChecker:
             raise ValueError(f"the action space must be a Box or Discrete, not {space}")
 
     def __call__(self, actions: ArrayLike) -> np.ndarray:
-        """The actions as doubles, or as integers where they are choices.
+        """The actions as doubles, or as integers for a `Discrete` space.
 
         Raises:
-            ValueError: They have another shape, or one is not finite or no choice there is.
+            ValueError: Their shape is wrong, or one is not finite or out of range.
         """
         given = np.asarray(actions)
         if given.shape != self._shape:

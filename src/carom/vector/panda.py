@@ -1,4 +1,4 @@
-"""Tasks for a Panda: to reach a place, to push a cube there, to pick one up and hold it there."""
+"""Tasks for a Panda: reach a goal, push a cube to a goal, pick up a cube and hold it at a goal."""
 
 from __future__ import annotations
 
@@ -23,30 +23,31 @@ _GRAVITY = (0.0, 0.0, -9.81)
 _ARM, _FINGERS, _TIP = 7, 2, "panda_grasptarget"
 _HOME = np.array([0.0, 0.3, 0.0, -2.1, 0.0, 2.4, 0.785])
 _SPREAD = 0.1
-"""How far joints begin from there at most [rad]."""
+"""Maximum distance of the joints from there at the start [rad]."""
 _FARTHEST_TURN = 0.05
-"""How far an action of one moves the target of a joint [rad]."""
+"""Change of a joint's target by an action of 1 [rad]."""
 _OPEN = 0.04
 _NEAR = 0.05
-"""What counts as there [m]."""
+"""Maximum distance that counts as success [m]."""
 _HALF_CUBE = 0.025
 _STEADY_GAIN, _MAX_VELOCITY = 0.2, 2.0
 
 
 class PandaTask(WorldsEnv):
-    """What the tasks have in common.
+    """Base class of the tasks.
 
-    Action: by how much the targets of the seven joints move, from -1 to 1, of 0.05 rad; where the task needs
-    fingers, how far they open, from -1 (closed) to 1.
+    Action: changes of the targets of the seven joints, from -1 to 1, in units of 0.05 rad; if the task needs
+    fingers, their opening, from -1 (closed) to 1.
 
-    Observation: positions and rates of the joints, opening of the fingers, place of the fingertips, of the
-    goal, the way from the one to the other, then what the task adds. Reward: below 0 as far as something is
-    away from where it is to be, and 1 more where it is there (`infos["success"]`).
+    Observation: positions and velocities of the joints, opening of the fingers, position of the fingertips
+    and of the goal, the difference of both, then what the task adds. Reward: minus the distance to the goal
+    (with a cube also minus half the distance of the fingertips to it), plus 1 at the goal
+    (`infos["success"]`).
 
-    A task lasts as long as its `max_episode_steps`.
+    An episode lasts `max_episode_steps`.
 
     Args:
-        num_envs: How many there are to be.
+        num_envs: Number of environments.
         **options: As for `WorldsEnv`.
     """
 
@@ -84,7 +85,7 @@ class PandaTask(WorldsEnv):
         self.goals = np.zeros((num_envs, 3))
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Put joints, the cube and the goal somewhere."""
+        """Choose random positions of the joints, the cube and the goal."""
         turns = self.random.uniform(worlds, -_SPREAD, _SPREAD, _ARM)
         pose = np.concatenate([_HOME + turns, np.full((len(worlds), _FINGERS), self._opening)], axis=1)
         self._wanted[worlds] = self._panda.joint_positions[worlds] = pose
@@ -136,16 +137,16 @@ class PandaTask(WorldsEnv):
         return reward
 
     def infos(self) -> dict[str, Any]:
-        """Where the task is done."""
+        """The environments in which the task is done."""
         return {"success": self._success.copy()}
 
     @abstractmethod
     def moved(self) -> Array:
-        """Where what is to be at the goal is [m], (num_envs, 3)."""
+        """Position of the thing that has to reach the goal [m], (num_envs, 3)."""
 
 
 class PandaReach(PandaTask):
-    """The fingertips are to be at a place in the air."""
+    """The fingertips have to reach a point in the air."""
 
     _has_cube = _uses_fingers = False
     _lowest_goal, _highest_goal = (0.35, -0.25, 0.1), (0.65, 0.25, 0.5)
@@ -156,7 +157,7 @@ class PandaReach(PandaTask):
 
 
 class PandaPush(PandaTask):
-    """A cube is to be at a place on the floor; the fingers stay closed."""
+    """A cube has to be pushed to a point on the floor; the fingers stay closed."""
 
     _uses_fingers = False
     _lowest_goal, _highest_goal = (0.4, -0.25, _HALF_CUBE), (0.7, 0.25, _HALF_CUBE)
@@ -167,7 +168,7 @@ class PandaPush(PandaTask):
 
 
 class PandaPick(PandaTask):
-    """A cube is to be held at a place in the air."""
+    """A cube has to be held at a point in the air."""
 
     _lowest_goal, _highest_goal = (0.4, -0.2, 0.1), (0.6, 0.2, 0.3)
 

@@ -1,4 +1,4 @@
-"""A source of random numbers for each of many environments."""
+"""Random number generators of many environments."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from carom.checks import Array
 
 
 class RandomSources:
-    """One generator for each environment, so that what one draws depends on its own seed alone.
+    """One generator for each environment, so that its random numbers depend on its own seed only.
 
     Attributes:
         generators: The generators.
-        seeds: What each was made from.
+        seeds: Their seeds.
 
     Args:
-        count: How many environments there are.
+        count: Number of environments.
     """
 
     def __init__(self, count: int) -> None:
@@ -28,14 +28,14 @@ class RandomSources:
         self.seeds: list[int] = [seed for _, seed in made]
 
     def seed(self, seed: int | Sequence[int | None] | None, worlds: np.ndarray) -> None:
-        """Begin anew.
+        """Seed the generators.
 
         Args:
-            seed: Environment k gets `seed + k`, or the k-th of a list; None leaves it as it is.
-            worlds: The environments that begin anew; others stay as they are.
+            seed: Environment k gets `seed + k`, or the k-th of a list; None changes nothing.
+            worlds: The environments that get a seed.
 
         Raises:
-            ValueError: There are not as many seeds as environments.
+            ValueError: The number of seeds differs from that of environments.
         """
         if seed is None:
             return
@@ -49,7 +49,7 @@ class RandomSources:
                 self.generators[world], self.seeds[world] = seeding.np_random(int(own))
 
     def draw(self, worlds: np.ndarray, sample: Callable[[np.random.Generator], ArrayLike]) -> Array:
-        """What `sample` returns for the generators of some environments, (n, ...)."""
+        """The results of `sample` for the generators of some environments, (n, ...)."""
         return np.array([sample(self.generators[world]) for world in worlds.tolist()], dtype=np.float64)
 
     def uniform(

@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.checks import Array
 
-# Where roll and yaw are no longer told apart, as in `carom.description.transform`.
+# Gimbal lock, where roll and yaw cannot be distinguished, as in `carom.description.transform`.
 _GIMBAL_LOCK = 0.99999
 
 
@@ -36,7 +36,7 @@ def euler_from_quaternions(quaternions: Array) -> Array:
 
 
 def turned(quaternions: Array, vectors: Array) -> Array:
-    """Vectors (n, 3) turned by quaternions (n, 4) of unit length."""
+    """Vectors (n, 3) rotated by quaternions (n, 4) of unit length."""
     axis, w = quaternions[:, :3], quaternions[:, 3:]
     twice = 2.0 * np.cross(axis, vectors)
     return vectors + w * twice + np.cross(axis, twice)

@@ -1,4 +1,4 @@
-"""One environment of a kind that is written for many."""
+"""A single environment made from a vector environment."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from carom.vector.worlds_env import WorldsEnv
 
 
 class SingleEnv(gymnasium.Env[np.ndarray, Any]):
-    """A `WorldsEnv` of one environment as Gymnasium has single ones.
+    """A `WorldsEnv` of one environment as a single `gymnasium.Env`.
 
-    It gives what environment k of many gives that was given the seed of this one less k.
+    It equals environment k of a vector environment whose seed is lower by k.
 
     Attributes:
-        many: The environment it shows.
+        many: The vector environment.
 
     Args:
-        make: Makes a `WorldsEnv`, such as its class.
+        make: A function that makes a `WorldsEnv`, such as its class.
         options: Its arguments besides `num_envs` and `autoreset_mode`.
     """
 
@@ -35,24 +35,24 @@ class SingleEnv(gymnasium.Env[np.ndarray, Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begin an episode."""
+        """Start an episode."""
         super().reset(seed=seed)
         self.many.random.generators[0] = self.np_random
         observations, infos = self.many.reset()
         return observations[0], _own(infos)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Go on by a step."""
+        """Take a step."""
         observations, rewards, terminations, truncations, infos = self.many.step(np.asarray(action)[None])
         return observations[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), _own(infos)
 
     def render(self) -> np.ndarray | None:  # type: ignore[override]
-        """A picture (height, width, 3) where `render_mode` is "rgb_array"."""
+        """A picture (height, width, 3) if `render_mode` is "rgb_array"."""
         pictures = self.many.render()
         return None if pictures is None else pictures[0]
 
     def close(self) -> None:
-        """Nothing is left open."""
+        """Close the environment."""
         self.many.close()
 
 

@@ -20,16 +20,16 @@ from carom.vector.worlds_env import WorldsEnv
 
 
 class StableBaselinesEnv(VecEnv):
-    """A `WorldsEnv` as Stable-Baselines3 has vector environments.
+    """A `WorldsEnv` as a vector environment of Stable-Baselines3.
 
     Attributes:
-        env: The environment it shows.
+        env: The vector environment.
 
     Args:
         env: An environment whose `autoreset_mode` is `SAME_STEP`, from its class or `gymnasium.make_vec`.
 
     Raises:
-        ValueError: It begins episodes at another time.
+        ValueError: Its `autoreset_mode` is another.
     """
 
     def __init__(self, env: Any) -> None:
@@ -45,7 +45,7 @@ class StableBaselinesEnv(VecEnv):
         super().__init__(inner.num_envs, inner.single_observation_space, inner.single_action_space)
 
     def reset(self) -> np.ndarray:  # type: ignore[override]
-        """Begin all episodes; seeds given by `seed` are used up."""
+        """Start all episodes, with the seeds set by `seed`, which are used once."""
         seeds: list[int | None] = list(self._seeds)
         observations, _ = self.env.reset(seed=seeds)
         self._reset_seeds()
@@ -57,7 +57,7 @@ class StableBaselinesEnv(VecEnv):
         self._actions = actions
 
     def step_wait(self) -> Any:
-        """Go on by a step: observations, rewards, which episodes are over, and a dictionary for each."""
+        """Take a step; return observations, rewards, which episodes are over, and a dictionary for each."""
         observations, rewards, terminations, truncations, told = self.env.step(self._actions)
         over = terminations | truncations
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
@@ -71,7 +71,7 @@ class StableBaselinesEnv(VecEnv):
         self.env.close()
 
     def get_images(self) -> Sequence[np.ndarray | None]:
-        """What `render` shows of each."""
+        """The pictures of `render`, one for each environment."""
         pictures = self.env.render()
         return [None] * self.num_envs if pictures is None else list(pictures)
 
@@ -92,7 +92,7 @@ class StableBaselinesEnv(VecEnv):
         return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * self.num_envs
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
-        """No single environment is wrapped, since there is none."""
+        """False for all: there are no single environments to wrap."""
         return [False] * len(list(self._chosen(indices)))
 
     def _chosen(self, indices: Any) -> Iterable[int]:

@@ -1,4 +1,4 @@
-"""`WorldsEnv`: from a world to a vector environment, with arrays alone."""
+"""`WorldsEnv`: a vector environment from a world, computed with arrays only."""
 
 from __future__ import annotations
 
@@ -25,49 +25,49 @@ _MODES = (None, "rgb_array")
 
 
 class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
-    """Many environments of the same kind, one for each of many worlds.
+    """A vector environment: environments of the same kind, one for each of many worlds.
 
-    A subclass says how an episode begins (`begin`), what an action does (`act`), what is observed
-    (`observe`), what that is worth (`reward`) and when it is over (`terminated`), each for all environments
-    at once: arrays have them in front. In a step the four last are called in this order, with the worlds
-    stepped between `act` and `observe`. What a reward compares with the state before the step has to be kept
-    by `act`; `observe` may be called more than once for a state, and must not change any.
+    A subclass defines how an episode begins (`begin`), what an action does (`act`), the observation
+    (`observe`), the reward (`reward`) and when an episode is over (`terminated`), each for all environments
+    at once: the first axis of arrays is the environment. A step calls the last four in this order, with the
+    worlds stepped between `act` and `observe`. If a reward needs data from before the step, `act` has to keep
+    them; `observe` may be called several times for a state, and must not change it.
 
-    Environment k depends on nothing but its own actions and its own seed: `reset(seed=s)` gives it `s + k`.
+    Environment k depends only on its own actions and its own seed: `reset(seed=s)` gives it `s + k`.
 
-    Episodes that are over begin anew as `autoreset_mode` says. With `NEXT_STEP`, as Gymnasium's own vector
-    environments have it, the next step ignores the action of such an environment, and returns what is
-    observed at the beginning with a reward of 0. With `SAME_STEP` that observation comes in place of the
-    last one, which is in `infos["final_obs"]`. With `DISABLED` nothing happens until
-    `reset(options={"reset_mask": mask})`.
+    `autoreset_mode` says when environments are reset after an episode. With `NEXT_STEP`, the default of
+    Gymnasium's vector environments, the next step ignores the action of such an environment, and returns the
+    first observation with a reward of 0. With `SAME_STEP` the first observation replaces the last one, which
+    is in `infos["final_obs"]`. With `DISABLED` call `reset(options={"reset_mask": mask})`.
 
-    Where velocities come out as NaN or infinite the world stands still, and its episode is truncated;
-    `infos["halted"]` tells.
+    If velocities become NaN or infinite the world is halted, and its episode is truncated; see
+    `infos["halted"]`.
 
     Attributes:
         worlds: The worlds.
-        steps: Steps of the worlds in one of the environments.
-        max_episode_steps: After how many steps an episode is truncated; None for never.
-        autoreset_mode: When episodes that are over begin anew.
+        steps: Number of simulation steps per environment step.
+        max_episode_steps: Number of steps after which an episode is truncated; None for never.
+        autoreset_mode: When environments are reset after an episode.
         episode_steps: Steps of each environment in its present episode, (num_envs,).
-        random: Where random numbers come from.
-        camera: What `render` looks through; None for nothing.
+        random: The random number generators.
+        camera: The camera of `render`; None for none.
 
     Args:
-        world: What each world is like, and where episodes begin, unless `begin` changes it.
-        num_envs: How many there are to be.
+        world: The world to copy; its state is where episodes begin, unless `begin` changes it.
+        num_envs: Number of environments.
         observation_space: Of one environment.
         action_space: Of one environment: a `Box` of one axis, or `Discrete`.
-        steps: Steps of the worlds in one of the environments.
-        max_episode_steps: After how many steps an episode is truncated; None for never.
-        autoreset_mode: When episodes that are over begin anew: one of Gymnasium's, or its value.
-        threads: How many threads share the worlds; None for as many as there are processors.
+        steps: Number of simulation steps per environment step.
+        max_episode_steps: Number of steps after which an episode is truncated; None for never.
+        autoreset_mode: When environments are reset after an episode: Gymnasium's `AutoresetMode`, or its
+            value.
+        threads: Number of threads; None for the number of processors.
         render_mode: "rgb_array" or None.
-        camera: What `render` looks through.
+        camera: The camera of `render`.
 
     Raises:
         ValueError: A number is less than 1, or a mode is unknown.
-        MemoryError: There is no room for so many worlds.
+        MemoryError: There is not enough memory for so many worlds.
     """
 
     def __init__(
@@ -105,49 +105,49 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.random = RandomSources(num_envs)
         self._saved_start = self.worlds.save([0])
         self._checked = ActionChecker(action_space, num_envs)
-        # None has begun: steps ask for `reset` first.
+        # No episode has begun: a step asks for `reset` first.
         self._over: Mask = np.ones(num_envs, dtype=bool)
         self._begun = False
 
-    # What subclasses say
+    # To be defined by subclasses
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Make the beginnings of episodes differ; the worlds have just been put back to where they start.
+        """Set the start of episodes, for example at random; the worlds have just been restored.
 
         Args:
-            worlds: Numbers of the environments whose episodes begin, (n,).
+            worlds: Indices of the environments whose episodes begin, (n,).
         """
 
     @abstractmethod
     def act(self, actions: np.ndarray) -> None:
-        """Drive the bodies in the step that follows, and keep what `reward` compares with.
+        """Apply the actions for the next step, and keep data that `reward` needs.
 
         Args:
-            actions: Finite doubles (num_envs, numbers of an action), or integers (num_envs,) for choices.
+            actions: Finite doubles (num_envs, size of an action), or integers (num_envs,) for `Discrete`.
         """
 
     def simulate(self) -> None:
-        """Advance all worlds by a step of the environments."""
+        """Advance all worlds by one environment step."""
         self.worlds.step(self.steps)
 
     @abstractmethod
     def observe(self) -> np.ndarray:
-        """What is observed now: a new array (num_envs, numbers of an observation)."""
+        """The observations: a new array (num_envs, size of an observation)."""
 
     @abstractmethod
     def reward(self, actions: np.ndarray) -> Array:
-        """What the step was worth: a new array (num_envs,).
+        """The rewards of the step: a new array (num_envs,).
 
         Args:
-            actions: As `act` got them.
+            actions: As passed to `act`.
         """
 
     def terminated(self) -> Mask:
-        """Where the episode is over, for other reasons than its length: a new array (num_envs,)."""
+        """Which episodes are over, except by their length: a new array (num_envs,)."""
         return np.zeros(self.num_envs, dtype=bool)
 
     def infos(self) -> dict[str, Any]:
-        """What else there is to tell of a step."""
+        """Further information on a step."""
         return {}
 
     # Gymnasium's interface
@@ -155,15 +155,15 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begin episodes.
+        """Start episodes.
 
         Args:
-            seed: Environment k gets `seed + k`, or the k-th of a list; None goes on with the random numbers
-                there are.
-            options: `{"reset_mask": mask}` begins only those of the mask (num_envs,).
+            seed: Environment k gets `seed + k`, or the k-th of a list; None continues with the present
+                generators.
+            options: `{"reset_mask": mask}` resets only those of the mask (num_envs,).
 
         Returns:
-            What is observed, (num_envs, ...), and nothing more.
+            The observations, (num_envs, ...), and an empty dictionary.
         """
         worlds = self._to_reset(options)
         self.random.seed(seed, worlds)
@@ -174,17 +174,17 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     def step(
         self, actions: ArrayLike
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Go on by a step.
+        """Take a step.
 
         Args:
-            actions: Of each environment, (num_envs, ...).
+            actions: Actions of all environments, (num_envs, ...).
 
         Returns:
             Observations (num_envs, ...), rewards, terminations and truncations (num_envs,), and infos.
 
         Raises:
-            ValueError: The actions have another shape, or one is not finite or no choice there is.
-            gymnasium.error.ResetNeeded: An episode is over and none has begun.
+            ValueError: The shape of the actions is wrong, or one is not finite or out of range.
+            gymnasium.error.ResetNeeded: An episode is over and has not been reset.
         """
         values = self._checked(actions)
         beginning = self._to_begin()
@@ -208,7 +208,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         return observations, rewards, terminations, truncations, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:  # type: ignore[override]
-        """A picture (height, width, 3) of each environment where `render_mode` is "rgb_array"."""
+        """A picture (height, width, 3) of each environment if `render_mode` is "rgb_array"."""
         if self.render_mode is None or self.camera is None:
             return None
         return tuple(self.worlds.images(self.camera).colour)
@@ -220,7 +220,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
-        """What they were made from."""
+        """Their seeds."""
         return tuple(self.random.seeds)
 
     # How it is done
@@ -238,7 +238,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         return np.flatnonzero(mask)
 
     def _to_begin(self) -> np.ndarray:
-        """The environments that begin an episode instead of taking a step."""
+        """The environments that are reset instead of taking a step."""
         if not self._begun:
             raise gymnasium.error.ResetNeeded("no episode has begun: call reset first")
         if self.autoreset_mode == AutoresetMode.SAME_STEP:
@@ -257,7 +257,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.begin(worlds)
 
     def _truncations(self, infos: dict[str, Any]) -> Mask:
-        """Where the episode is as long as it may be, or the world stands still."""
+        """Which episodes have reached their maximum length, or whose world is halted."""
         halted = self.worlds.halted
         if self.max_episode_steps is None:
             truncations = halted.copy()
@@ -270,7 +270,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
 
 def _tell_last(infos: dict[str, Any], observations: np.ndarray, over: Mask) -> None:
-    """Put the last observations of episodes where Gymnasium has them."""
+    """Put the last observations of episodes into `infos`, as Gymnasium does."""
     last = np.full(len(over), None, dtype=object)
     for world in np.flatnonzero(over):
         last[world] = observations[world]

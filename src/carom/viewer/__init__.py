@@ -1,4 +1,4 @@
-"""The viewer: a page in the browser that shows a world as it moves, and whose controls a script can read.
+"""The viewer: a page in the browser that shows a running world, with controls that a script can read.
 
 `connect(p.GUI)` opens it for scripts written for PyBullet. With the modern API, in a notebook for instance:
 

@@ -1,11 +1,12 @@
-"""Who may talk to the server.
+"""Access control of the server.
 
-The server listens on this machine alone unless it is told otherwise, but that is not enough: other users may
-work on it, and any page in the user's browser could open a socket to it, or reach it under a name of its own
-that it lets point here. So each request has to state a token, which is part of the address that the user is
-told; a browser that has stated it once keeps it in a cookie. With the cookie, or under a name that is
-allowed, a request has to name the server by an address no other site can have, and a socket has to come from
-the server's own page. Behind a proxy, as of a notebook, names are others: there the token alone is enough.
+By default the server listens on this machine only, but that is not enough: other users may work on the
+machine, and any page in the user's browser could open a socket to the server, or reach it by a host name of
+its own that resolves to this machine (DNS rebinding). So each request needs a token, which is part of the
+address printed for the user; the browser then keeps it in a cookie. With the cookie, or with an allowed host
+name, a request has to name the server by an address no other site can have, and a socket has to come from the
+server's own page (origin). Behind a proxy, such as that of a notebook, host names differ: there the token
+alone is enough.
 """
 
 from __future__ import annotations
@@ -19,19 +20,19 @@ from urllib.parse import parse_qs, urlsplit
 from carom.remote.user_token import fresh_token
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
-# Nothing is sent there: it only makes the system choose the address by which others reach this machine.
+# Nothing is sent there: it only makes the system choose this machine's address in the network.
 _ANYWHERE = ("192.0.2.1", 9)
 _EVERYWHERE = frozenset({"0.0.0.0", "::"})
 
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Who may talk to a server.
+    """Access control of a server.
 
     Attributes:
-        host: What the server listens on.
-        token: What requests have to state.
-        names: Names, besides its own, by which the server may be asked for.
+        host: The address that the server listens on.
+        token: The token that requests need.
+        names: Additional host names of the server.
     """
 
     host: str = "127.0.0.1"
@@ -39,7 +40,7 @@ class Access:
     names: frozenset[str] = frozenset()
 
     def address(self, port: int) -> str:
-        """What to open in a browser: on this machine or, if others are to reach it, on any."""
+        """The address to open in a browser: on this machine, or on any machine that can reach it."""
         host = reachable_host(self.host)
         name = f"[{host}]" if ":" in host else host
         return f"http://{name}:{port}/?token={self.token}"
@@ -50,9 +51,9 @@ class Access:
         """Whether a socket may be opened.
 
         Args:
-            path: What is asked for, with the query.
+            path: The path of the request, with the query.
             host_header: `Host` of the request.
-            origin: `Origin` of the request; programs that are no browsers name none.
+            origin: `Origin` of the request; other programs than browsers do not send it.
             cookies: `Cookie` of the request.
         """
         if self.knows_token(path):
@@ -61,47 +62,47 @@ class Access:
         return own and self.is_known(path, host_header, cookies)
 
     def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether the page may be given out.
+        """Whether the page may be served.
 
         Args:
-            path: What is asked for, with the query.
+            path: The path of the request, with the query.
             host_header: `Host` of the request.
             cookies: `Cookie` of the request.
         """
         return self.is_own(host_header) or self.knows_token(path) or self.has_cookie(cookies)
 
     def is_known(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether a request states the token, has the cookie, or names a host that the user has allowed."""
+        """Whether a request has the token, the cookie, or a host name that the user has allowed."""
         named = _name(f"//{host_header}") in self.names
         return named or self.knows_token(path) or self.has_cookie(cookies)
 
     @property
     def cookie(self) -> str:
-        """What a browser is given that has asked with the token."""
+        """The cookie for a browser that has sent the token."""
         return f"carom-{self.token[:4]}={self.token}"
 
     def has_cookie(self, cookies: str | None) -> bool:
-        """Whether a browser has asked with the token before."""
+        """Whether a browser has the cookie."""
         return any(
             secrets.compare_digest(cookie.encode(), self.cookie.encode())
             for cookie in (cookies or "").split("; ")
         )
 
     def is_own(self, host_header: str | None) -> bool:
-        """Whether a request names this server."""
+        """Whether the host of a request is this server."""
         return host_allowed(self.host, host_header) or _name(f"//{host_header}") in self.names
 
     def knows_token(self, path: str) -> bool:
-        """Whether a request states the token."""
+        """Whether a request has the token."""
         return secrets.compare_digest(_stated_token(path).encode(), self.token.encode())
 
     def guesses_token(self, path: str) -> bool:
-        """Whether a request states another token: it is meant for another server, or guesses."""
+        """Whether a request has a wrong token: it is for another server, or a guess."""
         return bool(_stated_token(path)) and not self.knows_token(path)
 
 
 def reachable_host(host: str) -> str:
-    """An address by which a server that listens on this one can be reached from where it is meant to be."""
+    """An address by which the server can be reached from the machines that it listens for."""
     if host not in _EVERYWHERE:
         return host
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as way:
@@ -123,11 +124,11 @@ def is_loopback(host: str) -> bool:
 
 
 def host_allowed(bound_to: str, host_header: str | None) -> bool:
-    """Whether a request names this server.
+    """Whether the host of a request is this server.
 
     Args:
         bound_to: Host the server was told to listen on.
-        host_header: `Host` of the request. Its port may differ, as it does through an SSH tunnel.
+        host_header: `Host` of the request. Its port may differ, as through an SSH tunnel.
     """
     name = _name(f"//{host_header}") if host_header else None
     if name is None:
@@ -136,13 +137,13 @@ def host_allowed(bound_to: str, host_header: str | None) -> bool:
         return True
     if is_loopback(bound_to):
         return False
-    # Addresses cannot be made to point elsewhere; of names only those of this machine count.
+    # Numeric addresses cannot be rebound; of names only those of this machine are allowed.
     machine = socket.gethostname().lower()
     return _is_address(name) or name in (machine, machine.partition(".")[0], socket.getfqdn().lower())
 
 
 def origin_allowed(host_header: str | None, origin: str | None) -> bool:
-    """Whether a socket comes from the server's own page. Programs that are no browsers name no origin."""
+    """Whether a socket comes from the server's own page. Other programs than browsers send no origin."""
     if origin is None:
         return True
     parts = urlsplit(origin)

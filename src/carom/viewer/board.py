@@ -1,7 +1,7 @@
-"""What all pages show: of everything that has a name, the newest message.
+"""The scene of all pages: the newest message of everything that has a name.
 
-Pages do not get a stream of changes but what is new since they were last sent something. So a page that joins
-late, or was cut off, gets the whole scene, and one that is slow gets the newest state and no backlog.
+Pages do not get a stream of changes, but everything that is new since their last message. So a page that
+joins late, or was cut off, gets the whole scene, and one that is slow gets the newest state and no backlog.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class _Entry:
 
 
 class Board:
-    """Newest messages by key, numbered by when they were put there. Safe to use from all threads."""
+    """Newest messages by key, numbered in order of change. Safe to use from all threads."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -34,22 +34,22 @@ class Board:
 
     @property
     def revision(self) -> int:
-        """Number of the newest entry; it grows with every change."""
+        """Number of the newest entry; it increases with every change."""
         return self._revision
 
     def put(self, key: Hashable, header: Mapping[str, Any], payload: bytes = b"") -> None:
-        """Shows a message in place of the one of the same key, if there is one."""
+        """Puts a message, replacing one of the same key."""
         self._enter(key, encoded(header, payload), gone=False)
 
     def amend(self, key: Hashable, header: Mapping[str, Any]) -> None:
-        """Changes what pages are told that join from now on; those that know the message keep it."""
+        """Changes a message for pages that join later; other pages keep theirs."""
         with self._lock:
             entry = self._entries.get(key)
             if entry is not None:
                 entry.message = encoded(header)
 
     def take_down(self, key: Hashable, header: Mapping[str, Any]) -> None:
-        """Forgets a message. Pages that know it are sent `header`; an unknown key does no harm."""
+        """Removes a message. Pages that have it are sent `header`; unknown keys are ignored."""
         entry = self._entries.get(key)
         if entry is not None and not entry.gone:
             self._enter(key, encoded(header), gone=True)
@@ -60,13 +60,13 @@ class Board:
         return entry is not None and not entry.gone
 
     def since(self, revision: int) -> tuple[list[bytes], int]:
-        """What is newer than a revision, the oldest first.
+        """The messages newer than a revision, the oldest first.
 
         Args:
-            revision: What the page has; 0 for nothing.
+            revision: The revision of the page; 0 for none.
 
         Returns:
-            The messages, and the revision to ask with the next time.
+            The messages, and the revision for the next call.
         """
         with self._lock:
             if revision == self._revision:
@@ -75,14 +75,14 @@ class Board:
             for entry in reversed(self._entries.values()):
                 if entry.revision <= revision:
                     break
-                # A page that knows nothing need not forget anything.
+                # A new page has nothing to remove.
                 if revision or not entry.gone:
                     newest.append(entry.message)
             newest.reverse()
             return newest, self._revision
 
     def forget_removals(self, revision: int) -> None:
-        """Drops the removals that every page has been told of: those up to a revision."""
+        """Drops removals that all pages have: those up to a revision."""
         if not self._removals:
             return
         with self._lock:

@@ -1,4 +1,4 @@
-"""The camera that scripts and pages both move."""
+"""The camera, which scripts and pages move."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class Orbit:
 
 
 class SharedCamera:
-    """Where the camera is. A script moves that of every page; a page moves its own, and tells.
+    """The camera. A script moves that of every page; a page moves its own, and tells.
 
     Attributes:
-        orbit: Where it was last moved to, by whomever.
-        chosen: A script or a user has said where to look from; until then pages look at what there is.
+        orbit: Its last pose, set by a script or a page.
+        chosen: A script or a user has set the view; until then pages fit all bodies.
     """
 
     def __init__(self, board: Board, width: int, height: int) -> None:
@@ -52,7 +52,7 @@ class SharedCamera:
     def moved(
         self, distance: float, yaw: float, pitch: float, target: Vector3, *, chosen: bool = True
     ) -> None:
-        """The camera of a page has moved, by its user or, if it is not `chosen`, by itself."""
+        """The camera of a page was moved, by its user or, if it is not `chosen`, by the page."""
         if self.chosen and not chosen:
             return
         self.chosen = chosen
@@ -60,7 +60,7 @@ class SharedCamera:
         self._board.amend("camera", self._message())
 
     def resized(self, width: int, height: int) -> None:
-        """A page has this many pixels for the image."""
+        """The image of a page has a new size."""
         self.orbit = replace(self.orbit, width=width, height=height)
 
     def _message(self) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""What pages want to know beside where everything is, and how they are told."""
+"""Data for pages besides poses."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
-# How long a frame waits for a world that is stepping before it repeats the last details [s].
+# How long a frame waits for a step to end before it repeats the last details [s].
 _PATIENCE = 0.005
-# How often masses and constraints are looked at [s].
+# Interval at which masses and constraints are read [s].
 _PERIOD = 0.25
 _MOST_LINKS = 64
 
 
 @dataclass(frozen=True, slots=True)
 class Wish:
-    """What one page, or all together, want to know.
+    """The data that one page, or all pages together, need.
 
     Attributes:
         collisions: Collision shapes.
         contacts: Contacts of each frame.
-        joints: Numbers of the bodies whose joints are read, or all.
-        links: Bodies and links whose motion is read.
+        joints: Ids of the bodies whose joints are read, or all.
+        links: Bodies and links whose velocities are read.
         dynamics: Masses and inertias.
         constraints: Constraints that scripts have made.
         rays: Rays that scripts cast.
@@ -47,7 +47,7 @@ class Wish:
 
     @classmethod
     def told(cls, told: dict[str, Any]) -> Wish:
-        """That of a message from a page."""
+        """The wish in a message from a page."""
         joints = told.get("joints", [])
         return cls(
             joints="all" if joints == "all" else frozenset(int(body) for body in joints),
@@ -74,15 +74,15 @@ NOTHING = Wish()
 
 
 class Details:
-    """Reads what all pages together want to know. Belongs to one thread.
+    """Reads the data that all pages together need. For use by one thread.
 
     Args:
         world: The world.
-        lock: Held by whoever steps or changes the world.
+        lock: Held while the world is stepped or changed.
         board: Where masses, constraints and rays are shown.
 
     Attributes:
-        wish: What is wanted now.
+        wish: The present wish of all pages.
         rays: Those of scripts.
     """
 
@@ -100,7 +100,7 @@ class Details:
         self._constraints: list[dict[str, Any]] = []
 
     def want(self, page: int, wish: Wish) -> None:
-        """A page wants to know this from now on."""
+        """Sets the wish of a page."""
         if wish == NOTHING:
             self._wishes.pop(page, None)
         else:
@@ -109,7 +109,7 @@ class Details:
         for each in self._wishes.values():
             wanted |= each
         if wanted.joints != self.wish.joints:
-            # Nobody may step while the observers of the world change.
+            # The world must not be stepped while its observers change.
             with self._world_lock:
                 self._joints.watch(wanted.joints)
         self.wish = wanted

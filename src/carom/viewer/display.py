@@ -1,4 +1,4 @@
-"""Where the page can be seen: on this machine, or on that of a user who is logged in over SSH."""
+"""Where the page can be shown: on this machine, or on that of a user who is logged in over SSH."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ def over_ssh() -> bool:
 
 
 def has_display() -> bool:
-    """Whether a browser could show something here, and somebody would look.
+    """Whether a browser can be opened here for the user.
 
-    Over SSH nobody does, even if X11 is forwarded: a browser would run on this machine, and draw through
-    the network. The page comes through a tunnel instead.
+    Not over SSH, even if X11 is forwarded: the browser would run on this machine, and draw through the
+    network. The page is shown through a tunnel instead.
     """
     if "CI" in os.environ or over_ssh():
         return False
@@ -29,7 +29,7 @@ def has_display() -> bool:
 
 
 def tunnel_command(address: str) -> str | None:
-    """What to type on the user's own machine to reach a page of this one; None if nobody came over SSH.
+    """The command for the user's own machine to reach a page of this one; None without SSH.
 
     Args:
         address: Of the page.

@@ -25,7 +25,7 @@ class Drawings:
         self.items: dict[int, DebugItem] = {}
 
     def draw(self, number: int, item: DebugItem) -> None:
-        """Shows an item in place of the one of that number, if there is one."""
+        """Shows an item, replacing one of the same number."""
         with self._lock:
             self.items[number] = item
             self._ends.pop(number, None)
@@ -35,18 +35,18 @@ class Drawings:
             self._board.put(("item", number), {**header, "item": number}, payload)
 
     def remove(self, number: int) -> None:
-        """Takes an item away; an unknown number does no harm."""
+        """Removes an item; unknown numbers are ignored."""
         with self._lock:
             self._remove(number)
 
     def clear(self) -> None:
-        """Takes all items away."""
+        """Removes all items."""
         with self._lock:
             for number in list(self.items):
                 self._remove(number)
 
     def expire(self) -> None:
-        """Takes away the items whose time is over."""
+        """Removes items whose life time has passed."""
         if not self._ends:
             return
         with self._lock:

@@ -1,4 +1,4 @@
-"""What scripts draw into the scene, and the sliders, buttons and handles they add."""
+"""Debug drawings of scripts, and their sliders, buttons and handles."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _WHITE = (1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class DebugItem:
-    """Something drawn into the scene.
+    """A drawing in the scene.
 
     Attributes:
-        life_time: How long it stays [s]; 0 for ever.
+        life_time: Life time [s]; 0 for ever.
         parent_body: Body whose link carries it; -1 for the world.
         parent_link: That link; -1 for the base.
     """
@@ -59,7 +59,7 @@ class Handle:
     """A frame that the user moves with the mouse.
 
     Attributes:
-        name: What is written beside it.
+        name: Its label.
         pose: Position [m] and orientation (x, y, z, w), in the world.
     """
 
@@ -73,13 +73,13 @@ class Handle:
 
     @property
     def orientation(self) -> Quaternion:
-        """How it is turned: a unit quaternion (x, y, z, w)."""
+        """Its orientation: a unit quaternion (x, y, z, w)."""
         return self.pose[1]
 
 
 @dataclass(slots=True)
 class Slider:
-    """A number the user can set; a button that counts its clicks when `lower > upper`."""
+    """A number that the user can set; with `lower > upper` a button that counts its clicks."""
 
     name: str
     lower: float
@@ -94,7 +94,7 @@ class Slider:
 
 @dataclass(slots=True)
 class Choice(Slider):
-    """One of several texts; `value` is its number. With no texts it is a box to check: 0 or 1."""
+    """One of several texts; `value` is its number. Without texts it is a checkbox: 0 or 1."""
 
     options: tuple[str, ...] = ()
 
@@ -105,5 +105,5 @@ class Choice(Slider):
 
     @property
     def checked(self) -> bool:
-        """Whether the user has checked the box."""
+        """Whether the checkbox is checked."""
         return self.value != 0.0

@@ -1,7 +1,7 @@
 """Messages to a page: a JSON header, and numbers in binary where there are many.
 
-A message is four bytes, the length of the header as a little-endian integer; the header in UTF-8, ended by
-spaces so that what follows starts at a multiple of four; and the numbers. The header's `type` says what the
+A message is four bytes, the length of the header as a little-endian integer; the header in UTF-8, padded by
+spaces so that the numbers start at a multiple of four; and the numbers. The header's `type` says what the
 message is about. Messages from a page are JSON texts.
 """
 
@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 MAX_INCOMING_BYTES = 1 << 16
-"""Largest message that is taken from a page."""
+"""Largest message accepted from a page."""
 
 
 def encoded(header: Mapping[str, Any], payload: bytes = b"") -> bytes:
@@ -37,7 +37,7 @@ def received(text: str | bytes) -> dict[str, Any]:
     """A message from a page.
 
     Raises:
-        ValueError: It is no JSON object, or has no type.
+        ValueError: It is not a JSON object, or has no type.
     """
     message = json.loads(text)
     if not isinstance(message, dict) or not isinstance(message.get("type"), str):

@@ -1,4 +1,4 @@
-"""The page inside a notebook: found by the browser, wherever the notebook runs."""
+"""The page inside a notebook, reached by the browser wherever the notebook runs."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from uuid import uuid4
 from carom.viewer.page_files import page_files
 
 HEIGHT = 520
-# What the page may do in the frame: fill the screen, and copy the camera's numbers.
+# Permissions of the page in the frame: full screen, and copying the camera's numbers.
 _ALLOWED = "fullscreen; clipboard-write"
 _UNREACHABLE = """<p style="font: 14px system-ui, sans-serif">The simulation cannot be reached from here. It
 has ended, or the notebook server has no proxy: <code>pip install jupyter-server-proxy</code> and restart it.
-What needs no connection is a recording: <code>with world.record("run.html") as replay: ...</code> and
+A recording needs no connection: <code>with world.record("run.html") as replay: ...</code> and
 <code>replay</code> as the last line of a cell.</p>"""
 
 
@@ -27,7 +27,7 @@ def frame(port: int, token: str, picture: bytes | None = None, height: int = HEI
     Args:
         port: Of the server.
         token: Of the server.
-        picture: PNG file to show where the page cannot be reached.
+        picture: PNG file to show if the page cannot be reached.
         height: Of the frame [pixels].
     """
     identifier = f"carom-{uuid4().hex}"
@@ -74,7 +74,7 @@ def show(markup: str) -> None:
 
 
 def _proxy_of_editor(port: int) -> str | None:
-    """Where an editor in the browser shows a port of the kernel's machine, if it says so, as code-server."""
+    """The proxy address of an editor in the browser, such as code-server, if it is configured."""
     pattern = os.environ.get("VSCODE_PROXY_URI", "")
     if not pattern.startswith(("http://", "https://")) or "{{port}}" not in pattern:
         return None

@@ -1,4 +1,4 @@
-"""The pages that are open, and what each has been told."""
+"""The open pages, and the revision of each."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Page:
     """One page that is open.
 
     Attributes:
-        number: What it is known by.
-        revision: What it has of the board.
-        news: Set when there may be something new.
+        number: Its number.
+        revision: Its revision of the board.
+        news: Set when there may be news.
     """
 
     def __init__(self, number: int) -> None:
@@ -24,7 +24,7 @@ class Page:
         self._frame: bytes | None = None
 
     def take_news(self, board: Board, frame: bytes | None) -> list[bytes]:
-        """What it has not been told; it counts as told from now on."""
+        """Its news; they then count as sent."""
         messages, self.revision = board.since(self.revision)
         if frame is not None and frame is not self._frame:
             messages.append(frame)
@@ -57,11 +57,11 @@ class Pages:
 
     @property
     def oldest_revision(self) -> int:
-        """What every page has of the board."""
+        """The revision that all pages have."""
         return min((page.revision for page in self), default=0)
 
     def join(self) -> Page:
-        """A page that has been opened."""
+        """Adds a page that was opened."""
         self._numbers += 1
         page = Page(self._numbers)
         self._open.add(page)
@@ -69,7 +69,7 @@ class Pages:
         return page
 
     def leave(self, page: Page) -> None:
-        """A page has been closed."""
+        """A page was closed."""
         self._open.discard(page)
         if not self._open:
             self.somebody.clear()

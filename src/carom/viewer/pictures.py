@@ -1,4 +1,4 @@
-"""Pictures that a script waits for, so that each step is seen."""
+"""Pictures that a script waits for, so that each step is drawn."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from threading import Condition
 
 
 class Pictures:
-    """Which pictures pages are asked for, and which they have drawn. Safe to use from all threads.
+    """The pictures that pages are asked for, and have drawn. Safe to use from all threads.
 
     Attributes:
-        asked: Number of the newest picture anybody has asked for; 0 before the first.
+        asked: Number of the newest picture asked for; 0 before the first.
     """
 
     def __init__(self) -> None:
@@ -20,11 +20,11 @@ class Pictures:
         self._hidden: set[int] = set()
 
     def wait(self, pages: Callable[[], Iterable[int]], patience: float) -> None:
-        """Asks for a picture and returns when all pages that can be seen have drawn it.
+        """Asks for a picture and waits until all visible pages have drawn it.
 
         Args:
             pages: Gives the numbers of the pages that are open.
-            patience: How long to wait at most [s]: browsers may be too busy.
+            patience: Maximum time to wait [s]: browsers may be too busy.
         """
         with self._changed:
             self.asked += 1
@@ -44,13 +44,13 @@ class Pictures:
             self._changed.notify_all()
 
     def show(self, page: int, *, visible: bool) -> None:
-        """A page has come into view, or gone out of it: browsers then draw nothing."""
+        """A page became visible or hidden; browsers do not draw hidden pages."""
         with self._changed:
             (self._hidden.discard if visible else self._hidden.add)(page)
             self._changed.notify_all()
 
     def forget(self, page: int) -> None:
-        """A page has been closed."""
+        """A page was closed."""
         with self._changed:
             self._drawn.pop(page, None)
             self._hidden.discard(page)

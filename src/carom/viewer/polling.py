@@ -1,9 +1,9 @@
-"""Pages that ask again and again for what is new: where a proxy passes no sockets, as that of Colab.
+"""Polling, for proxies that pass no WebSockets, such as Colab's.
 
-A request states who asks (`page`, a name that the page has made up) and what it tells (`told`, any number of
-JSON texts). The answer is the number the server knows the page by, and then messages, each after its
-length; all are little-endian integers of four bytes. A page that finds itself under another number has
-been forgotten, and is told everything again.
+A request has a name that the page has chosen (`page`) and its messages (`told`, any number of JSON texts).
+The answer is the server's number for the page, and then messages, each after its length; all are
+little-endian integers of four bytes. A page that gets another number than before was dropped by the server,
+and gets everything again.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from urllib.parse import parse_qs, urlsplit
 
 from carom.viewer.pages import Page, Pages
 
-# How long a request may wait for something new [s]: what the page has to tell meanwhile waits as well.
+# How long a request may wait for news [s]: meanwhile messages of the page wait as well.
 _PATIENCE = 0.2
-# Who has not asked for so long is gone [s]; browsers slow down what is in the background.
+# A page that has not asked for this time counts as closed [s]; browsers slow down pages in the background.
 _SILENCE = 10.0
-# Proxies do not pass answers of any length [bytes]; a message that is longer goes alone.
+# Maximum length of an answer, which proxies limit [bytes]; a longer message is sent alone.
 _MOST_BYTES = 4_000_000
 
 
 class _Asker:
-    """A page that asks, and what it has not been sent yet."""
+    """A page that polls, and the messages it has not been sent yet."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -35,11 +35,11 @@ class _Asker:
 
 
 class Polling:
-    """Answers pages that ask.
+    """Answers pages that poll.
 
     Args:
         pages: The pages that are open.
-        news: What a page has not been told.
+        news: The news of a page.
         receive: Called with the number of a page and a text that it sends.
     """
 
@@ -55,7 +55,7 @@ class Polling:
         """The answer to a request for a path.
 
         Raises:
-            ValueError: The request does not say who asks.
+            ValueError: The request does not name its page.
         """
         query = parse_qs(urlsplit(path).query)
         (name,) = query.get("page", [])
@@ -74,7 +74,7 @@ class Polling:
         return struct.pack("<I", asker.page.number) + b"".join(self._share(asker.waiting))
 
     def forget_silent(self) -> None:
-        """Drops the pages that have stopped asking."""
+        """Drops the pages that have stopped polling."""
         long_ago = asyncio.get_running_loop().time() - _SILENCE
         for name in [name for name, asker in self._askers.items() if asker.asked < long_ago]:
             self._pages.leave(self._askers.pop(name).page)

@@ -1,4 +1,4 @@
-"""Small pictures of what the last camera image of a script shows, and where its camera is."""
+"""Previews of the last camera image of a script, and the pose of its camera."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from carom.render.image_target import RawImage
 
 _WIDTH = 200
-# Scripts may take hundreds of images a second; people see less [s].
+# Minimum interval; scripts may take hundreds of images a second [s].
 _PERIOD = 0.1
-# Neighbouring numbers get colours far apart: each turns the hue by the golden ratio.
+# Neighbouring numbers get very different colours: each rotates the hue by the golden ratio.
 _HUE_STEP = 0.61803398875
-# How deep the pyramid is that stands for a camera [m].
+# Depth of the frustum that is drawn for a camera [m].
 _PYRAMID_DEPTH = 0.25
 # Corners of the image, one after the other, in OpenGL's coordinates.
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
@@ -52,19 +52,19 @@ class Previews:
         self._show_pyramid(camera)
 
     def _show_pyramid(self, camera: NDArray[np.float64]) -> None:
-        """Shows where the camera is: the part of what it sees that is near it."""
+        """Shows the near part of the camera's frustum."""
         corners = pyramid(camera)
-        # A camera that stands still is shown once.
+        # A camera that does not move is shown once.
         if corners is not None and corners != self._corners:
             self._corners = corners
             self._board.put("pyramid", {"type": "pyramid", "corners": corners})
 
 
 def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
-    """Corners of what a camera sees from its near plane to 25 cm behind that: four near, four far.
+    """Corners of a camera's frustum from its near plane to 25 cm behind it: four near, four far.
 
     Args:
-        camera: (4, 4) what takes points of the world to the image, as OpenGL has it.
+        camera: (4, 4) matrix from the world to clip coordinates, as in OpenGL.
 
     Returns:
         Points in the world; None if the matrix has no inverse.
@@ -84,7 +84,7 @@ def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
 
 
 def _shades(depth: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Near is dark. Ranks and not distances are shown: most of the depth of a scene is its horizon."""
+    """Near is dark. Ranks are shown, not distances: most of the depth of a scene is its horizon."""
     shades = np.full(depth.shape, 255, dtype=np.uint8)
     seen = depth < 1.0
     _, ranks = np.unique(depth[seen], return_inverse=True)

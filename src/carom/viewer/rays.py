@@ -1,4 +1,4 @@
-"""The rays that a script has cast of late."""
+"""The rays that a script has cast recently."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Rays:
     """Rays on the board, as long as a page wants to see them. Safe to use from all threads.
 
     Attributes:
-        wanted: A page shows rays. While none does, they need not be told of.
+        wanted: A page shows rays. Otherwise they need not be recorded.
     """
 
     def __init__(self, board: Board) -> None:
@@ -32,7 +32,7 @@ class Rays:
         """A script has cast rays.
 
         Args:
-            starts: Their starts in world axes [m].
+            starts: Start points in world axes [m].
             ends: Their ends.
             hits: Body, link, fraction of the ray, position and normal of what each has hit.
         """
@@ -40,7 +40,7 @@ class Rays:
             self._cast.append((*start, *end, *normal, fraction))
 
     def show(self) -> None:
-        """Puts the rays on the board that were cast since the last time; without any the old ones stay."""
+        """Puts the rays cast since the last call on the board; without new rays the old ones stay."""
         if not self._cast:
             return
         rays = [self._cast.popleft() for _ in range(len(self._cast))]

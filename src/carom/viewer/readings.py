@@ -1,4 +1,4 @@
-"""What a frame tells beside poses: contacts, joints, and the motion of links, in columns of numbers.
+"""Data in a frame besides poses: contacts, joints, and velocities of links, in columns of numbers.
 
 `page/view/readings.js` has the same columns.
 """
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Columns = NDArray[np.float32]
 
 CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
-# More contacts than these are more than anybody can look at.
+# Maximum number of contacts shown.
 _MOST_CONTACTS = 5000
 _GREATEST_FRICTION = 10.0
 
@@ -66,11 +66,11 @@ def contacts(world: World) -> Columns:
 
 
 def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
-    """How links move, and what their joints' force-torque sensors read.
+    """Velocities of links, and readings of their joints' force-torque sensors.
 
     Args:
         world: The world.
-        wanted: Numbers of bodies, and links; -1 is the base. Those that do not exist are left out.
+        wanted: Ids of bodies, and links; -1 is the base. Those that do not exist are left out.
 
     Returns:
         (links, 14): body, link, velocity of the centre of mass (3) [m/s], angular velocity (3) [rad/s],
@@ -91,7 +91,7 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
 
 
 class JointReadings:
-    """What joints do, and what they are told to; one of `World.observers` while any are wanted.
+    """States and targets of joints; one of `World.observers` while any are needed.
 
     Args:
         world: The world.
@@ -104,7 +104,7 @@ class JointReadings:
         self._applied = np.zeros(0)
 
     def watch(self, bodies: frozenset[int] | Literal["all"]) -> None:
-        """Reads the joints of these bodies from now on. Nobody may step meanwhile."""
+        """Reads the joints of these bodies from now on. The world must not be stepped meanwhile."""
         observers = self._world.observers
         if bodies and self not in observers:
             observers.append(self)
@@ -117,14 +117,14 @@ class JointReadings:
         self._applied = self._world.joint_torque.copy()
 
     def after_step(self) -> None:
-        """Nothing: joints are read when pages have time for them."""
+        """Does nothing: joints are read when a frame is made."""
 
     def rows(self) -> Columns:
-        """What the joints do now; those that are fixed, or turn about several axes, are left out.
+        """Present states of the joints, without fixed and multi-axis ones.
 
         Returns:
             (joints, 8): body, joint, position [rad or m], velocity, torque or force of the motor and the
-            script together, and the targets of position, velocity and torque; NaN where there is none.
+            script together, and the targets of position, velocity and torque; NaN without a target.
         """
         world = self._world
         bodies = [

@@ -1,4 +1,4 @@
-"""Keeps the board up to date with a world: its bodies, their looks, and where they are."""
+"""Updates the board from a world: its bodies, their appearance, and their poses."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
 
 Blocks = Sequence[tuple[str, NDArray[np.float32]]]
 
-# How long to wait for a world that is stepping before bodies are looked at in the next frame [s].
+# How long to wait for a step to end, before the check for new bodies is left to the next frame [s].
 _PATIENCE = 0.02
-# Over what time the real-time factor is an average [s].
+# Averaging time of the real-time factor [s].
 _RATE_WINDOW = 1.0
-# How often pages are sent a new shape of a soft body at most [s]: that is a mesh each time.
+# Minimum interval between new shapes of a soft body [s]: each is a whole mesh.
 _SHAPE_INTERVAL = 1 / 15
 
 
 class SceneFeed:
-    """Puts what a world shows on the board. Belongs to one thread.
+    """Puts the bodies of a world on the board. For use by one thread.
 
-    A frame copies the poses without asking for the lock: at worst some links are one time step ahead of the
-    others, and stepping waits for nobody. Only when bodies come, go or change their looks is the world
-    held, for as long as it takes to describe them.
+    A frame copies the poses without the lock: at worst some links are one time step ahead of the others, and
+    steps never wait. Only when bodies are added, removed or change their appearance is the world locked,
+    while they are described.
 
     Attributes:
-        collisions: Describe collision shapes, too.
+        collisions: Describe collision shapes as well.
     """
 
     def __init__(self, world: World, lock: Any, board: Board) -> None:
@@ -60,10 +60,10 @@ class SceneFeed:
         self._shapes: dict[int, bytes] = {}
 
     def frame(self, extras: dict[str, Any], blocks: Blocks = ()) -> bytes | None:
-        """Where everything is now, as a message; None if nothing has changed.
+        """The present poses, as a message; None if nothing has changed.
 
         Args:
-            extras: What else the message is to say.
+            extras: Further items of the message.
             blocks: Numbers that follow the poses, by name.
         """
         self._follow_bodies()
@@ -91,7 +91,7 @@ class SceneFeed:
         return message
 
     def _rate(self, time: float) -> float:
-        """Simulated time by real time of late."""
+        """Recent real-time factor: simulated time / real time."""
         now = monotonic()
         if self._clock and time < self._clock[-1][1]:
             self._clock.clear()
@@ -119,7 +119,7 @@ class SceneFeed:
             self._lock.release()
 
     def _follow_nodes(self) -> None:
-        """Show soft bodies in the shapes that they have now."""
+        """Show soft bodies in their present shapes."""
         now = monotonic()
         if not self._world.contact_arrays.soft.bodies or now - self._shapes_sent < _SHAPE_INTERVAL:
             return
@@ -170,7 +170,7 @@ class SceneFeed:
         self._layout += 1
         order = [[body.id, body.joint_count - BASE] for body in bodies]
         self._board.put("layout", {"type": "layout", "layout": self._layout, "bodies": order})
-        # Only what is held for good tells one body from another: ids of objects are used again.
+        # A reference is kept to each body to compare with, because ids of objects are used again.
         self._bodies = bodies
         self._arrays = self._world.arrays
         self._looks = looks

@@ -26,7 +26,7 @@ from carom.viewer.polling import Polling
 from carom.viewer.replay.page import replay_page
 
 _log = logging.getLogger("carom")
-# Of the library: browsers that turn away in the middle of a request are no news.
+# The library logs browsers that close a connection during a request; that is normal.
 _quiet = logging.getLogger("carom.viewer.sockets")
 _quiet.setLevel(logging.CRITICAL)
 _THREAD_NAME = "carom viewer"
@@ -39,7 +39,7 @@ def _not_of_a_server(record: logging.LogRecord) -> bool:
     return record.threadName != _THREAD_NAME
 
 
-# What asyncio says of sockets that others have left is nothing to the terminal of a script.
+# Asyncio's warnings about closed sockets do not belong in the terminal of a script.
 logging.getLogger("asyncio").addFilter(_not_of_a_server)
 
 PREFERRED_PORT = 8400
@@ -54,14 +54,14 @@ _POLICY = (
     "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; "
     "style-src 'self' 'unsafe-inline'"
 )
-# Who may show the page inside a page of their own: notebooks and editors, wherever they are, if they know the
-# token; without it, those of this machine.
+# Sites that may embed the page: notebooks and editors anywhere, if they know the token; without it, those of
+# this machine.
 _OWN_FRAMES = "; frame-ancestors 'self' http://localhost:* http://127.0.0.1:*"
 
 
 @cache
 def _files() -> dict[str, tuple[str, bytes]]:
-    """Kind and content of everything the server gives out, by path."""
+    """Type and content of all files that the server serves, by path."""
     files = {f"/{name}": (_KINDS[Path(name).suffix], content) for name, content in page_files().items()}
     replay = (_KINDS[".html"], replay_page().encode())
     return {**files, "/": files["/index.html"], "/replay.html": replay}
@@ -70,8 +70,7 @@ def _files() -> dict[str, tuple[str, bytes]]:
 def _is_part(path: str) -> bool:
     """Whether a file belongs to the page.
 
-    Such files are the same for everybody and are given to everybody: in a notebook of another site the
-    browser sends no cookie along.
+    These files are public: in a notebook of another site the browser sends no cookie.
     """
     return path != "/index.html" and path[1:] in page_files()
 
@@ -90,19 +89,19 @@ def _headers(kind: str, content: bytes, policy: str, cache: str = "no-cache") ->
 
 
 class PageServer:
-    """Keeps every page that is open up to date, at display rate, from a thread of its own.
+    """Updates all open pages, at display rate, from its own thread.
 
     Args:
-        access: Where to listen, and who may talk to the server.
-        port: Port to listen on; None for the usual one or, where that is taken, any; 0 for any.
+        access: Where to listen, and access control.
+        port: Port to listen on; None for the default port or, if it is taken, any; 0 for any.
         board: What pages show.
-        frame: Called at display rate while pages are open: a message with what moves, or None. Pages get
-            the newest one they have time for.
+        frame: Called at display rate while pages are open: a message with what moves, or None. Slow pages
+            skip frames.
         receive: Called with the number of a page and what it sends.
         gone: Called with the number of a page that has been closed.
 
     Raises:
-        OSError: The address cannot be listened on.
+        OSError: It cannot listen on the address.
     """
 
     def __init__(
@@ -134,12 +133,12 @@ class PageServer:
 
     @property
     def address(self) -> str:
-        """Where the page is."""
+        """The address of the page."""
         return self.access.address(self.port)
 
     @property
     def page_count(self) -> int:
-        """How many pages are open."""
+        """Number of open pages."""
         return len(self._pages)
 
     def page_numbers(self) -> set[int]:
@@ -147,7 +146,7 @@ class PageServer:
         return {page.number for page in self._pages}
 
     def stop(self) -> None:
-        """Closes all sockets; pages say that the simulation has ended."""
+        """Closes all sockets; pages then say that the simulation has ended."""
         loop = self._loop
         if loop is not None:
             with suppress(RuntimeError):
@@ -188,7 +187,7 @@ class PageServer:
             self.access.host,
             port,
             process_request=self._answer,
-            # Poses hardly get smaller, and compressing them costs more than sending them.
+            # Compression makes poses hardly smaller, and costs more than sending them.
             compression=None,
             max_size=MAX_INCOMING_BYTES,
             logger=_quiet,
@@ -196,7 +195,7 @@ class PageServer:
         )
 
     async def _beat(self) -> None:
-        """Makes frames for as long as somebody watches."""
+        """Makes frames while pages are open."""
         loop = asyncio.get_running_loop()
         due = loop.time()
         while True:
@@ -220,7 +219,7 @@ class PageServer:
         access = self.access
         if access.guesses_token(request.path):
             return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
-        # Several of what may be there once are none of them.
+        # A header that may occur once, but occurs several times, counts as missing.
         if len(origins) > 1 or not (_is_part(path) or access.may_read(request.path, host, cookies)):
             return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, _OTHER_NAME)
         if path == "/socket":
@@ -228,7 +227,7 @@ class PageServer:
                 return None
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
         if path == "/poll":
-            # Browsers name no origin here, and send the cookie to all ports of a machine: the token counts.
+            # Browsers send no origin here, and the cookie to all ports of a machine: the token is required.
             if not access.knows_token(request.path):
                 return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
             return await self._answer_poll(connection, request.path)
@@ -248,7 +247,7 @@ class PageServer:
         try:
             content = await self._polling.answer(path)
         except ValueError:
-            return connection.respond(HTTPStatus.BAD_REQUEST, "The request does not say who asks.\n")
+            return connection.respond(HTTPStatus.BAD_REQUEST, "The request does not name its page.\n")
         headers = _headers("application/octet-stream", content, _POLICY, cache="no-store")
         return Response(HTTPStatus.OK, "OK", headers, content)
 
@@ -256,7 +255,7 @@ class PageServer:
         return page.take_news(self._board, self._frame)
 
     def _take(self, page: int, text: str | bytes) -> None:
-        """A page has sent something."""
+        """Handles a message from a page."""
         try:
             self._receive(page, received(text))
         except (KeyError, TypeError, ValueError) as problem:

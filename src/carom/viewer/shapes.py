@@ -1,4 +1,4 @@
-"""What a page is told of the looks of a body: meshes and textures once, and where they are used."""
+"""Messages about the appearance of a body: meshes and textures, each sent once, and their instances."""
 
 from __future__ import annotations
 
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 _MAX_TEXTURE_SIDE = 4096
-# Neighbouring numbers of bodies get colours far apart: each turns the hue by the golden ratio.
+# Neighbouring body ids get very different colours: each rotates the hue by the golden ratio.
 _HUE_STEP = 0.61803398875
 _FIRST_HUE = 0.57
 # Links of a body differ in brightness.
 _SHADES = (0.80, 0.66, 0.90, 0.73)
 _SATURATION = 0.5
 _FLOOR = (0.82, 0.84, 0.86, 1.0)
-# What reaches farther than this is a floor [m].
+# Shapes larger than this count as floors [m].
 _FLOOR_SIZE = 9.0
 _NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
-# Sides of the polygons that stand for circles: round things that look small need fewer.
+# Sides of the polygons for circles, by level of detail.
 _SEGMENTS = (48, 24, 12)
-# How far the outline of a round thing may be off, for nobody to see it [pixels].
+# Maximum invisible error of the outline of a round shape [pixels].
 _OUTLINE_ERROR = 0.35
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A mesh, and how large it may look.
+    """A level of detail: a mesh, and its maximum size on the screen.
 
     Attributes:
         mesh: The mesh.
-        reach: Up to what radius on the screen it looks like what it stands for [pixels]; None: any.
+        reach: Maximum radius on the screen at which it looks round [pixels]; None: any.
     """
 
     mesh: RenderMesh
@@ -68,14 +68,14 @@ def _round_levels(shape: Sphere | Cylinder) -> Levels:
     return (Level(finest), *map(Level, coarser, reaches))
 
 
-# Shapes of all sizes share their meshes, so that a page draws any number of them at once.
+# Shapes of all sizes share their meshes, so that a page draws any number of them in one call.
 _UNIT_BOX: Levels = (Level(primitive_mesh(Box((1.0, 1.0, 1.0)))),)
 _UNIT_SPHERE = _round_levels(Sphere(1.0))
 _UNIT_CYLINDER = _round_levels(Cylinder(1.0, 1.0))
 
 
 class Assets:
-    """Meshes and textures that pages have, each sent once however many shapes share it."""
+    """Meshes and textures on the pages, each sent once for any number of shapes."""
 
     def __init__(self, board: Board) -> None:
         self._board = board
@@ -84,7 +84,7 @@ class Assets:
         self._next = 0
 
     def meshes(self, levels: Levels) -> list[tuple[int, float | None]]:
-        """Numbers of meshes on the pages, and how far they reach."""
+        """Numbers of meshes on the pages, and their maximum radii."""
         return [(self._mesh(level.mesh), level.reach) for level in levels]
 
     def _mesh(self, mesh: RenderMesh) -> int:
@@ -121,12 +121,12 @@ class Assets:
         every = -(-max(image.shape[:2]) // _MAX_TEXTURE_SIDE)
         texels = image[::every, ::every]
         header = {"type": "texture", "texture": number, "width": texels.shape[1], "height": texels.shape[0]}
-        # The lower row comes first, as texture coordinates have it.
+        # The lower row comes first, as in texture coordinates.
         self._board.put(("texture", number), header, np.ascontiguousarray(texels[::-1]).tobytes())
         return number
 
     def keep_only(self, meshes: set[int], textures: set[int]) -> None:
-        """Forgets what no shape uses any more; both sets hold numbers."""
+        """Removes meshes and textures that no shape uses; both sets hold numbers."""
         for kind, known, used in (("mesh", self._meshes, meshes), ("texture", self._textures, textures)):
             for identity, (_, number) in list(known.items()):
                 if number not in used:
@@ -143,8 +143,8 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
 
     Args:
         body: The body.
-        appearance: The looks of its world.
-        assets: Where meshes and textures go.
+        appearance: The appearance of its world.
+        assets: Meshes and textures on the pages.
         collisions: Describe the collision shapes, too.
     """
     shapes = []
@@ -236,7 +236,7 @@ def _is_floor(geometry: Geometry) -> bool:
 
 
 def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[Levels, Vector3]:
-    """Meshes, and the scale that makes the shape of them."""
+    """Shared meshes of a shape, and its scale."""
     if isinstance(geometry, Box):
         return _UNIT_BOX, geometry.half_extents
     if isinstance(geometry, Sphere):

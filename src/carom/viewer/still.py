@@ -1,4 +1,4 @@
-"""A picture of a world, for notebooks whose browser does not reach the page."""
+"""A picture of a world, for notebooks whose browser cannot reach the page."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 640, 420
 _FIELD_OF_VIEW = math.radians(50.0)
-# As pages look at a scene at first.
+# As in the first view of pages.
 _YAW, _PITCH = math.radians(50.0), math.radians(-35.0)
-# Room around the middles of links for the links themselves [m].
+# Margin around the centres of links [m].
 _ROOM = 0.25
 _NEAR, _FAR = 0.02, 200.0
 
 
 def still(world: World) -> bytes | None:
-    """A PNG file of the bodies of a world as they are now, seen from where pages first look from.
+    """A PNG file of the bodies of a world at present, as in the first view of pages.
 
     Args:
-        world: The world; nobody else may step it meanwhile.
+        world: The world; it must not be stepped meanwhile.
 
     Returns:
         The file; None if there are no bodies.

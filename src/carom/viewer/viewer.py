@@ -1,4 +1,4 @@
-"""The viewer of a world: its page, and everything a page and a script tell each other."""
+"""The viewer of a world: its page, and the messages between page and script."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ from carom.viewer.still import still
 if TYPE_CHECKING:
     from carom.world.world import World
 
-# How long a page that goes may keep the server from letting go of what it held [s].
+# How long to wait for the world when a page closes, to end its pulls [s].
 _PATIENCE = 1.0
-# How long a script waits for pages to draw what it wants to be seen [s].
+# How long a script waits for pages to draw a picture [s].
 _DRAWING_PATIENCE = 0.1
-# A page of the last run that is still open connects again within this time [s].
+# An open page of the last run reconnects within this time [s].
 _RECONNECTION = 1.5
 
 
@@ -54,38 +54,36 @@ class Viewer:
 
     Args:
         world: The world.
-        lock: Held by whoever steps the world, or adds and removes bodies, and asks `held` before each step.
-            Without one the viewer guards the steps itself, by an observer of the world; `Viewer.lock` has
-            to be held while bodies come and go.
-        host: Address to listen on; this machine alone unless told otherwise. On any other, pages need a
-            token, which is part of `address`.
-        port: Port to listen on; None for the usual one or, where that is taken, any.
+        lock: Lock held while the world is stepped or bodies are added and removed; its owner checks `held`
+            before each step. Without it the viewer controls the steps by an observer of the world, and
+            `Viewer.lock` has to be held while bodies are added and removed.
+        host: Address to listen on; by default only for this machine. Pages need a token, which is part of
+            `address`.
+        port: Port to listen on; None for the default port or, if it is taken, any.
         title: Of the page.
-        width: Of the image in pixels, until a page tells what it has room for.
+        width: Width of the image in pixels, until a page reports its size.
         height: Of the image.
-        token: What pages have to know that are not on this machine, or come through a proxy; random by
-            default.
-        names: Names by which a proxy asks for the page.
+        token: The token that pages need; random by default.
+        names: Host names used by proxies.
 
     Raises:
-        OSError: The address cannot be listened on.
+        OSError: It cannot listen on the address.
 
     Attributes:
-        lock: Held while bodies are looked at.
+        lock: Held while bodies are read.
         controls: Sliders and buttons.
         drawings: What scripts draw.
         keyboard: Keys.
         mouse: Mouse events.
         camera: The camera.
-        previews: What the last camera image of a script shows.
+        previews: Previews of the last camera image of a script.
         pause_control: Whether the simulation is paused.
         is_open: False once a user has closed the viewer.
-        held: Steps have to ask `wait_for_turn` or `has_turn` first: the simulation is paused or slowed
-            down, its start has yet to be kept, or the viewer is closed.
+        held: Steps have to call `wait_for_turn` or `has_turn` first: the simulation is paused or slowed down,
+            its start state is not saved yet, or the viewer is closed.
         on_hold: Called, from any thread, with `held` when it changes.
-        on_pause: Called, from any thread, with whether the simulation is paused when that changes.
-        on_profile: Called, from the thread of the server, with whether the user wants to know from now on
-            where the time goes.
+        on_pause: Called, from any thread, when the simulation is paused or continued.
+        on_profile: Called, from the thread of the server, when the user starts or ends a timing profile.
     """
 
     def __init__(
@@ -162,15 +160,15 @@ class Viewer:
         boards[world] = self._board
         named = frozenset(name.lower() for name in names)
         if token is None:
-            # The user's own token lets an open page come back to the next script. Others are given an address
-            # for one script only.
+            # With the user's own token an open page can reconnect to the next script. Addresses for other
+            # machines are valid for one script only.
             token = user_token() if is_loopback(host) else fresh_token()
         access = Access(host, token, named)
         self._server = PageServer(access, port, self._board, self._frame, self._receive, self._page_gone)
 
     @property
     def address(self) -> str:
-        """Where the page is."""
+        """The address of the page."""
         return self._server.address
 
     @property
@@ -180,15 +178,15 @@ class Viewer:
 
     @property
     def page_count(self) -> int:
-        """How many pages are open."""
+        """Number of open pages."""
         return self._server.page_count
 
     def configure(self, options: dict[str, Any]) -> None:
-        """Shows the scene as these options say; see `Options` in `page/options.js`."""
+        """Sets display options; see `Options` in `page/options.js`."""
         self._board.put("options", {"type": "options", **options})
 
     def pause(self, paused: bool) -> None:
-        """Holds the simulation, or lets it go on."""
+        """Pauses the simulation, or continues it."""
         changed = self.pause_control.closed != paused
         if paused:
             self.pause_control.close()
@@ -200,10 +198,10 @@ class Viewer:
             self.on_pause(paused)
 
     def set_speed(self, speed: float | None) -> None:
-        """Bounds the speed of the simulation.
+        """Limits the speed of the simulation.
 
         Args:
-            speed: Simulated time by real time; None for as fast as the script goes.
+            speed: Simulated time / real time; None for no limit.
         """
         self.pause_control.set_speed(speed)
         self._update_hold()
@@ -213,8 +211,8 @@ class Viewer:
         """Waits until a step may be made.
 
         Args:
-            listening: Return without a step when the user moves a slider or presses a key, too, so that a
-                script that asks for these sees them while it is paused.
+            listening: Also return, without a step, when the user moves a slider or presses a key, so that a
+                paused script can read these.
 
         Returns:
             Whether to make the step.
@@ -239,7 +237,7 @@ class Viewer:
         return True
 
     def key_events(self) -> dict[int, int]:
-        """What happened to keys since the last call; after ESC has been told the viewer closes."""
+        """Key events since the last call; after ESC was reported the viewer closes."""
         events = self.keyboard.events()
         self._leaving.told(events)
         return events
@@ -260,7 +258,7 @@ class Viewer:
         """Plots a value of the script on all pages, under a name; call it again when it changes.
 
         Raises:
-            ValueError: It is no finite number.
+            ValueError: It is not a finite number.
         """
         number = float(value)
         if not isfinite(number):
@@ -268,10 +266,10 @@ class Viewer:
         self._values[str(name)] = number
 
     def slider(self, name: str, lower: float, upper: float, start: float) -> Slider:
-        """Adds a slider to the panel; its `value` is where the user has put it.
+        """Adds a slider to the panel; its `value` is set by the user.
 
         Raises:
-            ValueError: A number is not finite, or the bounds are no interval with the start in it.
+            ValueError: A number is not finite, or not lower < upper with the start between them.
         """
         if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
             raise ValueError(
@@ -283,13 +281,13 @@ class Viewer:
         return slider
 
     def button(self, name: str) -> Slider:
-        """Adds a button to the panel; its `value` counts how often it was pressed."""
+        """Adds a button to the panel; its `value` is the number of clicks."""
         button = Slider(name, 1.0, 0.0, 0.0)
         self._add_control(button)
         return button
 
     def choice(self, name: str, options: Iterable[str], start: int = 0) -> Choice:
-        """Adds a list of texts to the panel, of which the user chooses one: its `chosen`.
+        """Adds a list of texts to the panel; `chosen` is the text that the user has chosen.
 
         Raises:
             ValueError: There are no texts, or none of that number.
@@ -302,7 +300,7 @@ class Viewer:
         return choice
 
     def checkbox(self, name: str, start: bool = False) -> Choice:
-        """Adds a box to the panel that the user checks or not: its `checked`."""
+        """Adds a checkbox to the panel; `checked` is its state."""
         box = Choice(name, 0.0, 1.0, float(start))
         self._add_control(box)
         return box
@@ -310,18 +308,18 @@ class Viewer:
     def handle(
         self, name: str, position: Iterable[float], orientation: Iterable[float] = (0.0, 0.0, 0.0, 1.0)
     ) -> Handle:
-        """Adds a frame that the user moves with the mouse, such as the target of a hand.
+        """Adds a frame that the user moves with the mouse, for example the target of a gripper.
 
         Args:
-            name: What is written beside it.
-            position: Where it is at first [m].
-            orientation: How it is turned at first: a quaternion (x, y, z, w).
+            name: Its label.
+            position: Initial position [m].
+            orientation: Initial orientation: a quaternion (x, y, z, w).
 
         Returns:
-            The handle; its `position` and `orientation` are where the user has put it.
+            The handle; its `position` and `orientation` are set by the user.
 
         Raises:
-            ValueError: The numbers are no position and no quaternion.
+            ValueError: The numbers are not a position and a quaternion.
         """
         x, y, z = map(float, position)
         a, b, c, d = map(float, orientation)
@@ -340,13 +338,13 @@ class Viewer:
 
     @property
     def rays(self) -> Rays:
-        """What has to be told of rays that are cast, while `rays.wanted`."""
+        """Records rays, while `rays.wanted`."""
         return self._details.rays
 
     def draw_now(self) -> None:
-        """Returns when all pages that can be seen have drawn the world as it is now.
+        """Waits until all visible pages have drawn the present state.
 
-        It waits for no longer than a tenth of a second: pages are drawn when their browser has time.
+        It waits for a tenth of a second at most: pages are drawn when their browser has time.
         """
         if self.page_count:
             self._pictures.wait(self._server.page_numbers, _DRAWING_PATIENCE)
@@ -354,7 +352,7 @@ class Viewer:
     def open_browser(self) -> None:
         """Shows the page: below the cell of a notebook, or in the browser, if there is a display.
 
-        A page of the last run that is still open is left to show this one.
+        An open page of the last run is used again.
         """
         if in_notebook():
             show(self._repr_html_())
@@ -377,7 +375,7 @@ class Viewer:
         return frame(self._server.port, self._server.access.token, picture)
 
     def close(self) -> None:
-        """Ends it: pages say that the simulation is over."""
+        """Closes it: pages say that the simulation has ended."""
         self.is_open = False
         self._leaving.cancel()
         self.pause_control.open()
@@ -411,7 +409,7 @@ class Viewer:
             go_on.start()
 
     def _go_on_unwatched(self) -> None:
-        """Nobody is left who could end a pause; a page that is loaded again is back by now."""
+        """No page is left that could end a pause; a page being reloaded would be back by now."""
         if self.is_open and not self.page_count and self.pause_control.closed:
             self.pause(False)
 

@@ -1,4 +1,4 @@
-"""What can add bodies, as the ways of loading see it."""
+"""The interface to a world that loading uses: adding bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from carom.scene.body import Body
 
 
 class BodyAdding(ABC):
-    """What adds bodies; a world does."""
+    """Something that adds bodies, such as a world."""
 
     @abstractmethod
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:

@@ -1,4 +1,4 @@
-"""A second world that is like a first."""
+"""Copies of worlds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
-# What a body computes when it is asked for, for the world it is in.
+# What a body computes on demand, for the world it is in.
 _COMPUTED = ("joints", "links")
 
 

@@ -1,4 +1,4 @@
-"""What layers above the engine add to the files of worlds."""
+"""What packages above the engine add to world files."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class DescriptionLoading(BodyAdding):
-    """What a world that can add a body can load; readers of files are imported when they are needed."""
+    """Loading of robot files into a world; file readers are imported when needed."""
 
     def load_urdf(
         self,
@@ -34,7 +34,7 @@ class DescriptionLoading(BodyAdding):
             path: The file; one that comes with `pybullet_data` is found by its name.
             position: Of the base's link frame [m].
             orientation: Of the base's link frame, quaternion (x, y, z, w).
-            fixed_base: Hold the base where it is.
+            fixed_base: Fix the base in the world.
             scale: Factor on all lengths.
             flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
 
@@ -87,7 +87,7 @@ class DescriptionLoading(BodyAdding):
 
         Args:
             bodies: What they are, and the world pose of the link frame of their base.
-            also: Is told of the new bodies; if it raises an exception they are taken out again.
+            also: Called with the new bodies; if it raises an exception they are removed again.
 
         Raises:
             carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.

@@ -1,4 +1,4 @@
-"""Logs of the state: what a world was like after each step, as NumPy arrays."""
+"""Logs of the state: values after each step, as NumPy arrays."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FIRST_ROOM = 256
 
 
 class Log:
-    """What a world was like after each step; get one from `World.log`.
+    """Values of state arrays after each step; get one from `World.log`.
 
     It is a context manager, and stops when the context is left. `log["position"]` is an array with a
     row for each recorded step, `log["time"]` the times [s].
@@ -24,7 +24,7 @@ class Log:
     Args:
         world: The world.
         names: State arrays of the world, such as `position`.
-        every: Record every so many steps.
+        every: Record every n-th step.
     """
 
     def __init__(self, world: World, names: tuple[str, ...], every: int) -> None:
@@ -60,18 +60,18 @@ class Log:
         self.stop()
 
     def stop(self) -> None:
-        """Record no more; what has been recorded stays."""
+        """Stop recording; what has been recorded is kept."""
         if self in self._world.observers:
             self._world.observers.remove(self)
 
     def before_step(self) -> None:
-        """Nothing: a log is of what came out."""
+        """Does nothing: a log records the results of a step."""
 
     def after_step(self) -> None:
         """Record the state.
 
         Raises:
-            StateError: Bodies have come or gone, so the arrays mean something else now.
+            StateError: Bodies were added or removed, so the rows of the arrays have changed.
         """
         self._steps += 1
         if self._steps % self._every:
@@ -84,6 +84,6 @@ class Log:
             value = self._world.time if name == "time" else getattr(self._world, name)
             if np.shape(value) != rows.shape[1:]:
                 self.stop()
-                raise StateError("bodies have come or gone while the log was kept; it has been stopped")
+                raise StateError("bodies were added or removed; the log has been stopped")
             rows[self._count] = value
         self._count += 1

@@ -29,11 +29,11 @@ _STAGE_OF = {
 
 
 class StagedStepper(Stepper):
-    """Performs programs on the only world there is, as an `Interpreter` does, and times their stages.
+    """Runs programs on a single world, as an `Interpreter` does, and times their stages.
 
     Attributes:
-        seconds: What each stage has taken.
-        run: Performs what has been asked for.
+        seconds: Time that each stage has taken.
+        run: Runs the steps that were asked for.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -43,7 +43,7 @@ class StagedStepper(Stepper):
         self.run = self._run
 
     def load(self, program: Program) -> None:
-        """Perform another program from now on."""
+        """Use another program from now on."""
         self.program = program
 
     def ask(self, **asked: int) -> None:
@@ -77,10 +77,10 @@ class StagedStepper(Stepper):
 
 
 class Profile:
-    """A context in which an engine's steps are cut into stages.
+    """A context in which the steps of an engine are split into stages.
 
     Attributes:
-        seconds: What each stage has taken.
+        seconds: Time that each stage has taken.
     """
 
     def __init__(self, engine: Engine) -> None:

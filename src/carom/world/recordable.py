@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Recordable:
-    """How a world is recorded, and how it shows itself in notebooks."""
+    """Recording of a world, and how notebooks show it."""
 
     def _repr_html_(self) -> str:
         from carom.scene.html_tables import world_table
@@ -33,9 +33,9 @@ class Recordable:
                 world.step(480)
 
         Args:
-            path: The file; one that is there is replaced.
+            path: The file; an existing one is replaced.
             fps: Frames for each second of simulated time.
-            title: What the page is called; the name of the file by default.
+            title: Title of the page; the name of the file by default.
             contacts: Record contacts and their forces.
             joints: Record positions, velocities and torques of joints.
 

@@ -1,4 +1,4 @@
-"""Soft bodies of a world, made from numbers or from mesh files."""
+"""Soft bodies of a world, made from parameters or from mesh files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 class SoftLoading(BodyAdding):
-    """What soft bodies a world that can add a body can load."""
+    """Loading of soft bodies into a world."""
 
     def load_cloth(
         self,
@@ -46,10 +46,10 @@ class SoftLoading(BodyAdding):
             damping: Of all springs [N s/m].
             friction: Coulomb coefficient, multiplied by that of what it touches.
             margin: Distance at which it rests on other surfaces [m].
-            self_collision: It does not go through itself.
+            self_collision: It collides with itself.
 
         Raises:
-            carom.errors.DescriptionError: A number makes no sense, or the file cannot be used; the world is
+            carom.errors.DescriptionError: A number is out of range, or the file cannot be used; the world is
                 as before.
         """
         from carom.soft.build import soft_body
@@ -96,7 +96,7 @@ class SoftLoading(BodyAdding):
             radius: Distance at which its nodes rest on other surfaces [m].
 
         Raises:
-            carom.errors.DescriptionError: A number makes no sense; the world is as before.
+            carom.errors.DescriptionError: A number is out of range; the world is as before.
         """
         import numpy as np
 
@@ -142,7 +142,7 @@ class SoftLoading(BodyAdding):
             margin: Distance at which it rests on other surfaces [m].
 
         Raises:
-            carom.errors.DescriptionError: A number makes no sense, or the file cannot be used; the world is
+            carom.errors.DescriptionError: A number is out of range, or the file cannot be used; the world is
                 as before.
         """
         from carom.errors import DescriptionError

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 @record(frozen=False)
 class Derived:
-    """What follows from the bodies, constraints and arrays of a world, once somebody has asked for it."""
+    """What is derived from the bodies, constraints and arrays of a world, computed on demand."""
 
     step: Callable[[], None] | None = None
     queries: Queries | None = None
@@ -70,9 +70,9 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         bodies: The bodies by their numbers, in the order they were added.
         time: Simulated time [s].
         user_data: Texts attached to bodies.
-        undo: What makes the world whole again, should a change of it be broken off.
-        quick: What builtins in the native library know of it.
-        observers: What is told of every step, such as logs.
+        undo: Repairs the world after a change that was interrupted.
+        quick: What the fast paths in the native library know of it.
+        observers: Objects that are called at every step, such as logs.
 
     Args:
         time_step: Duration of one step [s].
@@ -134,8 +134,8 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     ) -> Body | list[Body]:
         """Add a body at rest, or all bodies of a world that was saved by `save`.
 
-        A world without bodies becomes the one that was saved, parameters and time included, and goes on
-        exactly as that one did. To any other the bodies are added as they were, with what ties them.
+        A world without bodies becomes the one that was saved, parameters and time included, and continues
+        exactly as that one did. To any other world the bodies are added as they were, with their constraints.
 
         Args:
             what: The body, or the file.
@@ -158,7 +158,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         return self._add(what, position, orientation)
 
     def save(self, path: str | Path) -> None:
-        """Write everything there is to a file: bodies, meshes, constraints, parameters, looks, state.
+        """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
         Raises:
             OSError: The file cannot be written; one that was there is as it was.
@@ -180,7 +180,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         return add_bodies(self, bodies, also)
 
     def remove(self, body_id: int) -> None:
-        """Take a body out of the world.
+        """Remove a body from the world.
 
         Raises:
             KeyError: There is no such body.
@@ -188,10 +188,10 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         remove_body(self, self.bodies[body_id])
 
     def reset(self, also: Callable[[], None] | None = None) -> None:
-        """Remove all bodies and set all parameters back, but for the time step and the substeps.
+        """Remove all bodies and reset all parameters except the time step and the substeps.
 
         Args:
-            also: What else belongs to it, and is done even if it is broken off; it may be called again.
+            also: A function called as part of it, even if interrupted; it may be called again.
         """
         kept = self.parameters
         parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
@@ -206,7 +206,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.undo.at_once(start)
 
     def copy(self) -> World:
-        """A world of its own with the same bodies, that goes on exactly as this one does.
+        """An independent world with the same bodies, which continues exactly as this one does.
 
         Handles of bodies are found in `bodies` under their numbers. Observers and logs are not copied.
         """
@@ -240,7 +240,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         untie(self, constraint)
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
-        """Let the base of a body move, or hold it where it is."""
+        """Free the base of a body, or fix it in the world."""
         free_base(self, body, free=free)
 
     # State
@@ -270,24 +270,24 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         return self._derived.layout
 
     def snapshot(self) -> Snapshot:
-        """The present state, to come back to by `restore` as often as needed.
+        """The present state, for `restore`, which can be called any number of times.
 
-        It holds positions and velocities, motors, applied forces, contacts and time; not what bodies
-        are made of, constraints, gravity and the other parameters.
+        It contains positions and velocities, motors, applied forces, contacts and time; not masses and shapes
+        of bodies, constraints, gravity and other parameters.
         """
         return take(self, self._layout)
 
     def restore(self, state: Snapshot | str | Path) -> None:
-        """Go back to a state. What follows is then the same, to the last bit, as it was the first time.
+        """Restore a state. The steps that follow are then the same, bit for bit, as the first time.
 
         Args:
             state: The state, or a file of `save`, of which only the state is read.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as it was.
-            carom.errors.StateError: Bodies have come or gone, or one has other joints than it had; the
-                world is as it was. A body that was removed and loaded again under its number is no
-                hindrance, but contacts are then found anew.
+            carom.errors.StateError: Bodies were added or removed, or one has other joints now; the
+                world is as it was. A body that was removed and loaded again under its number is accepted, but
+                contacts are then detected again.
         """
         if not isinstance(state, Snapshot):
             from carom.world_files.world_file import restore_world
@@ -305,7 +305,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         Args:
             *names: Which ones: `position`, `velocity`, `link_pose`, `motor_impulse`... All rows of the
                 world are recorded; those of a body start at its `first_position` and so on.
-            every: Record every so many steps.
+            every: Record every n-th step.
 
         Raises:
             ValueError: There is no such array, or `every` is less than 1.
@@ -331,7 +331,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.apply_parameters()
 
     def apply_parameters(self) -> None:
-        """Make changes of `parameters` take effect."""
+        """Apply changes of `parameters`."""
         shapes, breaking = self.contact_arrays.shapes, self.parameters.contact_breaking_threshold
         if breaking != shapes.breaking_fraction or self._structure() != self._made_for:
             shapes.set_breaking_fraction(breaking)
@@ -340,7 +340,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             self.engine.update_settings(self.parameters)
 
     def scene_changed(self) -> None:
-        """Bring everything up to date before it is used again: bodies, constraints or arrays have changed."""
+        """Discard derived data: bodies, constraints or arrays have changed."""
         self.quick.forget()
         self._derived = Derived()
         self._made_for: tuple[int, int] | None = None
@@ -360,15 +360,14 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Advance the world by `count` time steps.
 
         Raises:
-            carom.errors.SimulationError: A velocity came out as NaN or infinite; all coordinates are as
-                they were before that step. The forces applied for it, motor impulses, sensor readings
-                and contacts are gone.
+            carom.errors.SimulationError: A velocity became NaN or infinite; all coordinates are as they were
+                before that step. Applied forces, motor impulses, sensor readings and contacts are cleared.
         """
         try:
             for _ in range(count):
                 self._step()
         except BaseException:
-            # Ctrl-C may come when arrays have grown and launches do not know yet.
+            # Ctrl-C may come after arrays have grown and before the launches are updated.
             self.scene_changed()
             raise
 
@@ -387,21 +386,21 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
                 observer.after_step()
 
     def watch_substeps(self, observer: SubstepObserver) -> None:
-        """From now on tell an observer of every substep."""
+        """Call an observer at every substep from now on."""
         self._substep_observers.append(observer)
         self.scene_changed()
 
     def unwatch_substeps(self, observer: SubstepObserver) -> None:
-        """Tell an observer no more, if it is told of substeps."""
+        """Stop calling an observer at every substep."""
         if observer in self._substep_observers:
             self._substep_observers.remove(observer)
             self.scene_changed()
 
     def profile(self, count: int = 100) -> dict[str, float]:
-        """Advance the world by `count` time steps, as `step` does, and say where the time goes.
+        """Advance the world by `count` time steps, as `step` does, and return the time of each stage.
 
-        The step is cut into more launches than usual for it, so the sum is a little more than a step
-        takes otherwise. The first call compiles these.
+        The step is split into more launches than usual, so the sum is a little more than the time of a usual
+        step. The first call compiles these.
 
         Returns:
             Seconds per step by stage: "link poses", "broad phase" (pairs of shapes whose bounds meet),
@@ -428,7 +427,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.engine.step([self._substeps_due()])
 
     def _look_into_status(self) -> None:
-        """Step again with more room, if there was not enough; complain of what is not finite."""
+        """Repeat the step if arrays were too short; raise an error if a velocity is not finite."""
         self.engine.recover()
         self._renew_after_growth()
         if self._status[STATUS]:
@@ -440,7 +439,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             self.scene_changed()
 
     def _raise_fault(self) -> None:
-        """Throw away what the failed step left besides the coordinates, and say which body it was."""
+        """Clear the results of the failed step except the coordinates; raise an error that names the body."""
         tree = self._status[STATUS] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
         cause = cause_in(body)
@@ -450,14 +449,14 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         for other in self.bodies.values():
             other.update_link_poses()
         raise SimulationError(
-            f'body {body.id} ("{body.name}") came to a velocity that is not finite; '
+            f'body {body.id} ("{body.name}") has a velocity that is not finite; '
             f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
     def prepare(self) -> None:
-        """Bring the arrays of the engine up to date with the bodies, constraints and parameters there are.
+        """Update the arrays of the engine for the present bodies, constraints and parameters.
 
-        Steps do it by themselves; whoever copies the arrays wants it done before.
+        Steps do this themselves; it is needed before the arrays are copied.
         """
         if self._derived.step is None:
             self._prepare_step()
@@ -483,7 +482,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         return step
 
     def _step_in_substeps(self) -> None:
-        """One step in substeps, of each of which observers are told."""
+        """One step that calls observers at each substep."""
         due = self._substeps_due()
         if not self._substep_observers:
             self.engine.step([due])
@@ -552,7 +551,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
         Returns:
             Dictionaries with `islandId`, `numBodies` (links), `numIterationsUsed` and
-            `remainingResidual` (greatest squared change of a row's velocity in the last sweep).
+            `remainingResidual` (largest squared change of a row's velocity in the last sweep).
         """
         from carom.world.solver_report import solver_report
 
@@ -574,10 +573,10 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         (self._derived.pose_launch or self.be_quick())(body.rows.tree)
 
     def be_quick(self) -> TreeLaunch:
-        """Let builtins in the native library know where things are again, after a change of the scene.
+        """Tell the fast paths in the native library where the data are, after a change of the scene.
 
         Returns:
-            What brings the link poses of a body up to date.
+            A function that updates the link poses of a body.
         """
         if self._derived.pose_launch is None:
             self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
@@ -588,7 +587,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
         if self.contact_arrays.soft.bodies:
             if self._derived.step is None:
-                # Nodes that are held do not count; whoever has prepared steps has written which these are.
+                # Anchored nodes do not count; the preparation of a step has written which these are.
                 self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 

@@ -1,4 +1,4 @@
-"""What has to hold of a body in a file before the engine may see it, besides the types of its fields."""
+"""Checks of a body from a file, besides the types of its fields, before the engine uses it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The outside of a saved world: a header that tells rubbish and damage, a document, and blocks of bytes.
+"""The container of a saved world: a header with checks, a document, and blocks of bytes.
 
 All numbers are little-endian.
 
@@ -72,7 +72,7 @@ def unpacked(data: bytes, file: Path) -> tuple[dict[str, Any], memoryview]:
         DescriptionError: It is no such file, of a newer version, or damaged.
     """
     if len(data) < _HEADER.size or data[: len(MAGIC)] != MAGIC:
-        raise DescriptionError("this is no world saved by Carom", file=file)
+        raise DescriptionError("this is not a world saved by Carom", file=file)
     _, version, _, size, digest = _HEADER.unpack_from(data)
     if version != VERSION:
         raise DescriptionError(
@@ -89,5 +89,5 @@ def unpacked(data: bytes, file: Path) -> tuple[dict[str, Any], memoryview]:
     except (struct.error, ValueError, RecursionError) as problem:
         raise DescriptionError(f"its document cannot be read: {problem}", file=file) from problem
     if not isinstance(document, dict) or length > len(payload):
-        raise DescriptionError("its document is no JSON object", file=file)
+        raise DescriptionError("its document is not a JSON object", file=file)
     return document, payload[_SIZE.size + length :]

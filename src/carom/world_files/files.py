@@ -33,7 +33,7 @@ class FileTable:
         self.records: list[dict[str, Any]] = []
 
     def add(self, path: Path) -> int:
-        """Takes in a file with what it refers to, and returns its number.
+        """Adds a file with the files it refers to, and returns its number.
 
         Raises:
             DescriptionError: It cannot be read.

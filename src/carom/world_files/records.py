@@ -45,7 +45,7 @@ class Writer:
         self._arrays: dict[int, tuple[np.ndarray, dict[str, Any]]] = {}
 
     def write(self, value: Any) -> Any:
-        """What stands for a value in the document."""
+        """The JSON form of a value in the document."""
         if isinstance(value, Enum):
             return value.value
         if value is None or isinstance(value, (bool, int, float, str)):
@@ -99,7 +99,7 @@ class Reader:
 
         Args:
             hint: Its type.
-            data: What stands for it.
+            data: Its JSON form.
             where: Its place in the document, for errors.
 
         Raises:
@@ -137,7 +137,7 @@ class Reader:
         """An array.
 
         Args:
-            data: What stands for it.
+            data: Its JSON form.
             dtype: Type of its entries.
             shape: Its shape; None for lengths that do not matter, or for all of them.
             where: Its place in the document.
@@ -243,7 +243,7 @@ _CONTAINERS: dict[Any, Callable[[Reader, tuple[Any, ...], Any, str], Any]] = {
 
 
 def _without_alias(hint: Any) -> Any:
-    """What an alias stands for: `NDArray` is one that Python keeps apart from NumPy 2.5 on."""
+    """The type of an alias: `NDArray` is a type alias from NumPy 2.5 on."""
     meant = getattr(get_origin(hint), "__value__", None)
     return hint if meant is None else meant[get_args(hint)]
 

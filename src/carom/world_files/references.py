@@ -47,7 +47,7 @@ def is_image(start: bytes, suffix: str) -> bool:
 
 
 def _after_keyword(data: bytes, keyword: bytes) -> Iterator[bytes]:
-    """What stands on the lines that begin with a keyword."""
+    """The rest of the lines that begin with a keyword."""
     for line in data.splitlines():
         words = line.split(None, 1)
         if len(words) == 2 and words[0] == keyword:

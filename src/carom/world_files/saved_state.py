@@ -51,7 +51,7 @@ class SavedState:
 
 
 def state_of(world: World) -> dict[str, Any]:
-    """What to write."""
+    """The text."""
     snapshot = take(world, layout(world))
     return {
         "bodies": list(snapshot.layout.bodies),
@@ -102,7 +102,7 @@ def split_impulses(contacts: dict[str, np.ndarray]) -> None:
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
-    """See that bodies have no more rows than the file has, so that counts cannot ask for any memory."""
+    """Check that bodies have no more rows than the file has, so that counts cannot exhaust memory."""
     for axis, counts in (
         ("link_pose", [body.links for body in bodies]),
         ("position", [body.positions for body in bodies]),

@@ -45,14 +45,14 @@ _MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionEr
 
 
 class Part(Protocol):
-    """What a layer above the engine adds to a file."""
+    """Data of a package above the engine in a file."""
 
     def save(self, world: World, writer: Writer) -> Any:
-        """What to write."""
+        """The text."""
         ...
 
     def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
-        """Take over what was written for these bodies."""
+        """Apply the saved colours and textures to these bodies."""
         ...
 
 
@@ -212,7 +212,7 @@ def _guarded(path: Path, load: Callable[[], Any]) -> Any:
     try:
         return load()
     except _MEANINGLESS as problem:
-        raise DescriptionError(f"what it says makes no sense: {problem}", file=path) from problem
+        raise DescriptionError(f"its content is invalid: {problem}", file=path) from problem
 
 
 def _read(path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:

@@ -1,4 +1,4 @@
-"""Writing a file whole: nobody ever sees half of it."""
+"""Writing a file atomically: other programs never see half of it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from pathlib import Path
 def write_whole(path: Path, data: bytes) -> None:
     """Writes a file beside its place and moves it there.
 
-    A symbolic link stays, and what it leads to is written. A file that is there keeps its permissions; a new
-    one has those that the umask leaves. What is no file, as `/dev/null`, is written to and never replaced.
+    A symbolic link is kept, and its target is written. An existing file keeps its permissions; a new one has
+    those of the umask. Devices, such as `/dev/null`, are written to and never replaced.
 
     Raises:
         OSError: It cannot be written; a file that was there is as it was.

@@ -20,16 +20,16 @@ from carom.worlds.poses import PoseFinder
 class BodyBatch:
     """The same body in all worlds; get it from `Worlds[body]`.
 
-    Arrays have the worlds in front, then the joints' coordinates or the links. Those of coordinates leave
-    out fixed joints, and have four positions and three velocities for a spherical joint, as `Joints` has it.
-    Views show the state itself: what is written there takes effect.
+    The first axis of arrays is the world, the second joint coordinates or links. Coordinates leave out fixed
+    joints, and have four positions and three velocities for a spherical joint, as in `Joints`. Views are the
+    state itself: writing to them changes it.
 
     Attributes:
         name: Name of the robot.
-        rows: Where it is in the arrays of the engine.
+        rows: Its rows in the arrays of the engine.
         joint_names: Names of all joints, in order; joint j moves link j.
-        link_names: Names of the links besides the base.
-        limits: Least and greatest positions of the joints that move, by which targets are clipped.
+        link_names: Names of the links except the base.
+        limits: Minimum and maximum positions of movable joints, to which targets are clipped.
     """
 
     def __init__(self, body: Body, scene: World, engine: Engine) -> None:
@@ -94,7 +94,7 @@ class BodyBatch:
 
     @property
     def joint_torques(self) -> Array:
-        """Torques or forces applied in the next step, instead of any before; a view (count, dofs)."""
+        """Torques or forces to apply in the next step; a view (count, dofs)."""
         return self._state["dof_torque"][:, self._dofs]
 
     @property
@@ -104,22 +104,22 @@ class BodyBatch:
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Least and greatest positions of the joints that move, (dofs,); infinite without a limit."""
+        """Minimum and maximum positions of movable joints, (dofs,); infinite without a limit."""
         return self._body.joints.limits
 
     def columns(self, joints: list[int | str] | None = None) -> slice | np.ndarray:
-        """Where some joints of one freedom are among the columns of `joint_velocities`.
+        """The columns of `joint_velocities` that belong to some joints with one degree of freedom.
 
-        They are there in `joint_positions` as well unless a spherical joint comes before them.
+        They have the same columns in `joint_positions` unless a spherical joint comes before them.
 
         Args:
-            joints: Which joints, by index or name; None for all that move.
+            joints: Which joints, by index or name; None for all movable joints.
 
         Returns:
-            A slice if they are next to each other, so that indexing gives a view.
+            A slice if they are contiguous, so that indexing gives a view.
 
         Raises:
-            ValueError: A joint has more than one freedom, or none.
+            ValueError: A joint has more than one degree of freedom, or none.
         """
         dofs, _ = self._chosen(joints)
         if isinstance(dofs, slice):
@@ -144,9 +144,9 @@ class BodyBatch:
 
     @property
     def sensor_wrenches(self) -> Array:
-        """Force [N] and torque [N m] that the joints' sensors felt in the last substep: (count, joints, 6).
+        """Force [N] and torque [N m] measured by the joints' sensors in the last substep: (count, joints, 6).
 
-        A view, in the inertial frame of the joint's link; 0 where there is no sensor.
+        A view, in the inertial frame of the joint's link; 0 without a sensor.
         """
         return self._state["link_reaction"][:, self._links]
 
@@ -167,12 +167,12 @@ class BodyBatch:
 
         Args:
             targets: Positions, clipped to the limits: (count, dofs) or what broadcasts to it.
-            gains: Share of the position error taken away per substep.
-            velocities: Velocities to arrive with.
-            velocity_gains: Share of the velocity error taken away per substep.
-            max_forces: Greatest forces; those of the file by default.
-            max_velocities: Greatest velocities the motors ask for.
-            joints: Which joints, by index or name; None for all that move.
+            gains: Share of the position error corrected per substep.
+            velocities: Target velocities.
+            velocity_gains: Share of the velocity error corrected per substep.
+            max_forces: Maximum forces; those of the file by default.
+            max_velocities: Maximum velocities of the motors.
+            joints: Which joints, by index or name; None for all movable joints.
 
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
@@ -228,18 +228,18 @@ class BodyBatch:
         )  # fmt: skip
 
     def set_torques(self, torques: ArrayLike, joints: list[int | str] | None = None) -> None:
-        """`Joint.set_torque` for joints in all worlds: for the next step, instead of any set before.
+        """`Joint.set_torque` for joints in all worlds: for the next step, replacing those set before.
 
         Args:
             torques: [N m or N], (count, dofs) or what broadcasts to it.
-            joints: Which joints, by index or name; None for all that move.
+            joints: Which joints, by index or name; None for all movable joints.
         """
         dofs, places = self._chosen(joints, one_freedom=joints is not None)
         count = len(places) if joints is not None else self._dofs.stop - self._dofs.start
         self._state["dof_torque"][:, dofs] = broadcast(self._take(torques), (self._count, count), "torques")
 
     def disable_motors(self, joints: list[int | str] | None = None) -> None:
-        """Let go of joints: neither their motors nor their springs act any more."""
+        """Switch off the motors and springs of joints."""
         dofs, _ = self._chosen(joints, one_freedom=joints is not None)
         joint_motor.switch_off(self._state["dof_motor"], self._state["dof_pd"], dofs)
 
@@ -249,7 +249,7 @@ class BodyBatch:
     def base_poses(self) -> Array:
         """Poses of the base's inertial frame, position [m] and quaternion (x, y, z, w); a view (count, 7).
 
-        Quaternions that are written have to be of unit length; `set_base_poses` sees to it.
+        Quaternions written here must have unit length; `set_base_poses` normalises them.
         """
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
@@ -260,12 +260,12 @@ class BodyBatch:
         orientations: ArrayLike = (0.0, 0.0, 0.0, 1.0),
         where: ArrayLike | None = None,
     ) -> None:
-        """Place the inertial frame of the base; velocities stay.
+        """Set the pose of the base's inertial frame; velocities do not change.
 
         Args:
             positions: [m], (3,) or (n, 3) for the n worlds chosen.
             orientations: Quaternions (x, y, z, w), (4,) or (n, 4); normalised here.
-            where: Which worlds: a mask (count,) or their numbers; None for all.
+            where: Which worlds: a mask (count,) or their indices; None for all.
 
         Raises:
             ValueError: A shape does not fit, something is not finite, or a quaternion is 0.
@@ -276,7 +276,7 @@ class BodyBatch:
         squared = np.square(turn).sum(axis=1, keepdims=True)
         if not squared.all():
             raise ValueError("orientations must be quaternions other than 0")
-        # A pose that was read and is written back stays the same to the last digit, as in a world alone.
+        # A pose that was read and is written back must not change in the last digit, as in a single world.
         scale = np.where(abs(squared - 1.0) < ROUNDING, 1.0, 1.0 / np.sqrt(squared))
         self.base_poses[worlds] = np.concatenate([position, turn * scale], axis=1)
         self._engine.contact_arrays.forget_warm_start(worlds)
@@ -297,7 +297,7 @@ class BodyBatch:
 
         Args:
             velocities: (6,) or (n, 6) for the n worlds chosen, as `base_velocities` has them.
-            where: Which worlds: a mask (count,) or their numbers; None for all.
+            where: Which worlds: a mask (count,) or their indices; None for all.
         """
         worlds = world_numbers(self._take(where), self._count)
         values = broadcast(self._take(velocities), (len(worlds), BASE_VELOCITIES), "velocities")
@@ -325,8 +325,8 @@ class BodyBatch:
     def stepped_link_poses(self) -> Array:
         """`link_poses` as `pybullet.getLinkState` has them after a step; a view (count, links, 7).
 
-        They are those at the start of the last substep. Asking for `link_poses` or `link_velocities` brings
-        them up to date in all worlds, and `update_link_poses` in some.
+        They are those at the start of the last substep. Reading `link_poses` or `link_velocities` updates
+        them in all worlds, `update_link_poses` in some.
         """
         return self._state["link_pose"][:, self._links]
 
@@ -334,23 +334,23 @@ class BodyBatch:
     def stepped_link_velocities(self) -> Array:
         """`link_velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
 
-        They go with `stepped_link_poses` and the present velocities of the joints. The next call fills the
-        same array.
+        They go with `stepped_link_poses` and the present velocities of the joints. The next call overwrites
+        the same array.
         """
         return self._poses.velocities_at_step()[:, self._links]
 
     def update_link_poses(self, where: ArrayLike | None = None) -> None:
-        """Bring `stepped_link_poses` up to date with the coordinates.
+        """Update `stepped_link_poses` from the coordinates.
 
         Args:
-            where: In which worlds: a mask (count,) or their numbers; None for all.
+            where: In which worlds: a mask (count,) or their indices; None for all.
         """
         self._poses.update(world_numbers(self._take(where), self._count))
 
     def apply_forces(
         self, link: int | str, forces: ArrayLike, points: ArrayLike | None = None, torques: ArrayLike = 0.0
     ) -> None:
-        """Push a link during the next step, in addition to what else pushes it.
+        """Apply forces to a link in the next step, in addition to other forces.
 
         Args:
             link: The link by index (-1 is the base) or name.
@@ -373,7 +373,7 @@ class BodyBatch:
     # Parameters
 
     def change_dynamics(self, link: int | str, **changes: ArrayLike) -> None:
-        """Change inertia, surface, or joint of a link, or damping of the whole body, world by world.
+        """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
 
         Args:
             link: The link by index (-1 is the base) or name.
@@ -381,11 +381,11 @@ class BodyBatch:
                 (count, 3), `lateral_friction`, `rolling_friction`, `spinning_friction`, `restitution`,
                 `contact_stiffness`, `contact_damping`, `linear_damping`, `angular_damping`,
                 `max_joint_velocity`, `joint_damping`, `joint_lower_limit`, `joint_upper_limit`. A `mass`
-                without `inertia` gets that of the collision shapes.
+                without `inertia` sets the inertia of the collision shapes.
 
         Raises:
-            ValueError: A number is out of range, a shape does not fit, or a joint without limits is to get
-                some.
+            ValueError: A number is out of range, a shape does not fit, or limits are set for a joint without
+                limits.
             TypeError: There is no such parameter, or it cannot differ between worlds.
         """
         change_dynamics(self._engine, self._body, self._link_index(link), changes)
@@ -403,7 +403,7 @@ class BodyBatch:
         return choose("link", self.link_names, link)
 
     def _numbers(self, value: ArrayLike) -> Array:
-        """What a user gave as doubles, where they are if that is on the worlds' device."""
+        """A user's numbers as doubles, left on the worlds' device if they are there."""
         taken = self._take(value)
         return taken if isinstance(taken, OnDevice) else np.asarray(taken, dtype=np.float64)  # type: ignore[return-value]
 
@@ -427,7 +427,9 @@ class BodyBatch:
         for joint in joints:
             if self._body.velocity_count[joint] != 1:
                 kind = JointType(self._body.spec.links[joint].joint_type).value
-                raise ValueError(f"joint {self.joint_names[joint]!r} is {kind}: it has not one freedom")
+                raise ValueError(
+                    f"joint {self.joint_names[joint]!r} is {kind}: it needs one degree of freedom"
+                )
 
     def _forces(self, max_forces: ArrayLike | None, places: np.ndarray) -> ArrayLike:
         if max_forces is None:

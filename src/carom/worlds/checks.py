@@ -1,4 +1,4 @@
-"""Numbers for many worlds, refused where their shapes do not fit."""
+"""Checks of the shapes of arrays for many worlds."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ Mask = NDArray[np.bool_]
 
 
 def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bool = True) -> Array:
-    """`value` as doubles of a shape, one value standing for all worlds, or all joints.
+    """`value` as doubles of a shape; one value may stand for all worlds, or all joints.
 
     Args:
-        value: What a user gave; numbers on another device stay there, and are not checked.
+        value: The user's value; numbers on another device stay there, and are not checked.
         shape: The shape wanted, worlds first.
-        name: What messages call it.
-        finite: Whether infinities are refused; NaN always is.
+        name: Its name in messages.
+        finite: Whether infinities raise an error; NaN always does.
 
     Raises:
         ValueError: It does not broadcast to that shape, or something in it is not finite.
@@ -44,11 +44,11 @@ def _spread(array: Any, shape: tuple[int, ...], name: str) -> Array:
 
 
 def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
-    """The worlds that are meant, as numbers.
+    """Indices of the chosen worlds.
 
     Args:
-        where: A mask (count,), numbers of worlds, or None for all.
-        count: How many worlds there are.
+        where: A mask (count,), indices of worlds, or None for all.
+        count: Number of worlds.
 
     Raises:
         ValueError: A mask has another length.

@@ -15,14 +15,14 @@ from carom.native.launch import KernelStructs, Launch
 
 
 class ContactSummary(NamedTuple):
-    """How a body touches another in each world.
+    """Contacts of a body with another in each world.
 
     Attributes:
-        touching: Whether there is a contact that pushes, (count,).
-        number: Number of contact points, those included whose points are still apart, (count,).
+        touching: Whether there is a contact with a force, (count,).
+        number: Number of contact points, including those that do not touch yet, (count,).
         forces: Force on the body, friction included, in world axes [N], (count, 3).
-        distances: Of the deepest point [m], negative for penetration; infinite without any, (count,).
-        deepest: That point on the body in world axes [m], (count, 3); NaN without any.
+        distances: Of the deepest point [m], negative for penetration; infinite without contacts, (count,).
+        deepest: That point on the body in world axes [m], (count, 3); NaN without contacts.
     """
 
     touching: NDArray[np.bool_]
@@ -33,7 +33,7 @@ class ContactSummary(NamedTuple):
 
 
 class ContactFinder:
-    """Finds how links touch others in all worlds.
+    """Finds contacts between links in all worlds.
 
     Args:
         engine: The worlds.
@@ -45,17 +45,17 @@ class ContactFinder:
         self._table.reserve({"world": self._count, "link": engine.arrays.used["link"]})
         self._links = 0
         self._anything = False
-        # The links asked for last, and the others.
+        # The two groups of links of the last query.
         self._asked: tuple[bytes, bytes] | None = None
         self._find = engine.task(self._launches)
 
     def summary(self, first: np.ndarray, second: np.ndarray | None, substep_time: float) -> ContactSummary:
-        """The contacts of some links with others.
+        """Summary of the contacts of some links with others.
 
         Args:
             first: Rows of links.
             second: Rows of other links; None for any.
-            substep_time: Of a substep [s]; makes forces of impulses.
+            substep_time: Duration of a substep [s], to convert impulses to forces.
         """
         self._ask(first, second)
         touching, number, impulse, distance, deepest = (

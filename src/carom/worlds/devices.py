@@ -1,4 +1,4 @@
-"""Where many worlds are kept and stepped."""
+"""The devices on which worlds are stored and stepped."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
 
 CPU = "cpu"
 _CUDA = "cuda"
-# For tests: what a GPU would be given, on the processor.
+# For tests: the launches of a GPU, on the processor.
 _WARP_CPU = "warp-cpu"
 
 
 def make_engine(scene: World, count: int, device: str | Device, threads: int | None) -> Engine:
-    """An engine for so many worlds like one there is.
+    """An engine for many copies of a scene.
 
     Args:
-        scene: What each of them is like.
-        count: How many there are to be.
+        scene: The scene.
+        count: Number of worlds.
         device: See `Worlds`; or a device of `carom.gpu`.
-        threads: How many threads share them on the processor; None for as many as there are cores for.
+        threads: Number of threads on the processor; None for the number of cores available.
 
     Raises:
         ValueError: There is no such device.
         ImportError: A GPU is asked for, and Warp is not installed.
-        MemoryError: There is no room for so many.
+        MemoryError: There is not enough memory for so many worlds.
     """
     if device == CPU:
         state, contacts = scene.arrays.state, scene.contact_arrays.contacts
@@ -50,7 +50,7 @@ def open_device(name: str) -> Device:
     """A device by name: "cuda", "cuda:1".
 
     Raises:
-        ValueError: It is unknown, or not in this machine.
+        ValueError: It is unknown, or not present in this machine.
         ImportError: Warp is not installed.
     """
     kind, _, number = name.partition(":")

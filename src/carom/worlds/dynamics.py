@@ -1,4 +1,4 @@
-"""Parameters of a body that differ from world to world, for domain randomisation."""
+"""Parameters of a body that differ between worlds, for domain randomisation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from carom.scene.body import Body
 from carom.scene.dynamics_changes import OF_BODY, shape_inertia
 from carom.worlds.checks import broadcast
 
-# Fields of the shapes by what users call them, of those that can differ between worlds.
+# Fields of `Shapes` that can differ between worlds, by their public names.
 OF_SURFACE = {
     name: SURFACE_FIELDS[name]
     for name in (
@@ -58,7 +58,7 @@ def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str,
 def _writes(
     engine: Engine, body: Body, link: int, values: Mapping[str, np.ndarray]
 ) -> Iterator[tuple[str, str, int | slice, np.ndarray]]:
-    """What to write where: table, field, rows, numbers with the worlds in front."""
+    """What to write: table, field, rows, numbers (first axis: worlds)."""
     row, tree = body.first_link + 1 + link, body.rows.tree
     for name, numbers in values.items():
         if name in OF_SURFACE:
@@ -97,7 +97,5 @@ def _limit_row(engine: Engine, body: Body, joint: int) -> int:
     rows = np.flatnonzero(is_limit & (model["constraint_link"][:used] == body.first_link + 1 + joint))
     if not len(rows):
         name = body.spec.links[joint].joint_name
-        raise ValueError(
-            f"joint {name!r} has no limits: give it some in the world that these are copies of, before"
-        )
+        raise ValueError(f"joint {name!r} has no limits: set them in the original world before")
     return int(rows[0])

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class Images(NamedTuple):
-    """What a camera saw in each world; row 0 is the top.
+    """Images of a camera in each world; row 0 is the top.
 
     Attributes:
         colour: (n, height, width, 3) uint8 red, green and blue.
-        depth: (n, height, width) float32 distance along the optical axis [m]; infinite for nothing.
-        body_ids: (n, height, width) int32 ids of bodies; -1 where there is nothing.
-        link_indices: (n, height, width) int32 links of those bodies; -1 is the base, and nothing.
+        depth: (n, height, width) float32 distance along the optical axis [m]; infinite for the background.
+        body_ids: (n, height, width) int32 ids of bodies; -1 for the background.
+        link_indices: (n, height, width) int32 links of those bodies; -1 is the base, and the background.
     """
 
     colour: NDArray[np.uint8]
@@ -32,9 +32,9 @@ class Images(NamedTuple):
 
 
 def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray) -> Images:
-    """Images of some worlds, taken one after the other in a scene that is put into the state of each.
+    """Images of some worlds, taken one after the other in a scene that gets the state of each.
 
-    A camera that is mounted on a link of the world that these are copies of goes with that link in each.
+    A camera that is mounted on a link of the original world follows that link in each.
     """
     mounted = camera.link
     if mounted is not None:

@@ -27,7 +27,7 @@ def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_t
 
 
 def copy_coordinates(engine: Engine, number: int, world: World) -> None:
-    """Put the bodies of a world where they are in one of the worlds of an engine that has the same bodies."""
+    """Set the coordinates of a world to those of one world of an engine with the same bodies."""
     positions = engine.arrays.state.numpy["position"][number]
     world.arrays.state.numpy["position"][0, : len(positions)] = positions
 
@@ -38,7 +38,7 @@ def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:
 
 
 def _take_parameters(world: World, engine: Engine, number: int) -> None:
-    """Bring what a world knows of its bodies to what is in the arrays, where worlds differ."""
+    """Update a world's parameters of bodies from the arrays, where worlds differ."""
     model, shapes = engine.arrays.model, engine.contact_arrays.shapes.table
     x, y, z = _row(model, "gravity_vector", number)[0].tolist()
     world.parameters.gravity = (x, y, z)
@@ -84,6 +84,6 @@ def _take_limits(world: World, engine: Engine, number: int) -> None:
 
 
 def _row(table: ArrayTable, field: str, number: int) -> np.ndarray:
-    """The rows of a world; all share those of the first where they do not differ."""
+    """The rows of a world; where worlds do not differ, the first row."""
     array = table.numpy[field]
     return array[number if len(array) > 1 else 0]

@@ -1,4 +1,4 @@
-"""Whether there is memory for so many worlds, said before it runs out."""
+"""Checks that there is enough memory for the worlds, before they are made."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _GIGABYTE = 1e9
 
 
 def free_memory() -> int | None:
-    """Bytes that could be had without swapping; None where the system does not say."""
+    """Bytes available without swapping; None if the system does not say."""
     try:
         for line in _MEMINFO.read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
@@ -21,7 +21,7 @@ def free_memory() -> int | None:
 
 
 def check_memory(count: int, bytes_per_world: int) -> None:
-    """See that there is room for so many worlds.
+    """Check that there is enough memory for the worlds.
 
     Raises:
         MemoryError: There is not.

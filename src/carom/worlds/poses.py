@@ -1,4 +1,4 @@
-"""Where the links of a body are in each world, and how they move, for the present coordinates."""
+"""Poses and velocities of the links of a body in each world, for the present coordinates."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
 
 
 class PoseFinder:
-    """Brings link poses and velocities of one tree up to date in all worlds.
+    """Updates link poses and velocities of one tree in all worlds.
 
     Args:
         engine: The worlds.
@@ -28,7 +28,7 @@ class PoseFinder:
         )
 
     def update(self, worlds: np.ndarray) -> None:
-        """Bring `State.link_pose` of the tree up to date in some worlds."""
+        """Update `State.link_pose` of the tree in some worlds."""
         self._place(worlds)
 
     def velocities_at_step(self) -> np.ndarray:
@@ -37,11 +37,11 @@ class PoseFinder:
         return self._state["link_twist"]
 
     def poses(self) -> np.ndarray:
-        """`State.link_pose`, (worlds, links of all bodies, 7), true for the links of the tree."""
+        """`State.link_pose`, (worlds, links of all bodies, 7), valid for the links of the tree."""
         self._place()
         return self._state["link_pose"]
 
     def velocities(self) -> np.ndarray:
-        """`State.link_twist`, (worlds, links of all bodies, 6), true for the links of the tree."""
+        """`State.link_twist`, (worlds, links of all bodies, 6), valid for the links of the tree."""
         self._move()
         return self._state["link_twist"]

@@ -18,12 +18,12 @@ from carom.native.tables import NUMPY_REAL
 
 
 class RayHits(NamedTuple):
-    """What rays hit in each world.
+    """Results of rays in each world.
 
     Attributes:
         bodies: Numbers of the bodies, -1 for nothing, (count, n).
-        links: Their links, -1 for the base and for nothing, (count, n).
-        fractions: Where along the rays, 0 at the start, 1 at the end and for nothing, (count, n).
+        links: Their links, -1 for the base and without a hit, (count, n).
+        fractions: Fraction along the ray: 0 at the start, 1 at the end and without a hit, (count, n).
         positions: Points in world axes [m], (count, n, 3).
         normals: Unit normals there, (count, n, 3).
     """
@@ -40,7 +40,7 @@ class RayCaster:
 
     Args:
         engine: The worlds.
-        places: Body and link that each row of the link arrays stands for.
+        places: Body and link of each row of the link arrays.
     """
 
     def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:

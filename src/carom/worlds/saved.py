@@ -1,4 +1,4 @@
-"""States of worlds to come back to."""
+"""Saved states of worlds."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class SavedWorlds:
     """States of some worlds; get them from `Worlds.save`.
 
     Attributes:
-        worlds: Which worlds they are states of, shape (n,).
+        worlds: The worlds whose states these are, shape (n,).
         times: Simulated time of each [s], shape (n,).
-        unspent_times: Part of it that no substep has covered yet [s], shape (n,).
-        state: Fields of `State`, the worlds in front.
-        contacts: Fields of `Contacts`, likewise; as many rows as the world with most contacts has.
+        unspent_times: Part of it not yet covered by a substep [s], shape (n,).
+        state: Fields of `State`; first axis: worlds.
+        contacts: Fields of `Contacts`, likewise, with the rows of the world with the most contacts.
     """
 
     worlds: np.ndarray
@@ -49,10 +49,10 @@ class SavedWorlds:
         return len(self.worlds)
 
     def rows_for(self, worlds: np.ndarray, count: int) -> np.ndarray:
-        """Which of the states each of some worlds gets.
+        """The index of the state that each of some worlds gets.
 
         Raises:
-            ValueError: There are not as many as are needed.
+            ValueError: The number of states is wrong.
         """
         if len(self) == 1:
             return np.zeros(len(worlds), dtype=np.int64)
@@ -66,10 +66,10 @@ class SavedWorlds:
         return np.arange(len(worlds))
 
     def put_back(self, engine: Engine, worlds: np.ndarray, rows: np.ndarray) -> None:
-        """Give worlds the states of some rows.
+        """Restore worlds from the states of some rows.
 
         Raises:
-            ValueError: They are states of other bodies; nothing has changed.
+            ValueError: They are states of other bodies; nothing is changed.
         """
         fields = dict(_fields(engine.arrays.state))
         if {name: array.shape[1:] for name, array in fields.items()} != {

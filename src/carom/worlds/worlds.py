@@ -31,36 +31,36 @@ if TYPE_CHECKING:
     from carom.gpu.device import Device
 
 _MOST_NAMED = 8
-"""Worlds that are named when many halt at once."""
+"""Maximum number of worlds named in a warning when several halt."""
 
 
 class Worlds:
-    """Many worlds with the same bodies, each with a state of its own.
+    """Many worlds with the same bodies, each with its own state.
 
-    Each goes on bit for bit as that world would alone, whatever the others do and however many threads share
-    them. What may differ between them besides their state: gravity, masses and inertias, how links touch,
-    damping, joint limits, and which user constraints hold. Arrays have the worlds in front: (count, ...).
+    Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
+    Besides the state, these may differ: gravity, masses and inertias, contact parameters, damping, joint
+    limits, and which user constraints are active. The first axis of arrays is the world: (count, ...).
 
     Attributes:
-        count: How many there are.
-        device: Where they are.
+        count: Number of worlds.
+        device: The device they are on.
         time_step: Duration of a step [s].
         times: Simulated time of each world [s], shape (count,).
-        halted: Which worlds stand still because a velocity in them came out as NaN or infinite, (count,).
-            They are as they were before that step; `restore` sets them going again.
+        halted: Which worlds are halted because a velocity became NaN or infinite, (count,). Their state is
+            that before the step; `restore` makes them run again.
 
     Args:
-        world: What each of them is like. It is copied, and stays as it is.
-        count: How many there are to be.
-        device: Where they are kept and stepped: "cpu", "cuda" or a GPU by number such as "cuda:1". On a GPU
-            what is a view here is an array there, `carom.gpu.array.DeviceArray`; docs/gpu.md has more.
-            ("warp-cpu" tries on the processor what a GPU would be asked for.)
-        threads: How many threads share them on the processor; None for as many as the process may use.
+        world: The world to copy; it is not changed.
+        count: Number of worlds.
+        device: Where they are stored and stepped: "cpu", "cuda" or a GPU by number such as "cuda:1". On a GPU
+            views are arrays on the GPU, `carom.gpu.array.DeviceArray`; docs/gpu.md has more.
+            ("warp-cpu" is for tests of the GPU code on the processor.)
+        threads: Number of threads on the processor; None for the number of cores available.
 
     Raises:
         ValueError: A number is less than 1, or there is no such device.
         ImportError: For a GPU Warp has to be installed.
-        MemoryError: There is no room for so many.
+        MemoryError: There is not enough memory for so many worlds.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class Worlds:
         """A body in all worlds.
 
         Args:
-            body: The body in the world they are copies of, or its number.
+            body: The body in the original world, or its number.
 
         Raises:
             KeyError: That world had no such body.
@@ -110,11 +110,11 @@ class Worlds:
     def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
 
-        A world whose velocities come out as NaN or infinite is halted; a `SimulationWarning` names it.
+        A world whose velocities become NaN or infinite is halted; a `SimulationWarning` names it.
 
         Args:
             count: How many steps.
-            where: Which worlds: a mask (count,) or their numbers; None for all.
+            where: Which worlds: a mask (count,) or their indices; None for all.
         """
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
@@ -130,7 +130,7 @@ class Worlds:
         if parameters.substeps <= 1:
             self._engine.step([1] * steps, None if len(running) == self.count else running)
         else:
-            # Worlds whose clocks differ get their substeps at different steps.
+            # Worlds whose clocks differ have their substeps at different steps.
             for unspent in np.unique(self._unspent_times[running]):
                 worlds = running[self._unspent_times[running] == unspent]
                 due, left = [], float(unspent)
@@ -139,7 +139,7 @@ class Worlds:
                     due.append(substeps)
                 self._engine.step(due, worlds)
                 self._unspent_times[worlds] = left
-        # One after the other, as a world alone adds them.
+        # One after the other, in the order of a single world, for the same rounding.
         for _ in range(steps):
             self.times[running] += self.time_step
         status = self._engine.status[running, STATUS]
@@ -147,7 +147,7 @@ class Worlds:
             self._halt(running[status > WELL], steps)
 
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
-        """Throw away what the failed step left besides the coordinates, as in a world alone, and say so."""
+        """Clear all other results of the failed step than the coordinates, as in a single world, and warn."""
         state = self._engine.arrays.state.numpy
         self.halted[worlds] = True
         state["link_reaction"][worlds] = 0.0
@@ -158,7 +158,7 @@ class Worlds:
         for world in worlds[:_MOST_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
             warnings.warn(
-                f"world {world} is halted: its body {name!r} came to a velocity that is not finite",
+                f"world {world} is halted: its body {name!r} has a velocity that is not finite",
                 SimulationWarning,
                 stacklevel=4,
             )
@@ -173,24 +173,24 @@ class Worlds:
     # States
 
     def save(self, where: ArrayLike | None = None) -> SavedWorlds:
-        """The present states, to come back to by `restore`.
+        """The present states, for `restore`.
 
         Args:
-            where: Which worlds: a mask (count,) or their numbers; None for all.
+            where: Which worlds: a mask (count,) or their indices; None for all.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
-        """Put worlds back to states of `save`; what follows is then the same as it was, to the last bit.
+        """Restore worlds to states of `save`; the steps that follow are then the same, bit for bit.
 
         Args:
-            start: States of all worlds: each of those chosen gets its own; or the state of one world,
-                which all get; or as many states as there are worlds chosen.
-            where: Which worlds: a mask (count,) or their numbers; None for all.
+            start: States of all worlds, of which each chosen world gets its own; or one state for all chosen
+                worlds; or one state for each chosen world.
+            where: Which worlds: a mask (count,) or their indices; None for all.
 
         Raises:
-            ValueError: The states are of other bodies, or there are not as many as are needed.
+            ValueError: The states are of other bodies, or their number is wrong.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
         rows = start.rows_for(worlds, self.count)
@@ -199,7 +199,7 @@ class Worlds:
         self.halted[worlds] = False
 
     def extract(self, world: int) -> World:
-        """A `World` that goes on exactly as one of these would.
+        """A copy of one of the worlds as a `World`, which continues exactly as it would.
 
         Raises:
             IndexError: There is no such world.
@@ -214,11 +214,11 @@ class Worlds:
         )
 
     def copy_coordinates(self, number: int, world: World) -> None:
-        """Put the bodies of a `World` where they are in one of these, to ask it what these cannot be asked.
+        """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
         Args:
-            number: The one of these.
-            world: A world with the same bodies, such as that which these are copies of. Its velocities stay.
+            number: Index of the world.
+            world: A world with the same bodies, such as the original. Its velocities do not change.
 
         Raises:
             IndexError: There is no such world.
@@ -244,15 +244,15 @@ class Worlds:
         self._engine.set_parameter("model", "gravity_vector", 0, gravity)
 
     def enable_constraint(self, constraint: UserConstraint | int, enabled: ArrayLike) -> None:
-        """Switch a user constraint on or off, world by world.
+        """Switch a user constraint on or off in each world.
 
         Args:
-            constraint: The constraint in the world they are copies of, or its number.
-            enabled: Whether it holds: one value, or one for each world.
+            constraint: The constraint in the original world, or its number.
+            enabled: Whether it is active: one value, or one for each world.
 
         Raises:
             KeyError: That world had no such constraint.
-            ValueError: There are not as many values as worlds.
+            ValueError: The number of values differs from that of worlds.
         """
         number = constraint if isinstance(constraint, int) else constraint.id
         if self._scene.user_constraints.get(number) is None:
@@ -271,7 +271,7 @@ class Worlds:
         link: int | str | None = None,
         other_link: int | str | None = None,
     ) -> ContactSummary:
-        """How a body touches another one, or anything, in each world, as the last step found it.
+        """Contacts of a body with another, or with anything, in each world, as of the last step.
 
         Args:
             body: The body.
@@ -291,9 +291,9 @@ class Worlds:
     def links_in_contact(
         self, body: Body | int, other: Body | int, other_link: int | str | None = None
     ) -> Mask:
-        """Which links of a body have a contact point with another body, as the last step found it.
+        """Which links of a body have a contact point with another body, as of the last step.
 
-        Points count that are still apart, as `ContactSummary.number` counts them.
+        Points that do not touch yet count as well, as in `ContactSummary.number`.
 
         Args:
             body: The body.
@@ -310,13 +310,13 @@ class Worlds:
         return ContactFinder(self._engine)
 
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
-        """What rays hit in each world.
+        """Results of rays in each world.
 
         Args:
-            starts: Where they start in world axes [m], shape (n, 3) for the same rays in all worlds, or
-                (count, n, 3).
-            ends: Where they end, likewise.
-            mask: Collision groups that are hit.
+            starts: Start points in world axes [m], shape (n, 3) for the same rays in all worlds, or (count,
+                n, 3).
+            ends: End points, likewise.
+            mask: Mask of the collision groups that are hit.
         """
         return self._ray_caster(starts, ends, mask)
 
@@ -325,11 +325,11 @@ class Worlds:
         return RayCaster(self._engine, self._scene.link_places)
 
     def images(self, camera: Camera, where: ArrayLike | None = None) -> Images:
-        """What a camera sees in each world.
+        """Camera images of each world.
 
         Args:
-            camera: A `Camera`, mounted on a link of the world they are copies of or standing in the world.
-            where: Which worlds: a mask (count,) or their numbers; None for all.
+            camera: A `Camera`, mounted on a link of the original world or fixed in the world.
+            where: Which worlds: a mask (count,) or their indices; None for all.
         """
         return take_images(
             self._scene, self._engine, camera, world_numbers(self._engine.take(where), self.count)

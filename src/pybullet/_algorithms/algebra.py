@@ -70,16 +70,16 @@ def calculateInverseDynamics(
     *,
     bodyIndex: Any = None,
 ) -> tuple[float, ...]:
-    """Joint forces that give accelerations, under gravity and without damping or motors.
+    """Joint torques or forces for given accelerations, with gravity, without damping and motors.
 
-    The state of the body does not matter and does not change. The coordinates are those of the joints
+    The state of the body is neither used nor changed. The coordinates are those of the joints
     that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw for its
     position. With a floating base the base comes first: in positions as position (3) and quaternion (4),
     in velocities, accelerations and forces as six numbers.
 
-    Gravity is PyBullet's: the base's inertial frame counts as parallel to the world when the base is
-    fixed, and turns by yaw, pitch and roll in the wrong order when it floats. So for a base that is turned
-    the forces that bear the weight are wrong; those of `carom.algorithms.inverse_dynamics` are right.
+    Gravity is PyBullet's: a fixed base's inertial frame is taken as parallel to the world frame, and a
+    floating base is rotated by yaw, pitch and roll in the wrong order. So for a rotated base the gravity
+    torques are wrong; those of `carom.algorithms.inverse_dynamics` are right.
 
     Args:
         bodyUniqueId: The body.
@@ -87,7 +87,7 @@ def calculateInverseDynamics(
         objVelocities: Velocities [rad/s or m/s].
         objAccelerations: Accelerations [rad/s² or m/s²].
         flags: 1 for another model that counts the base of every body and four coordinates for a spherical
-            joint; it takes accelerations to be 0.
+            joint; it ignores accelerations.
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.
 
@@ -128,7 +128,7 @@ def calculateInverseDynamics(
     floating = not body.fixed_base
     if full:
         positions = velocities = sum(body.position_count) + (_BASE_POSITIONS if floating else 0)
-        # PyBullet takes longer lists here.
+        # PyBullet accepts longer lists here.
         q, qd = q[:positions], qd[:velocities]
     else:
         positions = sum(body.velocity_count) + (_BASE_POSITIONS if floating else 0)
@@ -167,9 +167,9 @@ def calculateJacobian(
     objAccelerations: Vector,
     physicsClientId: int = 0,
 ) -> tuple[Matrix, Matrix]:
-    """How the velocity of a point on a link depends on the velocities of the joints.
+    """The Jacobian of a point on a link: from joint velocities to the velocity of the point.
 
-    The state of the body does not matter and does not change. The coordinates are those of the joints
+    The state of the body is neither used nor changed. The coordinates are those of the joints
     that are not fixed, in the order of `getJointInfo`.
 
     Args:
@@ -177,8 +177,8 @@ def calculateJacobian(
         linkIndex: The link, from 0; -1 for the base.
         localPosition: The point, from the origin of the link frame, in the axes of its inertial frame [m].
         objPositions: Positions [rad or m].
-        objVelocities: Velocities; they do not matter.
-        objAccelerations: Accelerations; they do not matter.
+        objVelocities: Velocities; not used.
+        objAccelerations: Accelerations; not used.
         physicsClientId: The connection.
 
     Returns:
@@ -234,14 +234,14 @@ def calculateJacobian(
 def calculateMassMatrix(
     bodyUniqueId: int, objPositions: Vector, flags: int = 0, physicsClientId: int = 0
 ) -> Matrix:
-    """The matrix that turns accelerations of the coordinates into forces.
+    """The joint-space mass matrix (inertia matrix).
 
-    The state of the body does not matter and does not change. The coordinates are those of the joints
+    The state of the body is neither used nor changed. The coordinates are those of the joints
     that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw.
 
     Args:
         bodyUniqueId: The body.
-        objPositions: Positions [rad or m]; more than there are coordinates do no harm.
+        objPositions: Positions [rad or m]; additional numbers are ignored.
         flags: 1 for another model that counts the base of every body, and four coordinates for a
             spherical joint; a floating base's position (3) and quaternion (4) then come first.
         physicsClientId: The connection.
@@ -286,7 +286,7 @@ def calculateMassMatrix(
 
 
 def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
-    """Positions as the engine has them: quaternions of spherical joints instead of three angles."""
+    """Positions as in the engine: quaternions of spherical joints instead of three angles."""
     if body.position_count == body.velocity_count:
         return values
     result: list[float] = []

@@ -1,4 +1,4 @@
-"""Joint positions that bring links to given places."""
+"""Inverse kinematics: joint positions for given poses of links."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
 _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
-# PyBullet is stuck where its steps leave more than this share of the distance.
+# PyBullet counts as stuck if its iteration leaves more than this share of the distance.
 _STUCK = 0.5
 _STEPS_WHERE_STUCK = 200
 
@@ -105,42 +105,42 @@ def calculateInverseKinematics(
     *,
     bodyIndex: Any = None,
 ) -> tuple[float, ...]:
-    """Joint positions at which a link is where it ought to be; nothing moves.
+    """Joint positions at which a link reaches a target pose; the body does not move.
 
-    The search starts at the present pose, or at `currentPositions`. Where PyBullet's own iteration comes
-    close enough, this is its result. Where it does not, the search goes on from there, and the result is
-    the nearest that was found; save for a position with an orientation and neither
-    `maxNumIterations` nor `residualThreshold`: that is PyBullet's result, unless it violates limits, or
-    leaves more than half of the distance, and more than 2 cm.
+    The search starts at the present pose, or at `currentPositions`. If PyBullet's own iteration comes close
+    enough, its result is returned. If not, the search continues from there, and the closest solution found is
+    returned. Exception: for a position with an orientation, without `maxNumIterations` and
+    `residualThreshold`, PyBullet's result is returned unless it violates limits, or leaves more than half of
+    the distance and more than 2 cm.
 
-    With limits the result keeps them, in any case. With `lowerLimits`, `upperLimits`, `jointRanges` and
-    `restPoses` joints are also drawn to their rest poses, a little with each call, as far as the link
-    does not mind. Lists that do not have a value for each freedom of the joints are ignored, as in
-    PyBullet.
+    With limits the result is always within them. With `lowerLimits`, `upperLimits`, `jointRanges` and
+    `restPoses` joints are also moved towards their rest poses (null-space control), a little with each call,
+    as far as this does not move the link. Lists that do not have a value for each degree of freedom of the
+    joints are ignored, as in PyBullet.
 
     Args:
         bodyUniqueId: The body.
         endEffectorLinkIndex: The link, from 0.
-        targetPosition: Where the origin of its link frame ought to be [m], in world axes; with
+        targetPosition: Target of the origin of its link frame [m], in the world frame; with
             `currentPositions` in the inertial frame of the base, as in PyBullet.
-        targetOrientation: What the axes of its inertial frame ought to be, a quaternion (x, y, z, w).
-        lowerLimits: Of every freedom of the joints [rad or m]. None where above the upper one.
-        upperLimits: The same, from above.
-        jointRanges: How far apart the limits are.
-        restPoses: Positions to which the joints are drawn.
-        jointDamping: How unwilling every joint is to move; 0.5 where not given.
-        solver: `IK_DLS`, damped least squares, or `IK_SDLS`, selectively damped ones. With rest poses
-            always the former.
+        targetOrientation: Target orientation of its inertial frame, a quaternion (x, y, z, w).
+        lowerLimits: One for each degree of freedom of the joints [rad or m]; no limit if above the upper one.
+        upperLimits: Upper limits.
+        jointRanges: Differences of upper and lower limits.
+        restPoses: Preferred joint positions.
+        jointDamping: Damping of each joint in the search; default 0.5.
+        solver: `IK_DLS`, damped least squares, or `IK_SDLS`, selectively damped least squares. With rest
+            poses always the former.
         currentPositions: Joint positions to start from.
-        maxNumIterations: Most steps of PyBullet's iteration; 20 if not given. As many for going on, and with
-            limits at least 300.
-        residualThreshold: Distance [m], and angle [rad], that are close enough; 1e-4 at first.
+        maxNumIterations: Maximum number of steps of PyBullet's iteration; default 20. The continued search
+            has the same maximum, with limits at least 300.
+        residualThreshold: Distance [m], and angle [rad], that are close enough; default 1e-4.
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.
 
     Returns:
-        A position for each freedom of the joints, in the order of `getJointInfo`; fixed joints have
-        none, spherical ones roll, pitch and yaw.
+        A position for each degree of freedom of the joints, in the order of `getJointInfo`; fixed joints have
+        none, spherical joints roll, pitch and yaw.
 
     Raises:
         pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
@@ -172,8 +172,8 @@ def calculateInverseKinematics(
     )
     _check_link(body, link)
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
-        # Who says nothing of accuracy has learnt to live with PyBullet's, in trained policies for one, and
-        # comes nearer with each call; but not where PyBullet is stuck.
+        # Scripts that do not ask for accuracy may depend on PyBullet's result (trained policies, for
+        # example), and come closer with each call; but not if PyBullet is stuck.
         options["further"], options["patience"] = _STEPS_WHERE_STUCK, _STUCK
 
     with client.lock:
@@ -199,27 +199,26 @@ def calculateInverseKinematics2(
     residualThreshold: float = -1,
     physicsClientId: int = 0,
 ) -> tuple[float, ...]:
-    """Joint positions at which several links are where they ought to be; nothing moves.
+    """Joint positions at which several links reach target positions; the body does not move.
 
     Args:
         bodyUniqueId: The body.
-        endEffectorLinkIndices: The links, from 0. More than there are positions do not count.
-        targetPositions: Where the origin of each link frame ought to be, as in
-            `calculateInverseKinematics`.
-        lowerLimits: This and what follows as in `calculateInverseKinematics`. (PyBullet forgets the
-            targets when it is given all four lists of limits and rest poses; here they count.)
-        upperLimits: Of every freedom of the joints [rad or m].
-        jointRanges: How far apart the limits are.
-        restPoses: Positions to which the joints are drawn.
-        jointDamping: How unwilling every joint is to move.
+        endEffectorLinkIndices: The links, from 0. Links without a position are ignored.
+        targetPositions: Targets of the origins of the link frames, as in `calculateInverseKinematics`.
+        lowerLimits: This and the following as in `calculateInverseKinematics`. (PyBullet ignores the targets
+            if all four lists of limits and rest poses are given; Carom does not.)
+        upperLimits: One for each degree of freedom of the joints [rad or m].
+        jointRanges: Differences of upper and lower limits.
+        restPoses: Preferred joint positions.
+        jointDamping: Damping of each joint in the search.
         solver: `IK_DLS` or `IK_SDLS`.
         currentPositions: Joint positions to start from.
-        maxNumIterations: Most steps.
+        maxNumIterations: Maximum number of steps.
         residualThreshold: Distance that is close enough [m].
         physicsClientId: The connection.
 
     Returns:
-        A position for each freedom of the joints, in the order of `getJointInfo`.
+        A position for each degree of freedom of the joints, in the order of `getJointInfo`.
 
     Raises:
         pybullet.error: Not connected, there is no such body or link, or an argument does not fit.
@@ -259,14 +258,14 @@ def calculateInverseKinematics2(
 
 @cache
 def _algorithm() -> Callable[..., tuple[float, ...]]:
-    """Imported when it is first needed: it brings Warp along."""
+    """Imported when first needed, for a quick import of the module."""
     from carom.algorithms import inverse_kinematics
 
     return inverse_kinematics
 
 
 def _orientation(values: Any) -> tuple[float, ...] | None:
-    """The orientation asked for. As in PyBullet, anything that has not four numbers is none."""
+    """The target orientation. As in PyBullet, anything without four numbers is ignored."""
     if values is None:
         return None
     try:
@@ -331,7 +330,7 @@ def _options(
 
 
 def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...] | None:
-    """A list that has one number, perhaps infinite, for each freedom; None where its length is another."""
+    """A list with one number, perhaps infinite, for each degree of freedom; None if its length differs."""
     if values is None:
         return None
     try:
@@ -351,7 +350,7 @@ def _check_link(body: Body, link: int) -> None:
 
 
 def _result(body: Body, coordinates: tuple[float, ...]) -> tuple[float, ...]:
-    """Positions as scripts have them: roll, pitch and yaw of spherical joints instead of a quaternion."""
+    """Positions in PyBullet's form: roll, pitch and yaw of spherical joints instead of a quaternion."""
     if body.position_count == body.velocity_count:
         return coordinates
     result: list[float] = []

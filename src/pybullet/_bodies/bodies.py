@@ -29,7 +29,7 @@ _HAS_SPHERICAL, _HAS_PLANAR = -1, -2
 
 @exported
 def getNumBodies(physicsClientId: int = 0) -> int:
-    """How many bodies there are.
+    """The number of bodies.
 
     Args:
         physicsClientId: The connection.
@@ -56,7 +56,7 @@ def getBodyUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
         physicsClientId: The connection.
 
     Returns:
-        Its id, or -1 when there are not that many.
+        Its id, or -1 if there are fewer bodies.
 
     Raises:
         pybullet.error: Not connected.
@@ -94,9 +94,9 @@ def getBodyInfo(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[bytes, byt
 
 @exported
 def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
-    """Takes a body out of the world. A body that does not exist is no error.
+    """Removes a body from the world. A body that does not exist is no error.
 
-    Its id is given to the body that is loaded next.
+    The next body loaded gets its id.
 
     Args:
         bodyUniqueId: The body.
@@ -123,14 +123,14 @@ def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
 
 @exported
 def getNumJoints(bodyUniqueId: int, physicsClientId: int = 0) -> int:
-    """How many joints a body has, fixed ones included; it has as many links besides its base.
+    """The number of joints of a body, fixed ones included: also the number of its links without the base.
 
     Args:
         bodyUniqueId: The body.
         physicsClientId: The connection.
 
     Returns:
-        The number of joints; 0 when there is no such body.
+        The number of joints; 0 if there is no such body.
 
     Raises:
         pybullet.error: Not connected.
@@ -145,15 +145,15 @@ def getNumJoints(bodyUniqueId: int, physicsClientId: int = 0) -> int:
 
 @exported
 def computeDofCount(bodyUniqueId: int, physicsClientId: int = 0) -> int:
-    """How many freedoms the joints of a body have; its base does not count.
+    """The number of degrees of freedom of a body's joints; its base does not count.
 
     Args:
         bodyUniqueId: The body.
         physicsClientId: The connection.
 
     Returns:
-        The number of revolute and prismatic joints; 0 when there is no such body. When there is a
-        spherical or planar joint, -1 or -2, whichever comes first.
+        The number of revolute and prismatic joints; 0 if there is no such body. With a spherical or planar
+        joint, -1 or -2, whichever comes first.
 
     Raises:
         pybullet.error: Not connected.
@@ -200,7 +200,9 @@ def getBasePositionAndOrientation(bodyUniqueId: int, physicsClientId: int = 0) -
 def resetBasePositionAndOrientation(
     bodyUniqueId: int, posObj: Vector, ornObj: Vector, physicsClientId: int = 0
 ) -> None:
-    """Moves the base of a body and stops it; the joints stay as they are. No such body is no error.
+    """Sets the pose of a body's base and its velocity to 0; joints do not change.
+
+    A body that does not exist is no error.
 
     Args:
         bodyUniqueId: The body.
@@ -257,14 +259,14 @@ def resetBaseVelocity(
     angularVelocity: Vector | None = None,
     physicsClientId: int = 0,
 ) -> None:
-    """Sets the velocity of a body's base. No such body is no error.
+    """Sets the velocity of a body's base. A body that does not exist is no error.
 
-    What has not three items stops the body, as in PyBullet, with a warning.
+    An argument without three items sets that velocity to 0, as in PyBullet, with a warning.
 
     Args:
         objectUniqueId: The body.
-        linearVelocity: Of the centre of mass [m/s], world axes; None leaves it as it is.
-        angularVelocity: [rad/s], world axes; None leaves it as it is.
+        linearVelocity: Of the centre of mass [m/s], world axes; None does not change it.
+        angularVelocity: [rad/s], world axes; None does not change it.
         physicsClientId: The connection.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Bodies as scripts see them: direct access to the state of the base, the joints and the links."""
+"""Direct access to the state of bodies: the base, the joints and the links."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class BodyAccess:
         body: The body itself.
         joints: Access to its joints, by index.
         groups: Access to several of its joints, by their indices.
-        record: What the native library is shown of it; None where Python sees to everything.
+        record: Its record for the native library; None if Python handles all calls.
     """
 
     def __init__(self, client: Client, body: Body) -> None:
@@ -79,17 +79,17 @@ class BodyAccess:
             write_moments(self._moments[link + 1], shape_terms(self.body, link))
 
     def commanded(self, group: JointGroup) -> None:
-        """Lets the native library see to the next commands to joints that have been commanded together."""
+        """Lets the native library handle the next commands to this group of joints."""
         if self.record is not None and group.record is not None:
-            # What the library sees is there as long as it sees it.
+            # The record lives as long as the library uses it.
             self.record.motors = None
             self._group = group
             self.record.motors = addressof(group.record)
 
     @cached_property
     def boxes(self) -> Mapping[int, LinkBox | SoftBox]:
-        """The boxes around the links, by index, -1 for the base."""
-        # Made late: most scripts never ask, and what it is made with takes long to import.
+        """The bounding boxes of the links, by index, -1 for the base."""
+        # Made on demand: most scripts never need it, and its imports take long.
         from pybullet._bodies.link_box import LinkBox, SoftBox
 
         if self.body.spec.soft is not None:
@@ -104,7 +104,7 @@ class BodyAccess:
 
     @cached_property
     def tree(self) -> MovingTree | None:
-        """Its equations of motion, if none of its joints has more than one freedom."""
+        """Its equations of motion, if none of its joints has more than one degree of freedom."""
         if any(freedoms > 1 for freedoms in self.body.velocity_count):
             return None
         from carom.algorithms.moving_tree import moving_tree
@@ -117,7 +117,7 @@ class BodyAccess:
         return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
 
     def forget_inertia(self) -> None:
-        """Drop what depends on masses and inertias. Some scripts burn fuel, changing a mass at every step."""
+        """Drop data that depend on masses and inertias. Some scripts change a mass at every step."""
         self.__dict__.pop("tree", None)
 
     def base_pose(self) -> tuple[Vector3, Quaternion]:
@@ -135,7 +135,7 @@ class BodyAccess:
         return self.base_pose() if link < 0 else self.links[link].pose()
 
     def place_base(self, position: Vector3, orientation: Quaternion) -> None:
-        """Puts the base at rest somewhere, as `resetBasePositionAndOrientation` does."""
+        """Sets the pose of the base and its velocity to 0, as `resetBasePositionAndOrientation` does."""
         with self._client.lock:
             if self.body.spec.soft is not None:
                 self.body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -143,7 +143,7 @@ class BodyAccess:
             self.body.set_base_pose(position, orientation)
 
     def push(self, link: int, force: Vector3, torque: Vector3) -> None:
-        """Adds to the force and the torque on a link, -1 for the base, about its centre of mass [N, N m]."""
+        """Adds a force and a torque about the centre of mass [N, N m] to a link, -1 for the base."""
         wrenches = self._client.world.link_force_memory
         at = (self.body.first_link + 1 + link) * _SPATIAL.size
         fx, fy, fz, tx, ty, tz = _read_spatial(wrenches, at)
@@ -152,15 +152,15 @@ class BodyAccess:
 
 
 class BodyTable(dict[int, BodyAccess]):
-    """Access to the bodies of one client by id; an entry is made when it is first asked for.
+    """Access to the bodies of one client by id; an entry is made on first use.
 
     Asking for a body that does not exist raises `KeyError`.
 
     Attributes:
         client: The client; set once.
-        forces_of_motion: What `calculateInverseDynamics` asks, by the ids of bodies it was called for: a
-            plain dictionary, because Python finds an item of that in no time.
-        quick: The same bodies as the native library finds them, if it may look at them.
+        forces_of_motion: The functions for `calculateInverseDynamics`, by body id: a plain dictionary,
+            because it is fastest.
+        quick: The records of these bodies for the native library, if it may use them.
     """
 
     __slots__ = ("client", "forces_of_motion", "quick")
@@ -172,14 +172,14 @@ class BodyTable(dict[int, BodyAccess]):
         self.quick: QuickBodies | None = None
 
     def forget(self, body_id: int) -> None:
-        """Drop the access to a body, which is about to be another one."""
+        """Drop the access to a body whose id will be used for another."""
         if self.quick is not None:
             self.quick.hide(body_id)
         self.pop(body_id, None)
         self.forces_of_motion.pop(body_id, None)
 
     def forget_inertia(self, body_id: int) -> None:
-        """Drop what depends on the masses and inertias of a body."""
+        """Drop data that depend on the masses and inertias of a body."""
         access = self.get(body_id)
         if access is not None:
             access.forget_inertia()

@@ -23,13 +23,13 @@ DynamicsInfo = tuple[
 
 _MULTI_BODY, _SOFT_BODY = 2, 3
 
-# Defaults. They are told by identity, as an array, which is no number either, cannot be compared.
+# Defaults, recognised by identity, because arrays cannot be compared with `==`.
 _UNCHANGED, _NO_LIMIT = -1, 1
-# Bounds and thresholds, which may be as great as one likes.
+# Limits and thresholds, which may be infinite.
 _ANY_SIZE = frozenset(
     {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
 )
-# What a `BodyAccess` is made with, and what only its equations of motion are.
+# Parameters that a `BodyAccess` depends on, and those that only its equations of motion depend on.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}
 
@@ -114,12 +114,12 @@ def changeDynamics(
     sleepThreshold: float = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """Changes a link, the joint that carries it, or the whole body. Negative numbers change nothing.
+    """Changes parameters of a link, of its joint, or of the whole body. Negative numbers change nothing.
 
-    PyBullet has a trap here, which is kept: damping, activation state, greatest velocity and collision
-    margin belong to the body, and when one of them is what it looks at last, in the order written below,
-    then everything else in the same call goes to the base as well. Use one call for the body and another
-    for the link; a warning is logged when it happens. A body or link that does not exist is no error.
+    PyBullet has a trap here, which is kept: damping, activation state, maximum velocity and collision margin
+    belong to the body. If one of them is the last of the arguments given, in the order written below, all
+    others in the same call go to the base as well. Use one call for the body and another for the link; a
+    warning is logged if it happens. A body or link that does not exist is no error.
 
     The order: jointLimitForce, joint limits, mass, anisotropicFriction, localInertiaDiagonal,
     lateralFriction, spinningFriction, rollingFriction, linearDamping*, angularDamping*, jointDamping,
@@ -133,26 +133,26 @@ def changeDynamics(
         lateralFriction: Coulomb coefficient.
         spinningFriction: Torque about the contact normal per normal force [m].
         rollingFriction: Torque about the tangents per normal force [m].
-        restitution: Fraction of the normal speed that comes back.
-        linearDamping: Of the whole body [1/s]; 0.04 at first.
-        angularDamping: Of the whole body [1/s]; 0.04 at first.
-        contactStiffness: Spring of contacts [N/m]; together with `contactDamping`.
-        contactDamping: Damper of contacts [N s/m]; together with `contactStiffness`.
-        frictionAnchor: 1: friction draws back to where it started.
+        restitution: Coefficient of restitution.
+        linearDamping: Of the whole body [1/s]; default 0.04.
+        angularDamping: Of the whole body [1/s]; default 0.04.
+        contactStiffness: Stiffness of contacts [N/m]; needs `contactDamping` as well.
+        contactDamping: Damping of contacts [N s/m]; needs `contactStiffness` as well.
+        frictionAnchor: 1: friction pulls a contact point back to where it began to stick.
         localInertiaDiagonal: Principal moments of inertia [kg m²].
         ccdSweptSphereRadius: Of continuous collision detection [m].
         contactProcessingThreshold: Distance beyond which contacts are not solved [m].
-        activationState: `ACTIVATION_STATE_*`, added up. A body with `ENABLE_SLEEPING` that hardly moves for
-            2 s, and all near it likewise, takes no part until one of them moves: it feels neither forces nor
-            motors nor gravity, and velocities given to it are lost.
+        activationState: `ACTIVATION_STATE_*`, added up. A body with `ENABLE_SLEEPING` falls asleep if it and
+            all bodies near it hardly move for 2 s, until one of them moves: forces, motors and gravity do not
+            act on it, and velocities set for it are lost.
         jointDamping: [N m s/rad or N s/m].
         anisotropicFriction: Factor on friction along the axes of the link.
-        maxJointVelocity: Greatest velocity of every coordinate of the body [rad/s, m/s]; 100 at first.
+        maxJointVelocity: Maximum velocity of every coordinate of the body [rad/s, m/s]; default 100.
         collisionMargin: Of the base's shapes [m].
-        jointLowerLimit: [rad or m]; the limits change when it is not greater than the upper one.
+        jointLowerLimit: [rad or m]; limits are changed if it is not greater than the upper one.
         jointUpperLimit: [rad or m].
-        jointLimitForce: Greatest force of the limits [N m or N].
-        sleepThreshold: Sum of all its squared velocities below which a body may sleep; 0.05 at first.
+        jointLimitForce: Maximum force of the limits [N m or N].
+        sleepThreshold: Sum of all its squared velocities below which a body may sleep; default 0.05.
         physicsClientId: The connection.
 
     Raises:
@@ -167,7 +167,7 @@ def changeDynamics(
     client = client_of(physicsClientId)
     named_link = integer(linkIndex, "linkIndex")
     changes = _Changes(named_link)
-    # In the order in which PyBullet looks at them, see the docstring.
+    # In PyBullet's order, see the docstring.
     if jointLimitForce is not _UNCHANGED:
         changes.take("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
     if sleepThreshold is not _UNCHANGED:
@@ -228,7 +228,7 @@ def changeDynamics(
             named_link,
         )
     with client.lock:
-        # First, lest an interrupt leave what knows the body as it was.
+        # First, so that after an interrupt no old data of the body remain.
         if not _LIMITS.isdisjoint(changes.values):
             client.bodies.forget(body.id)
         elif not _INERTIA.isdisjoint(changes.values):
@@ -245,7 +245,7 @@ def changeDynamics(
 def enableJointForceTorqueSensor(
     bodyUniqueId: int, jointIndex: int, enableSensor: int = 1, physicsClientId: int = 0
 ) -> None:
-    """Switches the sensor of a joint on or off that `getJointState` reads.
+    """Switches the force-torque sensor of a joint on or off, which `getJointState` reads.
 
     Args:
         bodyUniqueId: The body.
@@ -278,12 +278,12 @@ def _refuse_size(name: str, value: float) -> NoReturn:
 
 
 class _Changes:
-    """What a call of `changeDynamics` changes, and the link it goes to.
+    """The changes of a call of `changeDynamics`, and their link.
 
     Attributes:
         link: The link that was addressed last.
         values: New values by name.
-        misdirected: Names of those that were meant for a link.
+        misdirected: Names of values intended for a link.
     """
 
     __slots__ = ("_named_link", "link", "misdirected", "values")

@@ -1,4 +1,4 @@
-"""Forces and torques from outside, for the next step."""
+"""External forces and torques, for the next step."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ def applyExternalForce(
     flags: int,
     physicsClientId: int = 0,
 ) -> None:
-    """Pushes a link during the next step. Forces add up. A body that does not exist is no error.
+    """Applies a force to a link in the next step. Forces add up. A body that does not exist is no error.
 
     Args:
         objectUniqueId: The body.
-        linkIndex: The link, from 0; -1 for the base. Of a soft body the node; -1 for all of it.
+        linkIndex: The link, from 0; -1 for the base. For a soft body the node; -1 for all nodes.
         forceObj: Force [N].
         posObj: Where it acts [m].
         flags: `WORLD_FRAME`: both are in the world frame. `LINK_FRAME`: both are in the inertial frame of
@@ -84,7 +84,7 @@ def applyExternalForce(
 def applyExternalTorque(
     objectUniqueId: int, linkIndex: int, torqueObj: Vector, flags: int, physicsClientId: int = 0
 ) -> None:
-    """Turns a link during the next step. Torques add up. A body that does not exist is no error.
+    """Applies a torque to a link in the next step. Torques add up. A body that does not exist is no error.
 
     Args:
         objectUniqueId: The body.
@@ -117,7 +117,7 @@ def applyExternalTorque(
 
 
 def _push_node(body: Body, node_index: int, force: Vector3, frame: int) -> None:
-    """Adds to the force on a node of a soft body, or shares a force out to all of them, for -1."""
+    """Adds a force to a node of a soft body, or, for -1, distributes it over all nodes."""
     from carom.scene.soft_body import SoftBody
 
     assert isinstance(body, SoftBody)
@@ -141,7 +141,7 @@ def _frame(flags: int) -> int:
 
 
 def _body(client: Client, body_id: int, link_index: int, function: str) -> BodyAccess | None:
-    """Access to a body that has a link, None when there is no such body."""
+    """Access to a body that has a link, None if there is no such body."""
     body = client.body(body_id)
     link = integer(link_index, "linkIndex")
     if body is None:

@@ -1,4 +1,4 @@
-"""Links as scripts see them: direct access to their poses and velocities."""
+"""Direct access to poses and velocities of links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The boxes around the shapes of links, for `getAABB`."""
+"""The bounding boxes of links, for `getAABB`."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class LinkBox:
 
 
 class SoftBox:
-    """The box around a soft body, wherever its nodes are when it is asked for."""
+    """The bounding box of a soft body, for the present positions of its nodes."""
 
     __slots__ = ("_body",)
 
@@ -67,6 +67,6 @@ class SoftBox:
         self._body = body
 
     def corners(self) -> tuple[Vector3, Vector3]:
-        """The lowest and the highest corner, in the world frame [m]."""
+        """The minimum and the maximum corner, in the world frame [m]."""
         (ax, ay, az), (bx, by, bz) = (corner.tolist() for corner in self._body.bounds())
         return (ax, ay, az), (bx, by, bz)

@@ -11,6 +11,6 @@ Place = tuple[int, int]
 
 
 def places(world: World, rows: list[int]) -> list[Place | None]:
-    """Body and link, -1 for the base, that rows of link arrays stand for; None for negative rows."""
+    """Body and link, -1 for the base, of rows of link arrays; None for negative rows."""
     table = world.link_places
     return [table[row] if row >= 0 else None for row in rows]

@@ -1,4 +1,4 @@
-"""Where links are and how they move."""
+"""Poses and velocities of links."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ def getLinkState(
     computeForwardKinematics: int = 0,
     physicsClientId: int = 0,
 ) -> LinkState | LinkStateWithVelocity | None:
-    """Pose of a link and, if asked for, its velocity.
+    """Pose of a link and, on request, its velocity.
 
     After `stepSimulation` the poses are those at the beginning of its last substep, as in PyBullet;
-    `computeForwardKinematics=1` brings them up to date.
+    `computeForwardKinematics=1` updates them.
 
     Args:
         bodyUniqueId: The body.
-        linkIndex: The link, from 0; it has the index of the joint that carries it.
-        computeLinkVelocity: 1 for the velocities too.
-        computeForwardKinematics: 1 to bring the poses up to date first.
+        linkIndex: The link, from 0; its index is that of its parent joint.
+        computeLinkVelocity: 1 to return the velocities as well.
+        computeForwardKinematics: 1 to update the poses first.
         physicsClientId: The connection.
 
     Returns:
         6 fields: 0 position [m] and 1 quaternion (x, y, z, w) of the inertial frame in the world, its
         origin being the centre of mass; 2 position and 3 quaternion of the inertial frame in the link
         frame; 4 position and 5 quaternion of the link frame in the world. With `computeLinkVelocity`
-        also 6 velocity of the centre of mass [m/s] and 7 angular velocity [rad/s], world axes. None
-        when the body has fewer links.
+        also 6 velocity of the centre of mass [m/s] and 7 angular velocity [rad/s], world axes. None if the
+        body has fewer links.
 
     Raises:
         pybullet.error: Not connected, there is no such body, or the index is negative.
@@ -75,7 +75,7 @@ def getLinkState(
     if index < 0:
         fail(
             "getLinkState failed; invalid linkIndex",
-            f"{index} is no link; for the base see getBasePositionAndOrientation.",
+            f"{index} is not a link; for the base see getBasePositionAndOrientation.",
         )
     with_velocity = _prepare(access, computeLinkVelocity, computeForwardKinematics)
     return _state(access, index, with_velocity)
@@ -89,13 +89,13 @@ def getLinkStates(
     computeForwardKinematics: int = 0,
     physicsClientId: int = 0,
 ) -> tuple[LinkState | LinkStateWithVelocity | None, ...]:
-    """Poses of several links and, if asked for, their velocities.
+    """Poses of several links and, on request, their velocities.
 
     Args:
         bodyUniqueId: The body.
         linkIndices: The links, in any order.
-        computeLinkVelocity: 1 for the velocities too.
-        computeForwardKinematics: 1 to bring the poses up to date first.
+        computeLinkVelocity: 1 to return the velocities as well.
+        computeForwardKinematics: 1 to update the poses first.
         physicsClientId: The connection.
 
     Returns:
@@ -127,7 +127,7 @@ def getLinkStates(
 
 
 def _prepare(access: BodyAccess, compute_velocity: Any, compute_kinematics: Any) -> bool:
-    """Brings up to date what was asked for; tells whether velocities were."""
+    """Updates the poses and velocities asked for; returns whether velocities were."""
     with_velocity = integer(compute_velocity, "computeLinkVelocity") != 0
     with_kinematics = integer(compute_kinematics, "computeForwardKinematics") != 0
     if with_kinematics:

@@ -1,8 +1,8 @@
-"""What quick calls know of the bodies of a connection.
+"""The records of a connection's bodies for quick calls.
 
-A record of addresses stands for each body that `BodyTable` has, and goes with it: whatever moves rows of the
-state makes the table forget its bodies. The arrays that addresses are of are kept as long as the record is
-there, so that what is out of date could only be wrong, and not somebody else's memory.
+Each body in `BodyTable` has a record of addresses, which is dropped together with it: whatever moves rows of
+the state makes the table forget its bodies. A record keeps its arrays alive, so that an outdated address
+could give wrong values, but never point to freed memory.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _POSE_ROW, _SPATIAL_ROW = 7 * _DOUBLE, 6 * _DOUBLE
 # Names of attributes are interned.
 _TIME_STEP, _JOINT_COUNT, _NAMES = map(sys.intern, ("time_step", "joint_count", "_encoded_names"))
 _FIRST_ROOM = 16
-# Bodies of greater numbers are left to Python.
+# Bodies of higher numbers are handled by Python.
 _MOST_ROOM = 1 << 20
 
 
 class QuickBodies:
-    """The bodies of a connection as quick calls find them, until it is closed.
+    """The records of a connection's bodies for quick calls, until it is closed.
 
     Args:
         calls: The quick calls.
@@ -47,7 +47,7 @@ class QuickBodies:
         self._clients = calls.clients
         self._number: int | None = number
         self._places: Array[c_void_p] = (c_void_p * _FIRST_ROOM)()
-        # What addresses point to, by the number of the body.
+        # The arrays that addresses point to, by the number of the body.
         self._shown: dict[int, Any] = {}
         lock = client.lock
         self._kept = (client.world.quick, lock.acquire, lock.release, (False,), client.world.bodies)
@@ -67,16 +67,16 @@ class QuickBodies:
         self._clients[number] = addressof(self._record)
 
     def close(self) -> None:
-        """Leave all calls that name the connection to Python."""
+        """Let Python handle all calls for the connection."""
         if self._number is not None:
             self._clients[self._number] = None
             self._number = None
 
-    # A script may end, or drop the module, without disconnecting.
+    # A script may end, or unload the module, without disconnecting.
     __del__ = close
 
     def show(self, access: BodyAccess) -> None:
-        """Show a body to the library, unless it is a soft one."""
+        """Give the record of a body to the library, unless it is soft."""
         body = access.body
         if body.spec.soft is not None or body.id >= _MOST_ROOM:
             return
@@ -104,13 +104,13 @@ class QuickBodies:
         self._places[body.id] = addressof(record)
 
     def hide(self, body_id: int) -> None:
-        """Show a body no more."""
+        """Withdraw the record of a body."""
         if body_id in self._shown:
             self._places[body_id] = None
             del self._shown[body_id]
 
     def hide_all(self) -> None:
-        """Show no body any more."""
+        """Withdraw all records."""
         self._record.body_count = 0
         for body_id in self._shown:
             self._places[body_id] = None
@@ -120,7 +120,7 @@ class QuickBodies:
     def _make_room(self, count: int) -> None:
         places = (c_void_p * max(count, 2 * len(self._places)))()
         places[: len(self._places)] = self._places[:]
-        # The library sees no bodies while it sees neither table.
+        # Without both tables the library finds no bodies.
         self._record.body_count = 0
         self._record.bodies = addressof(places)
         self._places = places
@@ -140,7 +140,7 @@ def _joint_records(body: Handle) -> Array[Joint]:
 
 
 def link_records(links: Collection[LinkAccess]) -> Array[Link]:
-    """What the library is shown of the links of a body other than its base."""
+    """The records of a body's links, except the base, for the library."""
     records = (Link * len(links))()
     for record, link in zip(records, links, strict=True):
         position, orientation = link.frame

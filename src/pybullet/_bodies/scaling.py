@@ -1,4 +1,4 @@
-"""Making the shapes of a body larger or smaller."""
+"""Scaling the shapes of a body."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 __all__ = ["unsupportedChangeScaling"]
 
 _WRONG = "scaling needs a 3 coordinates [x,y,z]."
-# What the shapes of a base were before they were scaled first.
+# The shapes of a base before they were scaled for the first time.
 _unscaled: WeakKeyDictionary[Body, tuple[Collision, ...]] = WeakKeyDictionary()
 
 
 @exported
 def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId: int = 0) -> None:
-    """Scales the collision shapes of a body's base, against the size they were loaded with.
+    """Scales the collision shapes of a body's base, relative to the size at loading.
 
-    Mass, inertia, joints, other links and looks stay as they are. Balls take the factor of x, capsules
+    Mass, inertia, joints, other links and visual shapes do not change. Balls use the factor of x, capsules
     those of y and z. A body that does not exist is no error.
 
     Args:
@@ -36,7 +36,7 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
 
     Raises:
         pybullet.error: Not connected, the factors are not three finite numbers greater than 0, or a shape
-            cannot be scaled by them: cylinders have to stay round, and heightfields as they are.
+            cannot be scaled by them: cylinders have to stay round, and heightfields cannot be scaled.
 
     Examples:
         >>> p.unsupportedChangeScaling(cube, [2, 2, 2])

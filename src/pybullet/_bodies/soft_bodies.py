@@ -1,4 +1,4 @@
-"""What only soft bodies have: anchors, tetrahedra, nodes that are put elsewhere."""
+"""Functions for soft bodies only: anchors, tetrahedra, positions of nodes."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ def createSoftBodyAnchor(
     bodyFramePosition: Vector | None = None,
     physicsClientId: int = 0,
 ) -> int:
-    """Holds a node of a soft body where it is, in the world or at a link, which feels its pull.
+    """Anchors a node of a soft body at its present place, in the world or on a link, which feels the force.
 
     Args:
         softBodyBodyUniqueId: The soft body.
         nodeIndex: Its node, from 0; see `getMeshData` with `MESH_DATA_SIMULATION_MESH`.
         bodyUniqueId: The body that holds it; -1 for the world.
         linkIndex: Its link; -1 for the base.
-        bodyFramePosition: Without effect, as in PyBullet: the node stays where it is.
+        bodyFramePosition: No effect, as in PyBullet: the node is held at its present place.
         physicsClientId: The connection.
 
     Returns:
@@ -81,7 +81,7 @@ def getTetraMeshData(
         physicsClientId: The connection.
 
     Returns:
-        (how many, (x, y, z) of each in the world frame [m]).
+        (number of corners, (x, y, z) of each in the world frame [m]).
 
     Raises:
         pybullet.error: Not connected, or the body is not soft.
@@ -101,7 +101,7 @@ def getTetraMeshData(
 
 @exported
 def resetMeshData(bodyUniqueId: int, vertices: Vectors, physicsClientId: int = 0) -> None:
-    """Puts the nodes of a soft body elsewhere; they keep their velocities.
+    """Sets the positions of a soft body's nodes; they keep their velocities.
 
     Args:
         bodyUniqueId: The body.
@@ -110,8 +110,8 @@ def resetMeshData(bodyUniqueId: int, vertices: Vectors, physicsClientId: int = 0
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, the body is not soft, or there are not as many as it has nodes, each of
-            three finite numbers.
+        pybullet.error: Not connected, the body is not soft, or `vertices` does not have three finite numbers
+            for each node.
 
     Examples:
         >>> p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)

@@ -34,7 +34,7 @@ def addUserData(
     visualShapeIndex: int = -1,
     physicsClientId: int = 0,
 ) -> int:
-    """Attaches a text to a body. One of the same place and key is replaced and keeps its id.
+    """Attaches a text to a body. An existing text with the same place and key is replaced and keeps its id.
 
     Args:
         bodyUniqueId: The body.
@@ -45,7 +45,7 @@ def addUserData(
         physicsClientId: The connection.
 
     Returns:
-        Its id. Those of removed texts are given out again, the last one first.
+        Its id. Ids of removed texts are used again, the last one first.
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
@@ -72,7 +72,7 @@ def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
         physicsClientId: The connection.
 
     Returns:
-        The text, as bytes; None when there is no such id.
+        The text, as bytes; None if there is no such id.
 
     Raises:
         pybullet.error: Not connected.
@@ -103,7 +103,7 @@ def getUserDataId(
         physicsClientId: The connection.
 
     Returns:
-        Its id, or -1 when there is none.
+        Its id, or -1 if there is none.
 
     Raises:
         pybullet.error: Not connected.
@@ -119,14 +119,14 @@ def getUserDataId(
 
 @exported
 def getNumUserData(bodyUniqueId: int, physicsClientId: int = 0) -> int:
-    """How many texts a body has, its links and shapes included.
+    """The number of texts of a body, its links and shapes included.
 
     Args:
         bodyUniqueId: The body.
         physicsClientId: The connection.
 
     Returns:
-        The number; 0 when there is no such body.
+        The number; 0 if there is no such body.
 
     Raises:
         pybullet.error: Not connected.
@@ -146,11 +146,11 @@ def getUserDataInfo(
 
     Args:
         bodyUniqueId: The body.
-        userDataIndex: From 0 to `getNumUserData() - 1`. Removing a text puts the last in its place.
+        userDataIndex: From 0 to `getNumUserData() - 1`. Removing a text moves the last to its place.
         physicsClientId: The connection.
 
     Returns:
-        (id, key, body, link, visual shape); link and shape are -1 where the text belongs to none.
+        (id, key, body, link, visual shape); link and shape are -1 if the text belongs to none.
 
     Raises:
         pybullet.error: Not connected, or there are not that many texts.
@@ -191,10 +191,10 @@ def removeUserData(userDataId: int, physicsClientId: int = 0) -> None:
 
 @exported_as("(bodyUniqueId=-1, physicsClientId=0, *, bodyUniqueIds=None)")
 def syncUserData(bodyUniqueId: Any = -1, physicsClientId: int = 0, *, bodyUniqueIds: Any = None) -> None:
-    """Reads texts anew, as far as other clients of the same world may have changed them.
+    """Updates the texts that other clients of the same world may have changed.
 
-    A client of a server knows the texts there were when it connected, and its own changes since. A world
-    without other clients is always up to date.
+    A client of a server knows the texts as of the time when it connected, and its own changes since. Without
+    other clients texts are always up to date.
 
     Args:
         bodyUniqueId: The body, or a sequence of bodies; -1 for all.
@@ -257,11 +257,11 @@ READERS: dict[str, Callable[..., Any]] = {
     "getNumUserData": _count,
     "getUserDataInfo": _info,
 }
-"""What answers the questions about texts, by the name of the function; its first argument are all texts."""
+"""Functions that answer queries about texts, by public name; their first argument is all texts."""
 
 
 def _c_string(value: Any, name: str) -> str:
-    """A text that C can hold."""
+    """A text as a C string."""
     words = text(value, name)
     if "\0" in words:
         fail(f"{name} must not contain a null character: {words!r}.")

@@ -1,7 +1,7 @@
-"""What a client knows of the texts of a world that others change too.
+"""A client's copy of the texts of a world that others change too.
 
-In PyBullet every client has a copy of all texts: that of the moment when it connected, with its own changes
-since. What others change appears in it after `syncUserData`.
+In PyBullet every client has a copy of all texts as of the time when it connected, with its own changes since.
+Changes by others appear after `syncUserData`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class UserDataView:
     def call(
         self, function: Function, arguments: Any, keywords: dict[str, Any], go_on: Callable[[], Any]
     ) -> Any:
-        """Answers a call out of the copy, or lets it go on to the world and takes over what it changes.
+        """Answers a call from the copy, or passes it on to the world and copies the changes.
 
         Args:
             function: What is called.
@@ -62,7 +62,7 @@ class UserDataView:
         return result
 
     def _take_over(self, name: str, bound: BoundArguments, result: Any) -> None:
-        """Does to the copy what a call has done to the world."""
+        """Makes the same change in the copy as in the world."""
         given = bound.arguments
         match name:
             case "addUserData":
@@ -80,7 +80,7 @@ class UserDataView:
                 self._synchronise(given["bodyUniqueId"], given["bodyUniqueIds"])
 
     def _loaded(self, result: Any) -> Any:
-        """Copies what the file of new bodies states, which PyBullet does only when it is asked to."""
+        """Copies the texts in the files of new bodies, which PyBullet does only on request."""
         self._read_anew(result if isinstance(result, tuple) else (result,))
         return result
 
@@ -94,7 +94,7 @@ class UserDataView:
             self._read_anew((asked,))
 
     def _read_all(self) -> None:
-        """Copies all texts there are."""
+        """Copies all texts."""
         self._known = UserData()
         count = self._ask("getNumBodies")
         self._read_anew(tuple(self._ask("getBodyUniqueId", place) for place in range(count)))

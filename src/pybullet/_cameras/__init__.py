@@ -1,1 +1,1 @@
-"""Camera images and films."""
+"""Camera images and videos."""

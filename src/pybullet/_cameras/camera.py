@@ -49,42 +49,43 @@ def getCameraImage(
     projectiveTextureProj: Vector | None = None,
     physicsClientId: int = 0,
 ) -> tuple[int, int, NDArray[np.uint8], NDArray[np.float32], NDArray[np.int32]]:
-    """Takes a picture of the world. Needs neither a GPU nor a display.
+    """Renders a camera image of the world. Needs neither a GPU nor a display.
 
-    What is said about the light, shadows included, holds for the images that follow, too.
+    Settings of the light, including shadows, also apply to later images.
 
     Args:
         width: Number of columns, from 1 to 16384; there may be up to 64 million pixels.
         height: Number of rows.
         viewMatrix: World to camera, 16 numbers column after column, as from `computeViewMatrix`.
-        projectionMatrix: Camera to image, as from `computeProjectionMatrixFOV`. When one of the two is
-            left out, the camera is that of the window, or without one looks at the origin from near by.
-        lightDirection: Towards the light, world axes; (-50, 30, 100) at first.
-        lightColor: Red, green and blue of the light; (1, 1, 1) at first.
-        lightDistance: Shadows are those of a lamp so far from the origin of the world [m]; 2 at first. It
-            lights what the camera's field of view shows when placed there. Negative: as before.
-        shadow: 1 for shadows, 0 for none; -1 as before, at first none.
-        lightAmbientCoeff: Share of the colour seen without light; 0.6 at first. Negative: as before.
-        lightDiffuseCoeff: Share seen the more, the more a surface faces the light; 0.35 at first.
-        lightSpecularCoeff: Strength of highlights; 0.05 at first.
+        projectionMatrix: Camera to image, as from `computeProjectionMatrixFOV`. If one of the two is not
+            given, the camera is that of the window, or without a window one near the origin that looks at it.
+        lightDirection: Towards the light, world axes; default (-50, 30, 100).
+        lightColor: Red, green and blue of the light; default (1, 1, 1).
+        lightDistance: Distance of the lamp that casts shadows from the world's origin [m]; default 2. It
+            lights what the camera would see from there. Negative: no change.
+        shadow: 1 for shadows, 0 for none; -1: no change; default none.
+        lightAmbientCoeff: Ambient share of the colour, visible without light; default 0.6. Negative: no
+            change.
+        lightDiffuseCoeff: Diffuse share of the colour; default 0.35.
+        lightSpecularCoeff: Strength of highlights; default 0.05.
         renderer: `ER_TINY_RENDERER` or `ER_BULLET_HARDWARE_OPENGL`: there is one renderer for both.
         flags: `ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX`, `ER_NO_SEGMENTATION_MASK` and
             `ER_USE_PROJECTIVE_TEXTURE`, added up.
-        projectiveTextureView: With that last flag: world to the projector that casts the textures; the
-            camera itself when left out.
+        projectiveTextureView: For `ER_USE_PROJECTIVE_TEXTURE`: view matrix of the projector of textures; by
+            default that of the camera.
         projectiveTextureProj: Projector to the square of the texture, whose lower left corner is (0, 0).
         physicsClientId: The connection.
 
     Returns:
         (width, height, colours, depth, segmentation). Colours: (height, width, 4) uint8, red, green, blue,
-        255, white where there is nothing. Depth: (height, width) float32 as in OpenGL's buffer; the
+        255, white for the background. Depth: (height, width) float32 as in OpenGL's buffer; the
         distance along the view is far * near / (far - (far - near) * depth) [m]. Segmentation:
         (height, width) int32 body ids, -1 where there is nothing; with the flag
         `ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX` body id + (link index + 1) << 24. Row 0 is the top.
 
     Raises:
-        pybullet.error: Not connected, the size is out of range, or a matrix, a colour or the direction of
-            the light is not fit.
+        pybullet.error: Not connected, the size is out of range, or a matrix, a colour or the direction of the
+            light is invalid.
 
     Examples:
         >>> view = p.computeViewMatrix([2, 0, 1], [0, 0, 0.5], [0, 0, 1])
@@ -143,7 +144,7 @@ def getCameraImage(
 
 
 def _matrix(values: Any, name: str) -> NDArray[np.float64] | None:
-    """4 x 4 matrix of 16 numbers, column after column; None, with a warning, of another number of them."""
+    """4 x 4 matrix from 16 numbers, column after column; None, with a warning, for any other number."""
     if not has_length(values, 16, name):
         return None
     return _square(numbers(values, _FAILED, name))

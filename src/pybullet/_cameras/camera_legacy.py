@@ -1,4 +1,4 @@
-"""The oldest function for images, by its five lists of arguments."""
+"""The oldest function for images, with five forms of arguments."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ _DEFAULT_FIELD_OF_VIEW = 90.0
 
 @exported_as("(*arguments)")
 def renderImage(*arguments: Any) -> Any:
-    """Makes an image of the first connection; `getCameraImage` is what newer scripts use.
+    """Renders an image of the first connection; newer scripts use `getCameraImage`.
 
     Called as `renderImage(width, height)`, `(width, height, viewMatrix, projectionMatrix)`,
     `(width, height, cameraPosition, cameraTarget, cameraUp, near, far)`, the same with a field of view
     [degrees] at the end (90 otherwise), or `(width, height, target, distance, yaw, pitch, roll,
-    upAxisIndex, near, far, fieldOfView)` with angles in degrees. The last three see as much in width as
-    in height, whatever the shape of the image.
+    upAxisIndex, near, far, fieldOfView)` with angles in degrees. In the last three forms the horizontal and
+    vertical fields of view are equal for any image size.
 
     Args:
         *arguments: These.
@@ -39,7 +39,7 @@ def renderImage(*arguments: Any) -> Any:
         As `getCameraImage`.
 
     Raises:
-        pybullet.error: Not connected, there are other numbers of arguments, or one is not as it should be.
+        pybullet.error: Not connected, the number of arguments is wrong, or one is invalid.
 
     Examples:
         >>> image = p.renderImage(8, 4, [2, 0, 1], [0, 0, 0.5], [0, 0, 1], 0.1, 10)

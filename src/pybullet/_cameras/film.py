@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PICTURES_PER_SECOND = 60.0
 """Of a video unless told otherwise, as PyBullet's windows have it."""
 
-# Without a window, which has a size of its own.
+# The size without a window.
 _WIDTH, _HEIGHT = 640, 480
 # PyBullet's background.
 _BACKGROUND = (0.7, 0.7, 0.8)
@@ -29,10 +29,10 @@ _NEAR, _FAR = 0.01, 1000.0
 
 
 def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Film:
-    """A film of the world of a client, from where the camera of its window is at the time.
+    """A video of the world of a client, with the camera of its window.
 
-    Its size is that of the window now. It takes a picture each `1 / fps` seconds of simulated time, so it
-    plays as fast as the simulated things move.
+    Its size is the present size of the window. It takes a picture each `1 / fps` seconds of simulated time,
+    so it plays in simulated time.
 
     Raises:
         ImportError: PyAV is not installed.

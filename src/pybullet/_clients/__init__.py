@@ -1,1 +1,1 @@
-"""What belongs to one connection: its world, its registries, its clock."""
+"""The data of one connection: its world, its registries, its clock."""

@@ -1,4 +1,4 @@
-"""Physics clients: independent worlds, picked by `physicsClientId`."""
+"""Physics clients: independent worlds, selected by `physicsClientId`."""
 
 from __future__ import annotations
 
@@ -37,24 +37,24 @@ class Client:
         logs: Logs of states that are being written.
         method: How it was connected: `DIRECT`, `GUI`, ...
         world: Its world.
-        bodies: Direct access to the state of bodies, by id; made when first asked for and forgotten
-            whenever bodies come or go, because that moves the rows of the state arrays.
+        bodies: Direct access to the state of bodies, by id; made on first use and dropped whenever bodies are
+            added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
         plugins: Plugins the script has loaded.
         real_time: `useRealTimeSimulation` as the script set it.
         report_analytics: `stepSimulation` returns the statistics of the solver.
-        server: What lets other processes drive the world, if anything does.
-        search_path: Directory that this connection was told to search besides the usual ones.
-        latest_search_path: What any connection of this process was told last: PyBullet has but one directory
-            for all of them, and keeps it when they end.
+        server: The server for other processes, if there is one.
+        search_path: Additional search directory of this connection.
+        latest_search_path: The last search directory set in this process: PyBullet has only one for all
+            connections, and keeps it when they end.
         shapes: Shapes the script has created.
         states: States the script has saved, by id.
-        window: What the script sees of a graphical interface.
-        clock: Steps the world by the wall clock while that is asked for.
+        window: The graphical interface.
+        clock: Steps the world in real time if enabled.
         deformable: The world is one of `resetSimulation(RESET_USE_DEFORMABLE_WORLD)`.
-        lock: Held during a step and while bodies come, go or change shape. Getters and setters of the
-            state do without: they read and write single numbers.
+        lock: Held during a step and while bodies are added, removed or change shape. Getters and setters of
+            the state do not need it: they read and write single numbers.
     """
 
     __slots__ = (
@@ -100,22 +100,22 @@ class Client:
         bodies.client = self
 
     def body(self, body_id: Any) -> Body | None:
-        """The body of an id, or None; raises `TypeError` for anything but an integer."""
+        """The body of an id, or None; raises `TypeError` if it is not an integer."""
         return self.world.bodies.get(integer(body_id, "bodyUniqueId"))
 
     def search(self) -> AssetSearch:
-        """Where files that the script names are looked for."""
+        """Directories in which files are searched."""
         return self.plugins.search(self.search_path, Client.latest_search_path)
 
     def set_search_path(self, path: Path) -> None:
-        """Searches a directory besides the usual ones; the other connections do so after their own."""
+        """Adds a search directory; other connections search it after their own."""
         self.search_path = Client.latest_search_path = path
 
     def set_timeout(self, seconds: float) -> None:
-        """A world in the same process answers at once."""
+        """Does nothing: a world in the same process answers at once."""
 
     def close(self) -> None:
-        """Stops what runs in the background, and finishes what is being written."""
+        """Stops background threads and finishes files."""
         if self.bodies.quick is not None:
             self.bodies.quick.close()
         if self.server is not None:
@@ -155,7 +155,7 @@ def living_client(physics_client_id: Any) -> Client | None:
 
 
 def why_not_connected(physics_client_id: Any) -> str:
-    """What to do about a connection that does not exist."""
+    """Advice on a connection that does not exist."""
     if physics_client_id in closed_by_users:
         return f"The window of client {physics_client_id} has been closed."
     return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) before."
@@ -199,7 +199,7 @@ def forget(number: int) -> None:
 
 
 def free_slot() -> int | None:
-    """The least id that no client has."""
+    """The lowest free id."""
     return next(
         (slot for slot in range(MAX_CLIENTS) if slot not in clients and slot not in remote_clients), None
     )

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 class StateLog(Protocol):
-    """Any log: it is told of every step, and finishes its file in the end."""
+    """Interface of logs: called at every step, and closed at the end."""
 
     def before_step(self) -> None:
-        """A step is about to be made."""
+        """Called before a step."""
         ...
 
     def after_step(self) -> None:
-        """It has been made."""
+        """Called after a step."""
         ...
 
     def close(self) -> None:
@@ -41,7 +41,7 @@ class Logs:
         self.zones: list[str] = []
 
     def shoot(self) -> None:
-        """Takes a picture for each video; from now on they have the pictures they are told to take."""
+        """Takes a picture for each video; from now on videos get only such pictures."""
         if not self.by_id:
             return
         from carom.recording.recorder import Film
@@ -52,7 +52,7 @@ class Logs:
                 log.shoot()
 
     def start(self, client: Client, log: StateLog | None) -> int:
-        """Begins a log and returns its id; None is one that is not written."""
+        """Begins a log and returns its id; None stands for a log that is not written."""
         number = self.next_id
         self.next_id += 1
         if log is not None:
@@ -63,7 +63,7 @@ class Logs:
         return number
 
     def stop(self, client: Client, number: int) -> None:
-        """Ends a log and finishes its file; nothing if there is none."""
+        """Ends a log and finishes its file, if it exists."""
         log = self.by_id.pop(number, None)
         if log is not None:
             client.world.observers.remove(log)

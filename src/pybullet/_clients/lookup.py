@@ -1,4 +1,4 @@
-"""Finding bodies and joints for calls that did not succeed at once, and saying what is wrong with them."""
+"""Looks up bodies and joints for calls outside the fast path, with error messages."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ OUT_OF_RANGE = "Joint index out-of-range."
 
 
 def no_body(body_id: int) -> str:
-    """Says that there is no body of an id."""
+    """Error message: no such body."""
     return f"There is no body {body_id}."
 
 
 def no_joint(body: Body, index: int) -> str:
-    """Says that a body has no joint of an index."""
+    """Error message: no such joint."""
     return f"Body {body.id} ({body.spec.name}) has {body.joint_count} joints, so there is no joint {index}."
 
 
@@ -35,7 +35,7 @@ def body_of(client: Client, body_id: Any, problem: str) -> Body:
     Args:
         client: The connection.
         body_id: The body.
-        problem: PyBullet's text when there is no such body.
+        problem: PyBullet's error message if there is no such body.
 
     Raises:
         pybullet.error: There is none.
@@ -75,8 +75,8 @@ def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: st
     Args:
         body_id: The body.
         physics_client_id: The connection.
-        problem: PyBullet's text when there is no such body.
-        negative: PyBullet's text for negative ids, where it has one of its own.
+        problem: PyBullet's error message if there is no such body.
+        negative: PyBullet's error message for negative ids, if it has one.
 
     Raises:
         pybullet.error: Not connected, or there is no such body.
@@ -90,7 +90,7 @@ def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: st
 
 
 def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint that is to be set.
+    """Access to a joint to set it.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -104,7 +104,7 @@ def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> Join
 
 
 def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint whose state is asked for by unusual integers, such as arrays without dimensions.
+    """Access to a joint to read its state, for unusual integers such as arrays without dimensions.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.

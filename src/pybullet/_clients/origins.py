@@ -1,4 +1,4 @@
-"""Which call loaded a body, so that `saveWorld` can write it down."""
+"""The call that loaded a body, for `saveWorld`."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class FileLoad:
 
     Attributes:
         function: Its name.
-        arguments: Its arguments but for the file, by name.
-        takes_pose: It is told where to put the one body it loads.
-        count: How many bodies it loaded.
+        arguments: Its arguments except the file, by name.
+        takes_pose: It has arguments for the pose of the body.
+        count: Number of bodies loaded.
     """
 
     function: str
@@ -26,7 +26,7 @@ class FileLoad:
 
 @record
 class Origin:
-    """Where a body came from: the `index`-th body of a load."""
+    """Origin of a body: the `index`-th body of a load."""
 
     load: FileLoad
     index: int = 0

@@ -1,4 +1,4 @@
-"""The plugins of one client, and the places its file plugin adds to those that are searched."""
+"""The plugins of one client, and the additional search places of its file plugin."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EGL_RENDERER = len(BUILT_IN)
 def is_egl_renderer(path: str) -> bool:
     """Whether a path is that of the library `eglRenderer`, as Python's import system finds it."""
     file = Path(path)
-    # `os.path`, for which a name that no file can have is none.
+    # `os.path`, which accepts names that no file can have.
     return os.path.isfile(path) and "eglRenderer" in (file.parent.name, file.name.partition(".")[0])
 
 
@@ -44,19 +44,19 @@ class Plugins:
         return None
 
     def add_place(self, place: Path | Archive) -> int:
-        """Searches a folder or an archive from now on; returns its slot: the least that is free."""
+        """Adds a folder or an archive to the search; returns its slot: the lowest free one."""
         slot = next(n for n in range(1, len(self.places) + 2) if n not in self.places)
         self.places[slot] = place
         return slot
 
     def remove_place(self, slot: int) -> None:
-        """Searches a place no more; nothing if there is none."""
+        """Removes a place from the search, if it exists."""
         place = self.places.pop(slot, None)
         if place is not None and not isinstance(place, Path):
             place.close()
 
     def remove_all_places(self) -> None:
-        """Searches the file system only."""
+        """Removes all places except the file system."""
         for slot in list(self.places):
             self.remove_place(slot)
 
@@ -65,7 +65,7 @@ class Plugins:
 
         Args:
             additional: The directory of `setAdditionalSearchPath`.
-            last: Where files are looked for that are nowhere else.
+            last: Directories that are searched last.
         """
         from carom.formats.search import AssetSearch
 

@@ -1,4 +1,4 @@
-"""Simulation by the wall clock, in the background."""
+"""Real-time simulation, in the background."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from pybullet._calls.errors import logger
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
-# A world that cannot keep up, or a process that was asleep, falls behind the clock by no more than this [s].
+# Maximum delay of a world that cannot keep up, or of a process that was suspended [s].
 _GREATEST_LAG = 0.1
-# How often the world is brought up to date with the clock, unless its time step is longer [s].
+# Interval between updates, unless the time step is longer [s].
 _PERIOD = 1.0 / 240.0
 
 _running: WeakSet[RealTimeClock] = WeakSet()
 
 
 class Pace:
-    """How far a simulation is behind a clock. Steps are counted from one beginning, so nothing drifts."""
+    """The delay of a simulation behind a clock. Steps are counted from one start time, without drift."""
 
     def __init__(self, now: float) -> None:
         """Starts at a time of the clock [s]."""
         self._simulated_until = now
 
     def steps_due(self, now: float, time_step: float) -> int:
-        """How many steps are due; they count as done.
+        """Number of steps due; they then count as done.
 
         Args:
             now: Time of the clock [s].
@@ -46,8 +46,8 @@ class Pace:
 class RealTimeClock:
     """Steps the world of a client so that simulated time passes as fast as real time.
 
-    The world is behind the clock by less than one time step while it can keep up; what it cannot keep
-    up with beyond a tenth of a second is dropped. The time step may change on the way.
+    The world is behind the clock by less than one time step if it can keep up; delays beyond a tenth of a
+    second are dropped. The time step may change during the simulation.
     """
 
     def __init__(self, client: Client) -> None:
@@ -61,8 +61,8 @@ class RealTimeClock:
         """Stops and waits for the step in progress: none if the caller holds the client's lock."""
         self._stopping.set()
         _running.discard(self)
-        # Not for the thread, which may be waiting for the lock that the caller holds.
-        # In a forked process it is gone, and the lock may be held for ever.
+        # Not waiting for the thread, which may wait for the lock that the caller holds.
+        # In a forked process the thread does not exist, and the lock may be held for ever.
         if self._thread.is_alive():
             with self._client.lock:
                 return

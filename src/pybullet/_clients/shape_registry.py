@@ -1,4 +1,4 @@
-"""Shapes that scripts have created and bodies are made of."""
+"""Shapes that scripts have created for bodies."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Shape = TypeVar("Shape")
 
 @record(frozen=False)
 class CollisionShape:
-    """What `createCollisionShape` made.
+    """A shape made by `createCollisionShape`.
 
     Attributes:
-        collisions: The shapes that touch.
-        visuals: The same for the eye, for links that have no visual shape.
-        used: A body has been made of it.
+        collisions: The collision shapes.
+        visuals: The visual shapes, for links without visual shape.
+        used: A body was made of it.
     """
 
     collisions: tuple[Collision, ...]
@@ -27,14 +27,14 @@ class CollisionShape:
 
 
 class ShapeTable(Generic[Shape]):
-    """Shapes by id; ids of removed shapes are given out again, the last one first."""
+    """Shapes by id; ids of removed shapes are used again, the last one first."""
 
     def __init__(self) -> None:
         self._shapes: dict[int, Shape] = {}
         self._free: list[int] = []
 
     def add(self, shape: Shape) -> int:
-        """Takes in a shape and returns its id."""
+        """Adds a shape and returns its id."""
         number = self._free[-1] if self._free else len(self._shapes)
         free = self._free[:-1]
 
@@ -50,7 +50,7 @@ class ShapeTable(Generic[Shape]):
         return self._shapes.get(number)
 
     def remove(self, number: int) -> None:
-        """Forgets a shape, which must be there."""
+        """Removes a shape, which must exist."""
         free = [*self._free, number]
 
         def remove() -> None:
@@ -64,8 +64,8 @@ class ShapeRegistry:
     """The shapes of one client.
 
     Attributes:
-        collisions: Those that touch.
-        visuals: Those that are seen; each is a list of visuals.
+        collisions: Collision shapes.
+        visuals: Visual shapes; each is a list of visuals.
     """
 
     def __init__(self) -> None:

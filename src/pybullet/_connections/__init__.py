@@ -1,1 +1,1 @@
-"""Connecting, also to worlds of other processes."""
+"""Connections, also to worlds of other processes."""

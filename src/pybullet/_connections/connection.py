@@ -1,4 +1,4 @@
-"""Connecting to worlds, and what can be asked of a connection."""
+"""Connections to worlds, and queries about them."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ _API_VERSION = 202010061
 _WITH_WINDOW = (GUI, GUI_SERVER, GUI_MAIN_THREAD, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _SERVERS = (SHARED_MEMORY_SERVER, GUI_SERVER, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _TO_A_SERVER = (SHARED_MEMORY, UDP, TCP)
-# Without a server these have a world of their own that nobody sees.
+# Without a server these have a world of their own without a window.
 _TO_GRAPHICS = (GRAPHICS_CLIENT, GRAPHICS_SERVER_TCP)
 _METHODS = {DIRECT, *_WITH_WINDOW, *_SERVERS, *_TO_A_SERVER, *_TO_GRAPHICS}
 _NO_SERVER = -1
@@ -81,8 +81,8 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     Args:
         *arguments: `key` and `options`, or `hostName`, `port` and `options`.
         **keywords: The same by name.
-        method: `DIRECT` for a world without a window; any number of them, up to 1024 connections. `GUI`
-            for one with a window; `GUI_MAIN_THREAD` is the same here. The window is a page in the browser:
+        method: `DIRECT` for a world without a window, up to 1024 connections. `GUI` for one with a window;
+            `GUI_MAIN_THREAD` is the same here. The window is a page in the browser:
             its address is printed, and it opens where there is a display and `CI` is not set.
 
             `SHARED_MEMORY_SERVER` for a world that other processes can join, `GUI_SERVER` for one with a
@@ -91,16 +91,16 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
 
             `GRAPHICS_SERVER` (and `..._MAIN_THREAD`) opens a window for the world of another process,
             which connects by `GRAPHICS_CLIENT` (also called `SHARED_MEMORY_GUI`) or, over TCP, by
-            `GRAPHICS_SERVER_TCP`; without such a server these two have a world that nobody sees.
-        key: Of shared memory: servers and clients with the same key meet.
+            `GRAPHICS_SERVER_TCP`; without such a server these two have a world without a window.
+        key: Key of shared memory: servers and clients with the same key connect.
         options: Separated by spaces; unknown ones are ignored. Of the window: `--width=1024 --height=768`,
             the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
             `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
             `--port=8400`, where the page is. Of servers: `--tcp=6667` and
-            `--udp=1234`, ports to listen at as well; `--bind=127.0.0.1`, the address of these ports. Of
-            servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the key that both sides have
-            to know; otherwise it is the environment variable `CAROM_SERVER_KEY`, and between processes
-            of one user on one machine none has to be stated.
+            `--udp=1234`, additional ports to listen at; `--bind=127.0.0.1`, the address of these ports. Of
+            servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the secret key that both sides
+            need; otherwise it is the environment variable `CAROM_SERVER_KEY`. Processes of one user on one
+            machine need no key.
         hostName: Of a server.
         port: Of a server; 6667 for TCP and 1234 for UDP if it is negative.
 
@@ -176,7 +176,7 @@ def _new_client(method: int, target: Target) -> Client:
 
 
 def _let_quick_calls_in(slot: int) -> None:
-    """Lets the native library look at the bodies of a client that has no window and no server."""
+    """Lets the native library use the bodies of a client without window and server."""
     from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._calls.quick import install
 
@@ -187,7 +187,7 @@ def _let_quick_calls_in(slot: int) -> None:
 
 
 def _serve(slot: int, target: Target) -> None:
-    """Lets other processes drive the world of a client."""
+    """Lets other processes use the world of a client."""
     from pybullet._connections.served import Served
     from pybullet._connections.server_options import server_options
 
@@ -198,7 +198,7 @@ def _serve(slot: int, target: Target) -> None:
 
 @exported
 def disconnect(physicsClientId: int = 0) -> None:
-    """Ends a connection; its world is gone.
+    """Ends a connection and removes its world.
 
     A connection that the user has ended, by closing the window, may be ended once more.
 
@@ -241,7 +241,7 @@ def isConnected(physicsClientId: int = 0) -> int:
 
 @exported
 def getConnectionInfo(physicsClientId: int = 0) -> dict[str, int]:
-    """How a connection was made.
+    """The method of a connection.
 
     Args:
         physicsClientId: The connection; any integer.
@@ -295,7 +295,7 @@ def isNumpyEnabled(physicsClientId: int = 0) -> int:
 
 @exported
 def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
-    """How long to wait for a server's answers: 60 s at first with `TCP` and `UDP`, for ever otherwise.
+    """Sets how long to wait for a server's answers: by default 60 s with `TCP` and `UDP`, otherwise for ever.
 
     A call that is not answered in time raises `pybullet.error`, and the connection is closed. Worlds in the
     same process answer at once.
@@ -318,7 +318,7 @@ def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
 
 @exported
 def syncBodyInfo(physicsClientId: int = 0) -> None:
-    """Reads the list of bodies from the server again. Here, every client always sees all bodies.
+    """Updates the list of bodies from the server. Has no effect here: every client always sees all bodies.
 
     Args:
         physicsClientId: The connection.
@@ -333,7 +333,7 @@ def syncBodyInfo(physicsClientId: int = 0) -> None:
 
 
 def _target(arguments: tuple[int | str, ...], keywords: dict[str, int | str]) -> Target:
-    """Checks what follows the method, in either of the two forms."""
+    """Checks the arguments after the method, in either form."""
     server_named = (bool(arguments) and isinstance(arguments[0], str)) or bool(
         {"hostName", "port"} & set(keywords)
     )

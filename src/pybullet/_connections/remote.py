@@ -22,7 +22,7 @@ RESULT, PROBLEM = 0, 1
 ERROR = "pybullet.error"
 """Name of `pybullet.error` in answers; other exceptions have their own."""
 
-# Exceptions a function may raise about its arguments; what else a server has to tell is an `error`.
+# Exceptions that functions raise for wrong arguments; all others become `error`.
 EXCEPTIONS = {
     kind.__name__: kind
     for kind in (TypeError, ValueError, OverflowError, IndexError, KeyError, OSError, MemoryError)
@@ -46,11 +46,11 @@ class RemoteClient:
         _alive.add(self)
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        """Has the server call a function.
+        """Calls a function on the server.
 
         Raises:
-            pybullet.error: The server does not answer, or raises it.
-            TypeError: The arguments are not as they should be; so are other exceptions.
+            pybullet.error: The server does not answer, or raised it.
+            TypeError: The arguments are wrong; other exceptions likewise.
         """
         if not self._connection.is_usable:
             fail(NOT_CONNECTED, "The server has closed the connection, or did not answer in time.")
@@ -60,7 +60,7 @@ class RemoteClient:
         )
 
     def _ask(self, name: str, arguments: list[Any], keywords: dict[str, Any]) -> Any:
-        """Has the server call a function by name; raises what `call` does."""
+        """Calls a function on the server by name; raises the same exceptions as `call`."""
         try:
             kind, *answer = self._connection.call((name, arguments, keywords))
         except ServerGone as problem:
@@ -76,15 +76,15 @@ class RemoteClient:
         self._connection.set_timeout(seconds)
 
     def is_open(self) -> bool:
-        """Whether the server is still there."""
+        """Whether the server is still connected."""
         return self._connection.is_open()
 
     def close(self) -> None:
-        """Ends the connection; the server and its world go on."""
+        """Ends the connection; the server and its world continue."""
         self._connection.close()
 
     def leave_to_the_parent(self) -> None:
-        """Lets go of the connection, in a process that was forked from its own."""
+        """Drops the connection, in a forked process."""
         self._connection.abandon()
 
 
@@ -92,7 +92,7 @@ def join_server(method: int, address: Address) -> RemoteClient | None:
     """Connects to a server.
 
     Returns:
-        The connection; None when there is no server or it does not accept the key, as the log tells.
+        The connection; None if there is no server or it does not accept the key; the reason is logged.
     """
     from carom.remote.connection import Connection
 

@@ -1,4 +1,4 @@
-"""Worlds of this process that other processes may drive."""
+"""Worlds of this process that other processes may use."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from pybullet._clients.clients import NOT_CONNECTED, Client, living_client
 from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
 from pybullet._connections.server_options import ServerOptions, reachable
 
-# How long a server may take to answer that it is there [s].
+# Time limit for a server's answer that it exists [s].
 _PATIENCE = 5.0
 _CANNOT_START = "Cannot start the physics server:"
-# Takes the lock itself, but not while it waits for the window to let the simulation go on.
+# Takes the lock itself, but not while the simulation is paused.
 _STEP = "stepSimulation"
 
 _alive: WeakSet[Served] = WeakSet()
@@ -32,15 +32,15 @@ _alive: WeakSet[Served] = WeakSet()
 class Served:
     """A world, its own client, and the clients in other processes.
 
-    All of them call the same functions, one call at a time. Only of user data each has a view of its own.
+    All of them call the same functions, one call at a time. Only user data are copied for each.
 
     Args:
         number: Id of the client in this process.
         client: The client in this process.
-        options: Where to listen, and under which names to be found.
+        options: Where to listen, and under which names.
 
     Raises:
-        pybullet.error: There is such a server already, or an address cannot be listened at.
+        pybullet.error: There is such a server already, or it cannot listen at an address.
     """
 
     def __init__(self, number: int, client: Client, options: ServerOptions) -> None:
@@ -79,7 +79,7 @@ class Served:
         return self._listener.client_count
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        """Calls a function for the script in this process, or for another on its way through a log."""
+        """Calls a function for the script in this process, or for another process through a log."""
         if getattr(self._for_others, "answering", False):
             return self._call(function, arguments, keywords)
         return self._user_data.call(
@@ -99,7 +99,7 @@ class Served:
         self._listener.close()
 
     def leave_to_the_parent(self) -> None:
-        """Forgets everything about the server, in a process that was forked from its own."""
+        """Drops the server, in a forked process."""
         self._notes = []
         self._listener.abandon()
         remove_detour(self._number)
@@ -112,7 +112,7 @@ class Served:
         request = unpack(frame.message, frame.contents, lists=True)
         name, arguments, keywords = _checked(request)
         function = functions().get(name)
-        # A thread that answers others does so for ever.
+        # A thread that answers clients never ends.
         self._for_others.answering = True
         try:
             if function is None:
@@ -120,7 +120,7 @@ class Served:
             if living_client(self._number) is not self._client:
                 fail(NOT_CONNECTED, "The server is closing.")
             arguments, keywords = function.with_client(self._number, arguments, keywords)
-            # A log may have put itself before this server.
+            # A log may have been put before this server.
             way = detour_of(self._number) or self
             answer = pack((RESULT, way.call(function, tuple(arguments), keywords)))
             check_size(*answer, OF_RESULTS)
@@ -153,12 +153,12 @@ def _checked(request: Any) -> tuple[str, list[Any], dict[str, Any]]:
 
 
 def _text(problem: Exception) -> str:
-    # That of a KeyError is not what it was made of.
+    # The text of a KeyError differs from its argument.
     return problem.args[0] if len(problem.args) == 1 and isinstance(problem.args[0], str) else str(problem)
 
 
 def _is_taken(name: str) -> bool:
-    """Whether a server answers that has left a note of a name; one that was killed has left one, too."""
+    """Whether the server of a note answers; a server that was killed leaves its note behind."""
     note = find(name)
     if note is None:
         return False

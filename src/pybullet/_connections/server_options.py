@@ -1,4 +1,4 @@
-"""Where servers listen and where clients look for them, as `connect` and its options tell."""
+"""Addresses at which servers listen and clients connect, from the options of `connect`."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ _CANNOT_START = "Cannot start the physics server:"
 
 
 class Meeting(NamedTuple):
-    """Where a server can be met.
+    """An address at which a server can be reached.
 
     Attributes:
         kind: Of connection.
         host: Address it listens at.
         port: Port it listens at; 0 for any.
-        number: What tells servers of a kind apart: key or port; 0 for the port it gets.
+        number: Distinguishes servers of a kind: key or port; 0 for the port it gets.
     """
 
     kind: str
@@ -52,17 +52,17 @@ class Meeting(NamedTuple):
     number: int
 
     def name(self, port: int) -> str:
-        """The name of its note, when it listens at that port."""
+        """The name of its note, if it listens at that port."""
         return f"{self.kind}-{self.number or port}"
 
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """What a server needs to know.
+    """Options of a server.
 
     Attributes:
-        meetings: Where it can be met.
-        key: What clients have to know.
+        meetings: The addresses at which it can be reached.
+        key: The key that clients need.
     """
 
     meetings: tuple[Meeting, ...]
@@ -70,13 +70,13 @@ class ServerOptions:
 
 
 class Address(NamedTuple):
-    """Where a client looks for its server.
+    """The address of a client's server.
 
     Attributes:
-        places: Address and key, for each key it may have.
-        timeout: How long to wait for an answer, at first [s].
-        importance: Level of what the log says when there is no server.
-        nobody: What it says when there is no key for it.
+        places: Address and key, for each possible key.
+        timeout: Initial time limit for an answer [s].
+        importance: Log level of the message if there is no server.
+        nobody: Message if there is no key for it.
     """
 
     places: tuple[Note, ...]
@@ -86,7 +86,7 @@ class Address(NamedTuple):
 
 
 def server_options(method: int, target: Target) -> ServerOptions:
-    """Where a server is to listen, and its key.
+    """The addresses and the key of a server.
 
     Raises:
         pybullet.error: There is no such port, or the key cannot be used.
@@ -103,7 +103,7 @@ def server_options(method: int, target: Target) -> ServerOptions:
 
 
 def address_of(method: int, target: Target) -> Address:
-    """Where the server is that a client asks for.
+    """The address of the server that a client asks for.
 
     Raises:
         pybullet.error: The file with the key cannot be used.
@@ -120,12 +120,12 @@ def address_of(method: int, target: Target) -> Address:
         note = find(f"{kind}-{port}")
         keys.append(note.key if note else None)
     places = tuple(Note(target.host, port, key) for key in keys if key)
-    nobody = f"None of yours on this machine is found as {kind}-{port}, and no key is stated for others."
+    nobody = f"None of yours on this machine is found as {kind}-{port}, and no key is given for others."
     return Address(places, _A_MINUTE, logging.WARNING, nobody)
 
 
 def reachable(host: str) -> str:
-    """Where clients on this machine reach a server that listens at an address."""
+    """The address by which clients on this machine reach a server."""
     return {"0.0.0.0": _LOOPBACK, "::": "::1"}.get(host, host)
 
 
@@ -143,7 +143,7 @@ def _is_loopback(host: str) -> bool:
 
 
 def _given_key(target: Target) -> bytes | None:
-    """The key the options or the environment state."""
+    """The key in the options or the environment."""
     file = target.option("key-file")
     if file:
         try:
@@ -175,7 +175,7 @@ def _own_key(target: Target, bind: str) -> bytes:
 
 
 def _write_private(file: Path, key: bytes) -> None:
-    # As others must never be able to read it, not even for a moment, it gets its place when it is complete.
+    # Other users must never be able to read it, so it is moved to its place when it is complete.
     handle, draft = tempfile.mkstemp(dir=file.parent)
     try:
         with os.fdopen(handle, "wb") as stream:

@@ -1,4 +1,4 @@
-"""What a call of `connect` says besides the method."""
+"""The arguments of `connect` after the method."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
 
 @record
 class Target:
-    """What follows the method in a call of `connect`.
+    """The arguments of `connect` after the method.
 
     Attributes:
         key: Of shared memory.
         host: Of a server.
         port: Of a server; negative for the usual one.
-        options: Separated by spaces, which may be part of what is between double quotes.
+        options: Separated by spaces; double quotes enclose values with spaces.
     """
 
     key: int = SHARED_MEMORY_KEY

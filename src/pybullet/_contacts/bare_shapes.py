@@ -1,7 +1,7 @@
-"""Nearest points of collision shapes that no body is made of.
+"""Nearest points of collision shapes without a body.
 
-They are compared in a world made for the purpose, which holds the shape and copies of the links it is
-compared with, all of them fixed where they are now.
+They are computed in a temporary world with the shape and copies of the other links, all fixed at their
+present poses.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ BARE_LINK = -2
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """Something to compare: a link, or a shape without a body.
+    """One side of a query: a link, or a shape without a body.
 
     Attributes:
         place: Body and link that are reported.
@@ -49,9 +49,9 @@ def bare_shape(
     Args:
         client: The connection.
         number: Id of the shape.
-        body_id: What the script gave as body beside it; it is reported.
-        position: Where the shape is; None for the origin.
-        orientation: How it is turned; None for not at all.
+        body_id: The body that the script gave with it, which is reported.
+        position: Position of the shape; None for the origin.
+        orientation: Its orientation; None for no rotation.
         side: A or B, for errors.
 
     Raises:
@@ -101,7 +101,7 @@ def nearest_points(
     """The nearest points of all shapes of pairs of things that are no farther apart than `reach` [m].
 
     Returns:
-        As `Queries.nearest` gives them, with what is reported in place of links.
+        As from `Queries.nearest`, with the reported body and link instead of rows of links.
     """
     from carom.world.world import World
 

@@ -21,9 +21,9 @@ def setCollisionFilterPair(
     enableCollision: int,
     physicsClientId: int = 0,
 ) -> None:
-    """Lets two links collide or keeps them from it, whatever their groups and masks say.
+    """Enables or disables collisions of two links, overriding their groups and masks.
 
-    No such body or link is no error. Removing one of the bodies ends the rule.
+    A body or link that does not exist is no error. Removing one of the bodies removes the rule.
 
     Args:
         bodyUniqueIdA: A body.
@@ -64,9 +64,9 @@ def setCollisionFilterGroupMask(
 ) -> None:
     """Sets the groups a link is in and the groups it collides with, as bits.
 
-    Two links collide when each is in a group of the other's mask; see `collisionFilterMode` of
-    `setPhysicsEngineParameter`. At first what moves has group 1 and mask -1, a fixed base group 2 and a
-    mask of all groups but 2. No such body or link is no error.
+    Two links collide if each is in a group of the other's mask; see `collisionFilterMode` of
+    `setPhysicsEngineParameter`. By default moving links have group 1 and mask -1, a fixed base group 2 and a
+    mask of all groups except 2. A body or link that does not exist is no error.
 
     Args:
         bodyUniqueId: The body.

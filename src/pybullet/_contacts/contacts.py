@@ -1,4 +1,4 @@
-"""Contacts: where bodies touch and how hard."""
+"""Contact points and contact forces."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ContactPoint = tuple[
 def performCollisionDetection(physicsClientId: int = 0) -> None:
     """Finds all contacts for the present poses without a step.
 
-    Contacts that were there after the last step keep their forces; new ones have none.
+    Contacts of the last step keep their forces; new ones have none.
 
     Args:
         physicsClientId: The connection.
@@ -52,12 +52,12 @@ def getContactPoints(
     linkIndexB: int = _ANY_LINK,
     physicsClientId: int = 0,
 ) -> tuple[ContactPoint, ...]:
-    """The contacts that the last step, or `performCollisionDetection`, found.
+    """The contact points found by the last step, or by `performCollisionDetection`.
 
     Args:
         bodyA: Only contacts of this body, which is then the first of each; negative for all.
-        bodyB: Only contacts whose second body is this one; negative for all. Without `bodyA` it is the
-            engine that decides which body is the second.
+        bodyB: Only contacts whose second body is this one; negative for all. Without `bodyA` the engine
+            decides which body is the second.
         linkIndexA: Only contacts of this link of the first body; -1 for the base, -2 and less for all.
         linkIndexB: Only contacts of this link of the second body; -1 for the base, -2 and less for all.
         physicsClientId: The connection.

@@ -1,4 +1,4 @@
-"""What is near: nearest points of bodies, and bodies within a box."""
+"""Nearest points of bodies, and bodies in a box."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def getClosestPoints(
     collisionShapeOrientationB: Sequence[float] | None = None,
     physicsClientId: int = 0,
 ) -> tuple[ContactPoint, ...]:
-    """The nearest points of the links of two bodies, or of collision shapes that no body is made of.
+    """The nearest points of the links of two bodies, or of collision shapes without a body.
 
     Args:
         bodyA: A body; -1 if there is only a shape on this side.
@@ -45,9 +45,9 @@ def getClosestPoints(
         distance: Only points at most this far apart [m].
         linkIndexA: Link of `bodyA`, -1 for the base; -2 and less for all links.
         linkIndexB: Link of `bodyB`.
-        collisionShapeA: A collision shape beside, or instead of, `bodyA`; -1 for none.
+        collisionShapeA: A collision shape with or instead of `bodyA`; -1 for none.
         collisionShapeB: The same for the other side.
-        collisionShapePositionA: Where that shape is [m]; the origin if not given.
+        collisionShapePositionA: Position of that shape [m]; the origin if not given.
         collisionShapePositionB: The same for the other side.
         collisionShapeOrientationA: Its orientation (x, y, z, w).
         collisionShapeOrientationB: The same for the other side.
@@ -128,11 +128,11 @@ def _contact_point(
 def getOverlappingObjects(
     aabbMin: Sequence[float], aabbMax: Sequence[float], physicsClientId: int = 0
 ) -> tuple[Place, ...] | None:
-    """The links whose bounds meet a box along the world's axes.
+    """The links whose bounding boxes overlap an axis-aligned box.
 
     Args:
-        aabbMin: Lowest corner of the box [m].
-        aabbMax: Its highest corner.
+        aabbMin: Minimum corner of the box [m].
+        aabbMax: Its maximum corner.
         physicsClientId: The connection.
 
     Returns:

@@ -23,7 +23,7 @@ def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
         fail(problem, f"{name} is {values!r}.")
     try:
         if not isinstance(items, np.ndarray) and set(map(len, items)) == {3}:
-            # Four times as fast as to let NumPy find out how deep the lists are.
+            # Four times as fast as letting NumPy find the depth of the lists.
             points = np.frombuffer(pack(f"{3 * len(items)}d", *chain.from_iterable(items))).reshape(-1, 3)
         else:
             points = np.asarray(items, dtype=float).reshape(len(items), -1)
@@ -38,5 +38,5 @@ def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
 
 
 def in_world(points: np.ndarray, frame: Pose) -> np.ndarray:
-    """Points that are given in a frame, in world axes; shape (count, 3) both."""
+    """Points of a frame, in world coordinates; shape (count, 3) both."""
     return product(points, np.array(rotation_matrix(frame.orientation)).T) + frame.position

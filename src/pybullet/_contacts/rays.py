@@ -1,4 +1,4 @@
-"""Rays: what lies along a line."""
+"""Ray tests."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ def rayTest(
     reportHitNumber: int = -1,
     physicsClientId: int = 0,
 ) -> tuple[RayHit]:
-    """What a ray hits first.
+    """Casts a ray; returns its first hit.
 
     Args:
         rayFromPosition: Its start in the world frame [m].
         rayToPosition: Its end.
-        collisionFilterMask: Collision groups that are hit.
+        collisionFilterMask: Mask of the collision groups that are hit.
         reportHitNumber: n for the n-th hit along the ray, from 0; negative for the first.
         physicsClientId: The connection.
 
     Returns:
-        A tuple of one (body, link, fraction of the ray, position, normal); body -1 and fraction 1 for
-        nothing.
+        A tuple of one (body, link, fraction of the ray, position, normal); body -1 and fraction 1 without a
+        hit.
 
     Raises:
         pybullet.error: Not connected, or a position is not three finite numbers.
@@ -78,7 +78,7 @@ def rayTestBatch(
     fractionEpsilon: float = -1.0,
     physicsClientId: int = 0,
 ) -> tuple[RayHit, ...]:
-    """What many rays hit first.
+    """Casts many rays; returns their first hits.
 
     Args:
         rayFromPositions: Their starts [m], at most `MAX_RAY_INTERSECTION_BATCH_SIZE`.
@@ -87,8 +87,8 @@ def rayTestBatch(
         parentObjectUniqueId: Body whose frame the positions are in; -1 for the world's.
         parentLinkIndex: Its link, -1 for the base: positions are in that link's inertial frame.
         reportHitNumber: n for the n-th hit along each ray, from 0; negative for the first.
-        collisionFilterMask: Collision groups that are hit.
-        fractionEpsilon: Later hits on a link less than this fraction of the ray after one do not count.
+        collisionFilterMask: Mask of the collision groups that are hit.
+        fractionEpsilon: Hits on the same link within this fraction of the ray after another are ignored.
         physicsClientId: The connection.
 
     Returns:
@@ -135,9 +135,9 @@ def rayTestBatch(
 
 
 def _frame_of(client: Client, body_id: int, link: int) -> Pose | None:
-    """The frame rays are given in; None for that of the world, which also stands for unknown bodies.
+    """The frame of the rays; None for the world frame, also used for unknown bodies.
 
-    As in PyBullet it is where `getLinkState` says, after a step at the start of its last substep.
+    As in PyBullet it is that of `getLinkState`, after a step at the start of its last substep.
     """
     body = client.world.bodies.get(body_id)
     if body is None or not _BASE <= link < body.joint_count:

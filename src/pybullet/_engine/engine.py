@@ -29,7 +29,7 @@ __all__ = [
     "stepSimulation",
 ]
 
-# What decides how long a step takes: parameter, argument and greatest value.
+# Parameters that determine how long a step takes: parameter, argument and maximum.
 _WORK = {
     "substeps": ("numSubSteps", 10_000),
     "solver_iterations": ("numSolverIterations", 1_000_000),
@@ -40,7 +40,7 @@ _MOST_WORK = 10_000_000
 _LEAST_TIME_STEP = 1e-12
 
 
-# In both soft bodies are what their parameters say.
+# In both, soft bodies have the material of their parameters.
 _DEFORMABLE = RESET_USE_DEFORMABLE_WORLD | RESET_USE_REDUCED_DEFORMABLE_WORLD
 
 
@@ -80,7 +80,7 @@ _PARAMETERS: dict[str, tuple[str, Callable[[Any, str], Any], int]] = {
 
 @exported
 def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ...]:
-    """Advances time by `fixedTimeStep`, in `numSubSteps` equal parts if there are any.
+    """Advances the simulation by `fixedTimeStep`, in `numSubSteps` equal substeps if set.
 
     Applied forces and torques last for this step only.
 
@@ -120,14 +120,14 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
 
 @exported
 def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
-    """Removes everything from the world and sets the engine's parameters back.
+    """Removes everything from the world and resets the engine's parameters.
 
-    `fixedTimeStep` and `numSubSteps` stay as they are. Body ids start at 0 again.
+    `fixedTimeStep` and `numSubSteps` do not change. Body ids start at 0 again.
 
     Args:
-        flags: `RESET_USE_*` for another kind of world. Rigid bodies are the same in each; what
-            `loadSoftBody` makes is said by its parameters with `RESET_USE_DEFORMABLE_WORLD`, or
-            `RESET_USE_REDUCED_DEFORMABLE_WORLD`, only.
+        flags: `RESET_USE_*` for another kind of world. Rigid bodies are the same in each; `loadSoftBody` uses
+            its material parameters only with `RESET_USE_DEFORMABLE_WORLD` or
+            `RESET_USE_REDUCED_DEFORMABLE_WORLD`.
         physicsClientId: The connection.
 
     Raises:
@@ -156,7 +156,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
 
 @exported
 def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 0) -> None:
-    """Sets gravity; it is 0 at first.
+    """Sets gravity; default 0.
 
     Args:
         gravX: Acceleration along the world's x axis [m/s²].
@@ -174,16 +174,16 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
     """
     client = client_of(physicsClientId)
     gravity = (quantity(gravX, "gravX"), quantity(gravY, "gravY"), quantity(gravZ, "gravZ"))
-    # Scripts that set gravity before every step need not pay for it.
+    # So that setting the same gravity before every step costs little.
     if gravity != client.world.parameters.gravity:
         _change(client, gravity=gravity)
 
 
 @exported
 def setTimeStep(timeStep: float, physicsClientId: int = 0) -> None:
-    """Sets the time by which `stepSimulation` advances; 1/240 s at first.
+    """Sets the time step of `stepSimulation`; default 1/240 s.
 
-    The greatest impulses of motors that are already set stay, so the greatest forces change.
+    The maximum impulses of motors that are already set do not change, so their maximum forces do.
 
     Args:
         timeStep: Time [s], greater than 0.
@@ -202,7 +202,7 @@ def setTimeStep(timeStep: float, physicsClientId: int = 0) -> None:
 
 @exported
 def setDefaultContactERP(defaultContactERP: float, physicsClientId: int = 0) -> None:
-    """Sets the fraction of a penetration that one step takes back; 0.08 at first.
+    """Sets the fraction of a penetration corrected in one step (ERP); default 0.08.
 
     Args:
         defaultContactERP: The fraction.
@@ -221,7 +221,7 @@ def setDefaultContactERP(defaultContactERP: float, physicsClientId: int = 0) -> 
 def setRealTimeSimulation(enableRealTimeSimulation: int, physicsClientId: int = 0) -> None:
     """Lets the simulation follow the wall clock, in the background.
 
-    With a window and in servers; in `DIRECT` the setting is kept but nothing moves by itself.
+    Works with a window and in servers; in `DIRECT` the setting is stored but has no effect.
 
     Args:
         enableRealTimeSimulation: 1 to start, 0 to stop.
@@ -248,7 +248,7 @@ def setRealTimeSimulation(enableRealTimeSimulation: int, physicsClientId: int = 
 
 @exported
 def setInternalSimFlags(flags: int, physicsClientId: int = 0) -> None:
-    """Sets flags that only concern deformable bodies in PyBullet; rigid bodies move as before.
+    """Sets flags for deformable bodies of PyBullet; no effect on rigid bodies.
 
     Args:
         flags: Any integer.
@@ -328,43 +328,42 @@ def setPhysicsEngineParameter(
     numNonContactInnerIterations: int = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """Sets parameters of the engine. Those that are negative stay as they are.
+    """Sets parameters of the engine. Negative values change nothing.
 
     Args:
-        fixedTimeStep: Time by which `stepSimulation` advances [s].
-        numSolverIterations: Greatest number of passes over all constraints in a step; 50 at first.
-        useSplitImpulse: Correct penetration of rigid bodies without giving them speed.
-        splitImpulsePenetrationThreshold: Penetration from which that is done [m].
-        numSubSteps: Parts of a step, each solved by itself; 0 or 1 for none. The greatest impulse of a
-            motor holds for each part.
+        fixedTimeStep: Time step of `stepSimulation` [s].
+        numSolverIterations: Maximum number of solver iterations in a step; default 50.
+        useSplitImpulse: Correct penetration of rigid bodies without adding velocity.
+        splitImpulsePenetrationThreshold: Penetration above which that is done [m].
+        numSubSteps: Number of substeps, each solved separately; 0 or 1 for none. The maximum impulse of a
+            motor applies to each substep.
         collisionFilterMode: 0: both bodies' filters have to agree; 1: one is enough.
-        contactBreakingThreshold: Distance at which a contact is given up, relative to the size.
-        maxNumCmdPer1ms: Of PyBullet's server; nothing here.
-        enableFileCaching: Of PyBullet's file reader; files are read anew here when they change.
+        contactBreakingThreshold: Distance at which a contact is removed, relative to the size.
+        maxNumCmdPer1ms: Of PyBullet's server; no effect.
+        enableFileCaching: Of PyBullet's file reader; no effect: files are read again when they change.
         restitutionVelocityThreshold: Speed below which nothing bounces [m/s].
-        erp: Fraction of an error of limits and constraints that one step takes back.
+        erp: Fraction of an error of limits and constraints corrected in one step.
         contactERP: The same for penetration.
         frictionERP: The same for friction with an anchor.
-        enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each by
-            itself.
+        enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each separately
+            (pyramid).
         deterministicOverlappingPairs: Sort pairs; Carom's order is always the same.
-        allowedCcdPenetration: Penetration that continuous collision detection allows [m]; nothing here:
-            bodies stop where they touch.
+        allowedCcdPenetration: Penetration that continuous collision detection allows [m]; no effect: bodies
+            stop where they touch.
         jointFeedbackMode: `JOINT_FEEDBACK_IN_WORLD_SPACE`, `JOINT_FEEDBACK_IN_JOINT_FRAME`, or both;
             0: in the link's inertial frame.
         solverResidualThreshold: The solver stops when no constraint's speed changes by more than the
             square root of this.
-        contactSlop: Penetration that is left alone [m].
-        enableSAT: Use the separating axis test between hulls; nothing here: faces that touch are always
-            found.
-        constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`; nothing here: all are solved as the first.
+        contactSlop: Penetration that is not corrected [m].
+        enableSAT: Use the separating axis test between hulls; no effect: touching faces are always found.
+        constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`; no effect: the first is always used.
         globalCFM: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
         minimumSolverIslandSize: Solve groups of fewer bodies together.
         reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
-        warmStartingFactor: Fraction of the last step's impulses to start from, of rigid bodies that are no
-            multibodies; nothing here.
-        sparseSdfVoxelSize: Of deformable bodies; nothing here.
-        numNonContactInnerIterations: Passes over motors, limits and constraints for each one over
+        warmStartingFactor: Fraction of the last step's impulses to start from, for rigid bodies other than
+            multibodies; no effect.
+        sparseSdfVoxelSize: Of deformable bodies; no effect.
+        numNonContactInnerIterations: Iterations over motors, limits and constraints for each iteration over
             contacts; at least 1.
         physicsClientId: The connection.
 
@@ -395,7 +394,7 @@ def setPhysicsEngineParameter(
 
 
 def _check_work(client: Client, changes: dict[str, Any]) -> None:
-    """See that a step comes to an end in sensible time: nothing can interrupt a launch of kernels."""
+    """Check that a step does not take too long: a launch of kernels cannot be interrupted."""
     parameters = client.world.parameters
     product = 1
     for name, (argument, greatest) in _WORK.items():

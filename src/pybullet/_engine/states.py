@@ -1,4 +1,4 @@
-"""Saving the state of a world and going back to it."""
+"""Saving and restoring the state of a world."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _CANNOT_RESTORE = "Couldn't restore state."
 
 @exported
 def saveState(physicsClientId: int = 0) -> int:
-    """Remembers the state of the world: all that the next step starts from.
+    """Saves the state of the world in memory: all that the next step starts from.
 
-    That is positions and velocities, motors and their targets, applied forces, contacts and what they
-    remember. Masses, friction, constraints, gravity and the other parameters of the engine are not part
+    This includes positions and velocities, motors and their targets, applied forces, contacts and their
+    impulses. Masses, friction, constraints, gravity and the other parameters of the engine are not part
     of it.
 
     Args:
         physicsClientId: The connection.
 
     Returns:
-        The id of the state: the least that is free.
+        The id of the state: the lowest free one.
 
     Raises:
         pybullet.error: Not connected.
@@ -49,7 +49,7 @@ def saveState(physicsClientId: int = 0) -> int:
 
 @exported
 def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId: int = 0) -> None:
-    """Goes back to a state. The steps that follow are the same, to the last bit, as they were then.
+    """Restores a state. The steps that follow are the same, bit for bit, as after saving.
 
     Args:
         stateId: A state of `saveState`; it can be restored any number of times.
@@ -58,8 +58,8 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, there is no such state or file, the file cannot be used, or bodies
-            have come or gone since, or have other joints. The world is then as it was.
+        pybullet.error: Not connected, there is no such state or file, the file cannot be used, or bodies were
+            added or removed since, or have other joints. The world is then unchanged.
 
     Examples:
         >>> state = p.saveState()
@@ -88,7 +88,7 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
 
 @exported
 def removeState(stateUniqueId: int, physicsClientId: int = 0) -> None:
-    """Forgets a state. One that does not exist is no error.
+    """Removes a state. One that does not exist is no error.
 
     Args:
         stateUniqueId: The state; its id is free again.
@@ -110,11 +110,11 @@ def removeState(stateUniqueId: int, physicsClientId: int = 0) -> None:
 def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
     """Writes the world to a file.
 
-    That is bodies with their meshes and looks, constraints, parameters, user data and the state. The
-    format is Carom's own, not PyBullet's; see docs/world-files.md.
+    The file contains bodies with their meshes, colours and textures, constraints, parameters, user data and
+    the state. The format is Carom's own, not PyBullet's; see docs/world-files.md.
 
     Args:
-        bulletFileName: The file; one that is there is replaced.
+        bulletFileName: The file; an existing one is replaced.
         physicsClientId: The connection.
 
     Raises:
@@ -135,10 +135,10 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
 
 @exported
 def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]:
-    """Adds the bodies of a file of `saveBullet`, as they were, with what ties them.
+    """Adds the bodies of a file of `saveBullet`, with their state and constraints.
 
     A world without bodies becomes the one that was saved, body ids, gravity and the other parameters
-    included, and goes on exactly as that one did.
+    included, and continues exactly as that one did.
 
     Args:
         bulletFileName: The file: as given, in `data` folders near the working directory, or in the
@@ -149,8 +149,8 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
         The ids of the bodies.
 
     Raises:
-        pybullet.error: Not connected, the file is missing or damaged, or it is no file of `saveBullet`.
-            The world is then as it was.
+        pybullet.error: Not connected, the file is missing or damaged, or it is not a file of `saveBullet`.
+            The world is then unchanged.
 
     Examples:
         >>> p.saveBullet(folder + "/scene.bullet")

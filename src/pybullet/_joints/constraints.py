@@ -55,20 +55,21 @@ def createConstraint(
     childFrameOrientation: Vector | None = None,
     physicsClientId: int = 0,
 ) -> int:
-    """Ties a link to another, or to the world.
+    """Creates a constraint between two links, or a link and the world.
 
     Args:
         parentBodyUniqueId: The first body.
         parentLinkIndex: Its link; -1 for the base.
         childBodyUniqueId: The second body; -1 for the world.
         childLinkIndex: Its link; -1 for the base.
-        jointType: `JOINT_POINT2POINT`: two points stay together. `JOINT_FIXED`: two frames do.
-            `JOINT_PRISMATIC`: two frames do but for sliding along `jointAxis`. `JOINT_GEAR`: the rate of
-            the parent's joint is minus the gear ratio times that of the child's.
+        jointType: `JOINT_POINT2POINT`: two points stay together. `JOINT_FIXED`: two frames stay together.
+            `JOINT_PRISMATIC`: two frames stay together, but may slide along `jointAxis`. `JOINT_GEAR`: the
+            velocity of the parent's joint is minus the gear ratio times that of the child's.
         jointAxis: Axis in the inertial frame of the parent's link; only a prismatic constraint uses it.
         parentFramePosition: Pivot in the inertial frame of the parent's link [m].
         childFramePosition: Pivot in the inertial frame of the child's link, or in the world [m].
-        parentFrameOrientation: Axes there, a quaternion; those of the inertial frame if not given.
+        parentFrameOrientation: Orientation of the constraint frame there, a quaternion; by default that of
+            the inertial frame.
         childFrameOrientation: The same of the child.
         physicsClientId: The connection.
 
@@ -76,8 +77,8 @@ def createConstraint(
         The number of the constraint; the first is 1.
 
     Raises:
-        pybullet.error: Not connected, there is no such body, link or type, or a vector is not what is
-            asked for.
+        pybullet.error: Not connected, there is no such body, link or type, or a vector has the wrong length
+            or is not finite.
 
     Examples:
         >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
@@ -130,21 +131,22 @@ def changeConstraint(
     erp: float = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """Changes a constraint, for instance to drag a body along. An unknown number is no error.
+    """Changes a constraint, for example to drag a body. An unknown number is no error.
 
     Args:
         userConstraintUniqueId: The constraint.
         jointChildPivot: New pivot of the child, in the world if there is no child [m].
-        jointChildFrameOrientation: New axes of the child, a quaternion.
-        maxForce: Greatest force of each row [N or N m]; negative leaves it.
-        gearRatio: Of a gear, 1 at first; 0 leaves it.
-        gearAuxLink: Link of the parent whose joint's motion is taken off the gear's; negative leaves it.
-        relativePositionTarget: What the joint positions of a gear are to add up to.
-        erp: Share of a gear's position error that is taken back per step; negative leaves it.
+        jointChildFrameOrientation: New orientation of the child's frame, a quaternion.
+        maxForce: Maximum force of each row [N or N m]; negative: no change.
+        gearRatio: Of a gear; default 1; 0: no change.
+        gearAuxLink: Link of the parent whose joint's motion is subtracted from the gear's; negative: no
+            change.
+        relativePositionTarget: Target of the sum of a gear's joint positions.
+        erp: Share of a gear's position error corrected per step; negative: no change.
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, or an argument is not what is asked for.
+        pybullet.error: Not connected, or an argument has the wrong length or is not finite.
 
     Examples:
         >>> tie = p.createConstraint(cube, -1, -1, -1, p.JOINT_FIXED, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
@@ -222,7 +224,7 @@ def getNumConstraints(physicsClientId: int = 0) -> int:
         physicsClientId: The connection.
 
     Returns:
-        How many there are.
+        Their number.
 
     Raises:
         pybullet.error: Not connected.
@@ -236,14 +238,14 @@ def getNumConstraints(physicsClientId: int = 0) -> int:
 
 @exported
 def getConstraintUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
-    """The number of a constraint by its place among all.
+    """The number of a constraint by its position in the list of constraints.
 
     Args:
         serialIndex: From 0 to `getNumConstraints()` - 1.
         physicsClientId: The connection.
 
     Returns:
-        Its number; -1 if there are not so many.
+        Its number; -1 if there are fewer.
 
     Raises:
         pybullet.error: Not connected.
@@ -260,7 +262,7 @@ def getConstraintUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
 
 @exported
 def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> ConstraintInfo:
-    """What a constraint holds.
+    """The parameters of a constraint.
 
     Args:
         constraintUniqueId: The constraint.
@@ -270,7 +272,7 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
         (parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis,
         parentFramePosition, childFramePosition, parentFrameOrientation, childFrameOrientation, maxForce,
         gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world, and gearAuxLink
-        is 0 also where there is none. Of the anchor of a soft body, a point-to-point constraint, the parent
+        is also 0 if there is none. Of the anchor of a soft body, a point-to-point constraint, the parent
         is the soft body and its link the node.
 
     Raises:
@@ -330,13 +332,13 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
     constraint = _constraint(constraintUniqueId, physicsClientId, "Couldn't getConstraintState.")
     world = client_of(physicsClientId).world
     impulses = world.user_constraints.impulses(constraint, world.arrays.state)
-    # PyBullet's point-to-point rows count the other way round.
+    # PyBullet's point-to-point rows have the opposite sign.
     sign = -1.0 if constraint.kind == JOINT_POINT2POINT else 1.0
     return tuple((sign * impulses / world.parameters.substep_time).tolist())
 
 
 def _numbers(client: Client) -> list[int]:
-    """The numbers of all constraints, in the order they were made."""
+    """The numbers of all constraints, in order of creation."""
     world = client.world
     return sorted(
         [constraint.id for constraint in world.user_constraints.all] + [*world.contact_arrays.soft.anchors]
@@ -375,7 +377,7 @@ def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
 
 
 def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:
-    """A gear needs a joint of one freedom on each side."""
+    """A gear needs a joint of one degree of freedom on each side."""
     for body, link, name in ((parent, parent_link, "parent"), (child, child_link, "child")):
         if body is None or link < 0 or body.velocity_count[link] != 1:
             fail(_FAILED, f"The {name} of a gear has to be a revolute or prismatic joint.")

@@ -1,7 +1,7 @@
-"""Joints as scripts see them: direct access to their rows in the state arrays.
+"""Direct access to the rows of joints in the state arrays.
 
 These objects are made once per joint and hold the memory of the arrays, so that reading a state or
-commanding a motor is a few reads or writes of numbers. They live until bodies come or go.
+commanding a motor is a few reads or writes of numbers. They live until bodies are added or removed.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MultiDofState = tuple[tuple[float, ...], tuple[float, ...], Wrench, tuple[float,
 NO_WRENCH = (0.0,) * 6
 _DOUBLE = 8
 _WRENCH_ROW = 6 * _DOUBLE
-# The greatest force of a motor that was given a target but no force [N or N m].
+# The maximum force of a motor that was given a target but no force [N or N m].
 _UNSTATED_FORCE = 1000000.0
 # The gains of a multi-dof motor whose gains were given in the wrong number.
 _UNSTATED_GAIN = 0.1
@@ -80,13 +80,13 @@ class JointAccess:
         return ((), (), self._reaction(), ())
 
     def reset(self, position: float, velocity: float) -> None:
-        """Puts a joint of one freedom somewhere, without any physics; others stay where they are."""
+        """Sets the state of a joint with one degree of freedom, without physics; ignores other joints."""
 
     def _reaction(self) -> Wrench:
         return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH
 
     def add_torques(self, torques: Sequence[float]) -> None:
-        """Adds to the torques of the next step; ignored unless there is one for each freedom."""
+        """Adds to the torques of the next step; ignored unless there is one for each degree of freedom."""
 
     def command_multi_dof(
         self,
@@ -244,7 +244,7 @@ def _is_triple(values: float | Sequence[float]) -> TypeGuard[Sequence[float]]:
 
 
 def _first_gain(gain: float | Sequence[float], dofs: int, targeted: bool) -> float:
-    """The gain of the first freedom; a sequence of the wrong length counts as not given."""
+    """The gain of the first degree of freedom; a sequence of the wrong length counts as not given."""
     if isinstance(gain, (int, float)):
         return gain
     if len(gain) in (1, dofs):

@@ -1,7 +1,7 @@
 """Several joints of a body at once.
 
-Scripts name the same joints in every step of a control loop, so what is known of them is kept. When their
-rows follow each other in the state arrays, as they do for all joints of most arms, one loop reads them all.
+Scripts use the same joints in every step of a control loop, so their data are cached. If their rows are
+contiguous in the state arrays, as for all joints of most arms, one loop reads them all.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from carom.native.quick_calls import MotorGroup as MotorRecord
     from pybullet._clients.clients import Client
 
-# Groups of one body that are remembered.
+# Maximum number of cached groups of a body.
 _MOST_GROUPS = 64
 
 
@@ -50,7 +50,7 @@ class JointGroup:
 
     @cached_property
     def record(self) -> MotorRecord | None:
-        """What the native library is shown of them; None where Python sees to every command."""
+        """Their record for the native library; None if Python handles all commands."""
         return None
 
 
@@ -103,7 +103,7 @@ class ConsecutiveAxes(AxisGroup):
 
 
 class JointGroups(dict[tuple[int, ...], JointGroup]):
-    """The groups of a body's joints by their indices; an entry is made when it is first asked for.
+    """The groups of a body's joints by their indices; an entry is made on first use.
 
     Asking for a joint that does not exist raises `KeyError`.
     """

@@ -1,4 +1,4 @@
-"""What `getJointInfo` tells: the joints as their file described them."""
+"""Data of `getJointInfo`: the joints as described by their file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Joints: what their file says about them, where they are, and moving them by hand."""
+"""Joints: data from their file, their state, and setting it."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ _LEAST = -MAX_MAGNITUDE
 
 @exported
 def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> JointInfo:
-    """What the file of a robot says about a joint, and the link that it carries.
+    """Data of a joint and its child link from the robot's file.
 
-    `changeDynamics` does not change what is told here.
+    `changeDynamics` does not change these.
 
     Args:
         bodyUniqueId: The body.
@@ -60,7 +60,7 @@ def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -
         having the first seven, and 4 of its first velocity, the base having the first six (both -1 for
         a fixed joint); 5 flags, 1 for a joint that has a motor; 6 damping [N m s/rad or N s/m];
         7 friction, which is not simulated; 8 lower and 9 upper limit [rad or m], the lower greater than
-        the upper when there are none; 10 greatest force and 11 greatest velocity, which are not
+        the upper when there are none; 10 maximum force and 11 maximum velocity, which are not
         enforced; 12 name of the link (bytes); 13 axis in the link's inertial frame; 14 position of the
         joint in the parent's inertial frame; 15 quaternion that turns vectors of the parent's inertial
         frame into the link's; 16 index of the parent link, -1 for the base.
@@ -89,7 +89,7 @@ def getJointInfo(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -
 
 @exported
 def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> JointState:
-    """Where a joint is, how fast it moves and what acts on it.
+    """Position, velocity, reaction force and motor torque of a joint.
 
     Args:
         bodyUniqueId: The body.
@@ -98,9 +98,10 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
 
     Returns:
         (position [rad or m], velocity, (Fx, Fy, Fz, Mx, My, Mz) [N, N m], motor torque [N m or N]).
-        The third is what the joint does to its link, zeros unless `enableJointForceTorqueSensor` was
-        called; the fourth is what the motor did in the last step, and stays when the motor is switched
-        off. Zeros for a fixed joint; for a spherical one see `getJointStateMultiDof`.
+        The third is the force and torque of the joint on its link, zeros unless
+        `enableJointForceTorqueSensor` was called; the fourth is that of the motor in the last step, and does
+        not change when the motor is switched off. Zeros for a fixed joint; for a spherical one see
+        `getJointStateMultiDof`.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -128,7 +129,7 @@ def getJointStates(
         physicsClientId: The connection.
 
     Returns:
-        What `getJointState` returns, for each joint; None when there are no indices.
+        What `getJointState` returns, for each joint; None without indices.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -153,7 +154,7 @@ def getJointStates(
 
 @exported
 def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) -> MultiDofState:
-    """The state of a joint with any number of freedoms.
+    """The state of a joint with any number of degrees of freedom.
 
     Args:
         bodyUniqueId: The body.
@@ -183,15 +184,15 @@ def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: i
 def getJointStatesMultiDof(
     bodyUniqueId: int, jointIndex: Indices, physicsClientId: int = 0
 ) -> tuple[MultiDofState, ...] | None:
-    """The states of several joints with any number of freedoms.
+    """The states of several joints with any number of degrees of freedom.
 
     Args:
         bodyUniqueId: The body.
-        jointIndex: The joints, in any order: a sequence, whatever the name says.
+        jointIndex: The joints, in any order: a sequence, despite the name.
         physicsClientId: The connection.
 
     Returns:
-        What `getJointStateMultiDof` returns, for each joint; None when there are no indices.
+        What `getJointStateMultiDof` returns, for each joint; None without indices.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -216,7 +217,7 @@ def resetJointState(
     targetVelocity: float = 0,
     physicsClientId: int = 0,
 ) -> None:
-    """Puts a joint somewhere, without any physics. Its motor stays as it is.
+    """Sets the state of a joint, without physics. Its motor does not change.
 
     Fixed, spherical and planar joints do not move.
 
@@ -255,7 +256,7 @@ def resetJointStateMultiDof(
     targetVelocity: Vector | None = None,
     physicsClientId: int = 0,
 ) -> None:
-    """Puts a joint with any number of freedoms somewhere, without any physics.
+    """Sets the state of a joint with any number of degrees of freedom, without physics.
 
     A list of a length that does not fit the joint is ignored, and so is a velocity without a position.
 
@@ -263,7 +264,7 @@ def resetJointStateMultiDof(
         bodyUniqueId: The body.
         jointIndex: The joint, from 0.
         targetValue: Positions: one number, or for a spherical joint a quaternion (x, y, z, w).
-        targetVelocity: Velocities: one number, or three for a spherical joint; 0 when left out.
+        targetVelocity: Velocities: one number, or three for a spherical joint; 0 by default.
         physicsClientId: The connection.
 
     Raises:
@@ -290,7 +291,7 @@ def resetJointStatesMultiDof(
     targetVelocities: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> None:
-    """Puts several joints somewhere: `resetJointStateMultiDof` for each. Nothing moves if one is wrong.
+    """Sets the states of several joints: `resetJointStateMultiDof` for each. Nothing changes if one is wrong.
 
     Args:
         bodyUniqueId: The body.

@@ -1,7 +1,7 @@
-"""What a motor that is set has where nothing else is said."""
+"""Defaults of motors."""
 
 DEFAULT_FORCE = 100000.0
-"""Greatest force [N or N m]."""
+"""Maximum force [N or N m]."""
 
 DEFAULT_POSITION_GAIN = 0.1
 DEFAULT_VELOCITY_GAIN = 1.0

@@ -1,4 +1,4 @@
-"""Joint motors by numbers: one joint or many joints of one freedom each."""
+"""Joint motors by numbers: one joint or many joints of one degree of freedom each."""
 
 from __future__ import annotations
 
@@ -88,30 +88,30 @@ def setJointMotorControl2(
     *,
     bodyIndex: Any = None,
 ) -> None:
-    """Sets the motor of a joint. It keeps its setting until it is set again.
+    """Sets the motor of a joint, until it is set again.
 
-    Each step the motor of a revolute or prismatic joint reaches for the velocity `velocity + positionGain ·
-    (targetPosition - position) / timeStep + velocityGain · (targetVelocity - velocity)` and gets there
-    unless that takes more than `force`. A new body's motors hold its joints still with an impulse of
-    1 N m s (240 N m at the default step), so for joints that swing freely, or that torques alone should
-    move, call this first with `VELOCITY_CONTROL` and `force=0`.
+    In each step the motor of a revolute or prismatic joint aims for the velocity `velocity + positionGain ·
+    (targetPosition - position) / timeStep + velocityGain · (targetVelocity - velocity)` and reaches it unless
+    that takes more than `force`. A new body's motors hold its joints still with an impulse of
+    1 N m s (240 N m at the default step), so for joints that swing freely, or under torque control, call this
+    first with `VELOCITY_CONTROL` and `force=0`.
 
     Args:
         bodyUniqueId: The body.
         jointIndex: The joint, from 0. The motor of a fixed joint does nothing.
         controlMode: `POSITION_CONTROL` as above. `VELOCITY_CONTROL` the same without the position.
-            `TORQUE_CONTROL` adds `force` to the torques of the next step, beside the motor.
+            `TORQUE_CONTROL` adds `force` to the torques of the next step, in addition to the motor.
             `PD_CONTROL` adds the torque `positionGain · (targetPosition - position) + velocityGain ·
-            (targetVelocity - velocity)`, at most `force`, in every step, beside the motor; `force=0`
+            (targetVelocity - velocity)`, at most `force`, in every step, in addition to the motor; `force=0`
             ends it.
-        targetPosition: [rad or m]; taken to the nearest limit when it is beyond.
+        targetPosition: [rad or m]; clipped to the joint's limits.
         targetVelocity: [rad/s or m/s].
-        force: Greatest force of the motor, or the torque [N m or N]. As a bound of a motor it may be
+        force: Maximum force of the motor, or the torque [N m or N]. As the maximum of a motor it may be
             infinite.
         positionGain: See above.
         velocityGain: See above.
-        maxVelocity: Greatest velocity the motor reaches for with `POSITION_CONTROL` when greater than 0
-            [rad/s or m/s]; it stays until `VELOCITY_CONTROL` is set.
+        maxVelocity: Maximum velocity that the motor aims for with `POSITION_CONTROL` if greater than 0 [rad/s
+            or m/s]; it stays until `VELOCITY_CONTROL` is set.
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.
 
@@ -127,7 +127,7 @@ def setJointMotorControl2(
     """
     try:
         check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
-        # Anything else, such as an array, would be noticed only when half of the motor is written.
+        # Anything else, such as an array, would be noticed only after half of the motor was written.
         if isinstance(check, float) and -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
             joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
             joint.motor.command(
@@ -197,8 +197,7 @@ def setJointMotorControlArray(
 ) -> None:
     """Sets the motors of several joints of a body: `setJointMotorControl2` for each.
 
-    Nothing is set when an argument is wrong. Lists that are left out stand for the defaults of
-    `setJointMotorControl2`.
+    Nothing is set if an argument is wrong. Lists not given stand for the defaults of `setJointMotorControl2`.
 
     Args:
         bodyUniqueId: The body.
@@ -213,8 +212,8 @@ def setJointMotorControlArray(
         bodyIndex: Another name of `bodyUniqueId`.
 
     Raises:
-        pybullet.error: Not connected, there is no such body, joint or mode, a list has not as many
-            numbers as there are joints, or a number is not finite.
+        pybullet.error: Not connected, there is no such body, joint or mode, a list does not have one number
+            for each joint, or a number is not finite.
 
     Examples:
         >>> p.setJointMotorControlArray(arm, [0, 1], p.VELOCITY_CONTROL, targetVelocities=[0.5, 0])
@@ -302,8 +301,8 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
 
     Args:
         *arguments: Body, joint, mode (`POSITION_CONTROL`, `VELOCITY_CONTROL`, or `TORQUE_CONTROL` in the
-            first and last form), and what the mode aims at: a position, a velocity or, in the first
-            form, a torque. In the last form a torque is 0.
+            first and last form), and the target: a position, a velocity or, in the first form, a torque. In
+            the last form a torque is 0.
         physicsClientId: The connection.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Joint motors by lists: for joints of any number of freedoms, spherical ones above all."""
+"""Joint motors by lists: for joints with any number of degrees of freedom, mainly spherical ones."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ def setJointMotorControlMultiDof(
     damping: float | Vector = 1.0,
     physicsClientId: int = 0,
 ) -> None:
-    """Sets the motor of a joint by a number for each of its freedoms.
+    """Sets the motor of a joint by one number for each degree of freedom.
 
-    A list of a length that does not fit the joint counts as not given, and so does what is left out; a
-    motor with neither position nor velocity is not changed. A motor without force is very strong.
+    A list of the wrong length counts as not given; a motor with neither position nor velocity is not changed.
+    A motor without force is very strong.
 
     Args:
         bodyUniqueId: The body.
@@ -69,14 +69,13 @@ def setJointMotorControlMultiDof(
             next step.
         targetPosition: One number [rad or m]; for a spherical joint a quaternion (x, y, z, w).
         targetVelocity: One number [rad/s or m/s], or three; a spherical motor ignores it.
-        force: Greatest forces of the motor, or the torques [N m or N]: a number for each freedom, or one
-            for all.
-        positionGain: Fraction of the error that one step takes back. A number, or one for each freedom;
-            those count only when forces and both gains are all given so.
+        force: Maximum forces of the motor, or the torques [N m or N]: a number for each degree of freedom, or
+            one for all.
+        positionGain: Fraction of the error corrected in one step. A number, or one for each degree of
+            freedom; the latter count only if forces and both gains are all given so.
         velocityGain: As in `setJointMotorControl2`, and a number or numbers as before.
-        maxVelocity: Greatest velocity the motor reaches for when greater than 0; not for spherical joints.
-        damping: Fraction of the angular velocity that a spherical motor takes away, for each axis or for
-            all.
+        maxVelocity: Maximum velocity that the motor aims for if greater than 0; not for spherical joints.
+        damping: Fraction of the angular velocity that a spherical motor removes, for each axis or for all.
         physicsClientId: The connection.
 
     Raises:
@@ -120,19 +119,20 @@ def setJointMotorControlMultiDofArray(
 ) -> None:
     """Sets the motors of several joints, each by a list of numbers.
 
-    Nothing happens when a list is not empty and has not as many entries as there are joints. A list of a
-    joint whose length does not fit it counts as not given.
+    Nothing happens if a list is not empty and does not have one entry for each joint. An entry whose length
+    does not fit its joint counts as not given.
 
     Args:
         bodyUniqueId: The body.
         jointIndices: The joints, in any order.
         controlMode: `POSITION_CONTROL` or `TORQUE_CONTROL` as in `setJointMotorControlMultiDof`;
-            `PD_CONTROL` as in `setJointMotorControl2`, for joints of one freedom; `STABLE_PD_CONTROL`, for
-            the next step only: the torques of a PD controller that looks one step ahead with the equations
-            of motion of the whole body, and so stays stable with high gains (Tan, Liu and Turk, 2011).
+            `PD_CONTROL` as in `setJointMotorControl2`, for joints of one degree of freedom;
+            `STABLE_PD_CONTROL`, for the next step only: the torques of a PD controller that looks one step
+            ahead with the equations of motion of the whole body, and so stays stable with high gains (Tan,
+            Liu and Turk, 2011).
         targetPositions: For each joint one number [rad or m], or a quaternion (x, y, z, w).
         targetVelocities: For each joint one number [rad/s or m/s], or three.
-        forces: For each joint the greatest forces of the motor, or the torques [N m or N].
+        forces: For each joint the maximum forces of the motor, or the torques [N m or N].
         positionGains: A number for each joint.
         velocityGains: A number for each joint.
         maxVelocities: Not used, as in PyBullet.
@@ -150,7 +150,7 @@ def setJointMotorControlMultiDofArray(
     client = client_of(physicsClientId)
     mode = integer(controlMode, "controlMode")
     if mode not in (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL):
-        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of such joints can have.")
+        fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of such joints.")
     requested = indices(jointIndices, NO_INDICES, "jointIndices")
     lists = {
         "targetPositions": _entries(targetPositions, "targetPositions"),
@@ -208,7 +208,7 @@ def _stable_pd(
 
 
 def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[Sequence[float]]:
-    """The numbers of each joint, all looked at together if they are as usual."""
+    """The numbers of each joint, checked together in the usual case."""
     try:
         if (
             _USUAL_LISTS.issuperset(map(type, entries))
@@ -222,14 +222,14 @@ def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[S
 
 
 def _gains(values: Sequence[float], name: str) -> Sequence[float]:
-    """Finite numbers, all looked at together if they are as usual."""
+    """Finite numbers, checked together in the usual case."""
     if _USUAL_NUMBERS.issuperset(map(type, values)) and -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
         return values
     return [quantity(value, name) for value in values]
 
 
 def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
-    """The numbers of one joint, at most as many as any joint has; none when left out."""
+    """The numbers of one joint, at most as many as any joint has; none if not given."""
     if isinstance(values, (list, tuple)) and len(values) <= most:
         try:
             if -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:

@@ -1,4 +1,4 @@
-"""Bringing robots into a world."""
+"""Loading robots into a world."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ _LEGACY_POSE = ("startPosX", "startPosY", "startPosZ", "startOrnX", "startOrnY",
 def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
     """Sets the directory that is searched for files besides the working directory.
 
-    All connections of the process search it, also those made later; what another one was told comes after
-    what a connection was told itself.
+    All connections of the process search it, also later ones; a directory set for the connection itself comes
+    first.
 
     Args:
         path: The directory; replaces the one set before.
@@ -46,7 +46,7 @@ def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
 def _in_usual_form(
     arguments: tuple[Any, ...], keywords: dict[str, Any]
 ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-    """A call with numbers for the pose as one with vectors; any other call as it is."""
+    """Converts a call with numbers for the pose to one with vectors; returns any other call unchanged."""
     options = _legacy_pose(arguments[1:], keywords)
     return (arguments[:1], options) if arguments and options else (arguments, keywords)
 
@@ -91,18 +91,18 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         basePosition: Position of the link frame of the base [m]; its centre of mass may be elsewhere.
         baseOrientation: Orientation of that frame (x, y, z, w).
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
-        useFixedBase: 1 for a base that does not move.
+        useFixedBase: 1 to fix the base in the world.
         flags: `URDF_*`, added up.
         globalScaling: Factor on all lengths; 1 when not greater than 0.
         physicsClientId: The connection.
 
     Returns:
-        The id of the body: that of the body removed last, or else the number of bodies there have been.
+        The id of the body: that of the body removed last; otherwise ids count up from 0.
 
     Raises:
         pybullet.error: Not connected, the file is missing or cannot be used (what follows PyBullet's text
-            names file, line, element and reason), or the pose is not three and four finite numbers. The
-            world is then as it was.
+            names file, line, element and reason), or the pose is not three and four finite numbers. The world
+            is then unchanged.
 
     Examples:
         >>> robot = p.loadURDF("r2d2.urdf", basePosition=[0, 2, 0.5])

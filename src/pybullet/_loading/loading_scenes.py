@@ -1,4 +1,4 @@
-"""Bringing whole scenes into a world: files that hold several robots and say where they are."""
+"""Loading scenes into a world: files with several robots and their poses."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def loadSDF(
     """Loads the models of an SDF file, where the file puts them.
 
     As in PyBullet inertias come from collision shapes, the pose of a model is that of its root link,
-    `<static>` counts when it says 1, joints are at the origins of their children, and models inside of
-    models are left out. Unlike there, files named by `<include>` are loaded too.
+    only `<static>1</static>` makes a model static, joints are at the origins of their child links, and nested
+    models are ignored. Unlike in PyBullet, files named by `<include>` are loaded too.
 
     Args:
         sdfFileName: The file: as given, in `data` folders near the working directory, or in the
@@ -48,7 +48,7 @@ def loadSDF(
 
     Raises:
         pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
-            text names file, line, element and reason). The world is then as it was.
+            text names file, line, element and reason). The world is then unchanged.
 
     Examples:
         >>> bodies = p.loadSDF("kuka_iiwa/model.sdf")
@@ -78,10 +78,10 @@ def loadMJCF(
 ) -> tuple[int, ...]:
     """Loads the bodies of an MJCF file, where the file puts them.
 
-    What PyBullet reads of such files is read its way: every joint has a link without mass of its own,
+    Elements that PyBullet reads are read as by PyBullet: every joint has a link of its own without mass,
     geoms weigh 1000 kg/m³, joints have neither damping nor armature, a body without joints floats, and
-    every geom of the world is a body, `axisangle` turns geoms but not bodies, and named classes of defaults
-    limit no joint. What PyBullet cannot read is read as MuJoCo means it: what else such classes say, ball
+    every geom of the world is a body, `axisangle` rotates geoms but not bodies, and named default classes do
+    not limit joints. What PyBullet cannot read is read as by MuJoCo: other attributes of such classes, ball
     joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
 
     Args:
@@ -96,7 +96,7 @@ def loadMJCF(
 
     Raises:
         pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
-            text names file, line, element and reason). The world is then as it was.
+            text names file, line, element and reason). The world is then unchanged.
 
     Examples:
         >>> bodies = p.loadMJCF("mjcf/inverted_pendulum.xml")
@@ -120,7 +120,7 @@ def loadMJCF(
 def _load(
     client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
 ) -> tuple[int, ...]:
-    """Brings all robots of a file into the world of a client, or none."""
+    """Loads all robots of a file into the world of a client, or none."""
     from carom.errors import CaromError
 
     try:

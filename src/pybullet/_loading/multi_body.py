@@ -123,16 +123,16 @@ def createMultiBody(
 ) -> int | tuple[int, ...]:
     """Makes a body: a base and, if there are link lists, links on joints.
 
-    Links are called `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`...,
-    and the base is `link0`. Like those of a file they get their indices depth first, or with
+    Links are named `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`..., and the
+    base `link0`. As in a file, link indices are depth first, or with
     `URDF_MAINTAIN_LINK_ORDER` in the order of the lists. Joints have no limits and, as always, a motor
     that holds their velocity at 0. Moments of inertia are those of the collision shapes.
 
     Args:
-        baseMass: [kg]; 0 for a base that does not move.
+        baseMass: [kg]; 0 fixes the base in the world.
         baseCollisionShapeIndex: A collision shape; -1 for none.
-        baseVisualShapeIndex: A visual shape; -1 for none: then the collision shape is seen.
-        basePosition: Where the link frame of the base is [m].
+        baseVisualShapeIndex: A visual shape; -1 for none: then the collision shape is visible.
+        basePosition: Position of the base's link frame [m].
         baseOrientation: Its orientation (x, y, z, w).
         baseInertialFramePosition: Centre of mass in the link frame [m].
         baseInertialFrameOrientation: Orientation of the inertial frame in the link frame.
@@ -143,7 +143,7 @@ def createMultiBody(
         linkOrientations: Orientation of that.
         linkInertialFramePositions: As for the base.
         linkInertialFrameOrientations: As for the base.
-        linkParentIndices: What carries it: 0 for the base, k for the k-th link of the lists.
+        linkParentIndices: Its parent: 0 for the base, k for the k-th link of the lists.
         linkJointTypes: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_SPHERICAL` or `JOINT_FIXED`.
         linkJointAxis: Axis of its joint, in the frame of the joint.
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
@@ -155,8 +155,8 @@ def createMultiBody(
         The id of the body, or a tuple of ids if there are `batchPositions`.
 
     Raises:
-        pybullet.error: Not connected, the link lists are not equally long, an item is not what it should
-            be, or the links form no tree. No body is made then.
+        pybullet.error: Not connected, the link lists differ in length, an item has a wrong type or value, or
+            the links do not form a tree. No body is made then.
 
     Examples:
         >>> ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
@@ -278,12 +278,12 @@ def _rotation(values: Any, name: str) -> Quaternion:
 def _joint_type(value: Any, name: str) -> JointType:
     kind = integer(value, name)
     if kind not in JOINT_TYPES:
-        fail(_FAILED, f"{name} is {kind}, which is no joint that can be made here.")
+        fail(_FAILED, f"{name} is {kind}, which is not a joint type that can be made here.")
     return JOINT_TYPES[kind]
 
 
 def _check_tree(parents: list[int]) -> None:
-    """Every link has to hang on the base, over other links or directly."""
+    """Checks that every link is connected to the base."""
     for link, parent in enumerate(parents):
         if not 0 <= parent <= len(parents):
             fail(_FAILED, f"linkParentIndices[{link}] is {parent}; it has to be from 0 to {len(parents)}.")

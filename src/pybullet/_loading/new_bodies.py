@@ -1,4 +1,4 @@
-"""Bodies that come into the world of a client: all of a call, or none."""
+"""Adding bodies to the world of a client: all bodies of a call, or none."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def warn_of_coordinates(function: str, use_maximal: int) -> None:
-    """Logs that maximal coordinates, where they are asked for, are not what the bodies have."""
+    """Logs a warning if maximal coordinates are asked for, which Carom does not have."""
     if use_maximal > 0:
         logger.warning(
             "%s: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.", function
@@ -29,12 +29,12 @@ def add_bodies(
     problem: str,
     load: FileLoad | None = None,
 ) -> tuple[int, ...]:
-    """Brings bodies into a world.
+    """Adds bodies to a world.
 
     Args:
         client: Whose world.
         bodies: What they are, and the pose of the link frame of their base.
-        problem: PyBullet's text when one cannot be made.
+        problem: PyBullet's error message if one cannot be made.
         load: The call that loads them from a file, if one does.
 
     Returns:
@@ -62,9 +62,9 @@ def add_bodies(
 
 
 def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
-    """Reads what bodies look like if the files may be gone by the time of the first image.
+    """Reads visual shapes now if their files may be deleted before the first image.
 
-    Otherwise that waits until somebody looks: a robot has more to look at than to load.
+    Otherwise they are read at the first image, because they are larger than the robot's other files.
     """
     from carom.description import Mesh
     from carom.formats.files import is_fresh

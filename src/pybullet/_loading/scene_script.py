@@ -1,4 +1,4 @@
-"""Writing a scene down as a script."""
+"""Writing a scene as a script."""
 
 from __future__ import annotations
 
@@ -35,13 +35,12 @@ _START = (
 def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
     """Writes a script that rebuilds the scene.
 
-    The script connects, loads the files the bodies were loaded from, or makes the bodies from shapes
-    where scripts made them, and gives them their poses, velocities and joint states. Then come
-    constraints, gravity and the time step. `bodies` holds the new ids by the present ones. Colours,
-    friction and motors are not written; `saveBullet` keeps everything.
+    The script connects, loads the files of the bodies, or creates bodies from shapes, and sets poses,
+    velocities and joint states. Then it sets constraints, gravity and the time step. `bodies` holds the new
+    ids by the present ones. Colours, friction and motors are not written; `saveBullet` keeps everything.
 
     Args:
-        worldFileName: The script; a file that is there is replaced.
+        worldFileName: The script; an existing file is replaced.
         physicsClientId: The connection.
 
     Raises:
@@ -83,7 +82,7 @@ def _bodies(client: Client) -> Iterator[str]:
 
 
 def _file(load: FileLoad, bodies: dict[int, Body]) -> Iterator[str]:
-    """The bodies of one file; those that have been removed since are removed again."""
+    """The bodies of one file; those that were removed are removed again."""
     from pybullet._loading.shape_script import call
 
     first = next(iter(bodies.values()))

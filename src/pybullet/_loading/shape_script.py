@@ -1,4 +1,4 @@
-"""Bodies written down as the calls that make them from shapes."""
+"""Bodies as the calls that create them from shapes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class Raw(str):
-    """An argument that is Python already."""
+    """An argument that is Python code already."""
 
     __slots__ = ()
 
@@ -44,7 +44,7 @@ def call(function: str, *arguments: Any, **keywords: Any) -> str:
 
 
 def written(value: Any) -> str:
-    """A value as Python, its numbers with all their digits."""
+    """A value as Python code, with all digits of numbers."""
     if isinstance(value, Raw):
         return str(value)
     if isinstance(value, np.ndarray):
@@ -106,7 +106,7 @@ def _collision(shapes: tuple[Collision, ...]) -> Raw:
 
 
 def _visual(link: LinkSpec) -> Raw:
-    """What is seen of a link; -1 where that is what touches, or cannot be made."""
+    """The visual shape of a link; -1 if it is the collision shape, or cannot be made."""
     shapes = link.visuals
     touching = [(shape.geometry, shape.frame) for shape in link.collisions]
     plain = all(shape.material is None for shape in shapes)
@@ -120,7 +120,7 @@ def _visual(link: LinkSpec) -> Raw:
 
 
 def _shape(kind: str, parts: list[Any], colours: Sequence[Any] = ()) -> Raw:
-    """The call that makes a shape; -1 for none, and for what no call makes."""
+    """The call that makes a shape; -1 without a shape, or if no call makes it."""
     if not parts or any(not _arguments(geometry) for geometry, *_ in parts):
         return Raw("-1")
     frames = {"collision": "collisionFrame", "visual": "visualFrame"}[kind.lower()]
@@ -156,7 +156,7 @@ def _shape(kind: str, parts: list[Any], colours: Sequence[Any] = ()) -> Raw:
 
 
 def _arguments(geometry: Geometry) -> dict[str, Any]:
-    """What makes a shape, as arguments of `createCollisionShape`; nothing for what it cannot make."""
+    """The arguments of `createCollisionShape` for a shape; empty if it cannot make the shape."""
     match geometry:
         case Sphere(radius):
             return {"shapeType": Raw("p.GEOM_SPHERE"), "radius": radius}

@@ -1,4 +1,4 @@
-"""Bringing soft bodies into a world."""
+"""Loading soft bodies into a world."""
 
 from __future__ import annotations
 
@@ -50,31 +50,31 @@ def loadSoftBody(
 ) -> int:
     """Loads a soft body: the surface of an OBJ file as cloth, the tetrahedra of a VTK file as a solid.
 
-    In a world of `resetSimulation(RESET_USE_DEFORMABLE_WORLD)` the parameters say what it is like. In any
-    other, surfaces become cloth that hardly stretches, and the parameters of springs mean nothing.
+    After `resetSimulation(RESET_USE_DEFORMABLE_WORLD)` the parameters define the material. Otherwise,
+    surfaces become cloth that hardly stretches, and the parameters of springs have no effect.
 
     Args:
         fileName: The file, `.obj` or `.vtk` (text, legacy format), found as that of `loadURDF` is.
-        basePosition: Where the origin of its mesh is [m].
-        baseOrientation: How the mesh is turned (x, y, z, w).
+        basePosition: Position of the origin of its mesh [m].
+        baseOrientation: Orientation of the mesh (x, y, z, w).
         scale: Factor on all lengths; 1 when not greater than 0.
-        mass: Of all nodes together [kg], each of which has the same; 1 when not greater than 0.
+        mass: Total mass [kg], the same for each node; 1 if not greater than 0.
         collisionMargin: Distance at which nodes rest on other surfaces [m]; 0.02 when not greater than 0.
         useMassSpring: 1 for springs along all edges.
-        useBendingSprings: 1 for springs between nodes that have a neighbour in common, too.
-        useNeoHookean: 1 for tetrahedra that resist to a change of shape.
+        useBendingSprings: 1 for bending springs between nodes with a common neighbour as well.
+        useNeoHookean: 1 for elastic tetrahedra (neo-Hookean material).
         springElasticStiffness: [N/m].
         springDampingStiffness: [N s/m].
-        springDampingAllDirections: 1: springs damp every relative motion of their ends.
+        springDampingAllDirections: 1: springs damp all relative motion of their ends.
         springBendingStiffness: Of bending springs [N/m].
         NeoHookeanMu: [Pa]; for small strains the shear modulus is 3/4 of it.
-        NeoHookeanLambda: [Pa]; for small strains Lamé's first parameter is this less 5/8 of `NeoHookeanMu`.
+        NeoHookeanLambda: [Pa]; for small strains Lamé's first parameter is this minus 5/8 of `NeoHookeanMu`.
         NeoHookeanDamping: Viscosity as a share of these [s].
         frictionCoeff: Coulomb coefficient, multiplied by that of what it touches.
-        useFaceContact: Without effect, as in PyBullet: nodes touch, not faces.
-        useSelfCollision: 1: its nodes do not go through its faces.
-        repulsionStiffness: Without effect: nodes are kept off faces whatever it takes.
-        simFileName: A mesh that is simulated instead of that of the file, which is only seen.
+        useFaceContact: No effect, as in PyBullet: only nodes collide, not faces.
+        useSelfCollision: 1: its nodes collide with its own faces.
+        repulsionStiffness: No effect: nodes are kept off faces with any force needed.
+        simFileName: A mesh to simulate; that of `fileName` is then only visible.
         physicsClientId: The connection.
 
     Returns:
@@ -83,7 +83,7 @@ def loadSoftBody(
     Raises:
         pybullet.error: Not connected, the file is missing or cannot be used (what follows PyBullet's text
             says why), a parameter is negative or not finite, or the pose is not three and four finite
-            numbers. The world is then as it was.
+            numbers. The world is then unchanged.
 
     Examples:
         >>> p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
@@ -184,7 +184,7 @@ def _spec(
     from carom.soft.older import older_cloth_from_file
 
     path = _found(client, name)
-    # As in PyBullet, a mesh for simulation may lie beside the one that is seen.
+    # As in PyBullet, the mesh for simulation may be in the folder of the visible one.
     inside = _found(client, simulated, path.parent) if simulated else None
     try:
         if client.deformable:
@@ -205,7 +205,7 @@ def _spec(
 
 
 def _found(client: Client, name: str, beside: Path | None = None) -> Path:
-    """A file, looked for beside another one after everywhere else."""
+    """Finds a file; the folder of another file is searched last."""
     path = client.search().find(name)
     if path is None and beside is not None and (beside / name).is_file():
         path = beside / name

@@ -1,7 +1,7 @@
-"""Logs of commands: every call that changes the world, and performing them again.
+"""Logs of commands: recording every call that changes the world, and replaying them.
 
-The calls are taken down on their way to the functions, by a detour that is there as long as the log is; steps
-are taken down from the world itself, so those that the clock of a real-time simulation makes are there, too.
+The calls are recorded by a detour that exists as long as the log; steps are recorded by an observer of the
+world, so those of a real-time simulation are included.
 docs/command-logs.md has the format. Reading a log runs no code from it, and no command writes files.
 """
 
@@ -61,15 +61,15 @@ class Command(NamedTuple):
 
 
 class CommandLog:
-    """Takes the calls of a client down until it is closed.
+    """Records the calls of a client until it is closed.
 
-    Each is in the file as soon as it has returned, so the log of a process that was killed is whole. Calls
-    that raise are not taken down: they change nothing.
+    Each is written to the file when it returns, so the log of a killed process is complete. Calls that raise
+    an exception are not recorded: they change nothing.
 
     Args:
         number: Id of the client.
         client: The client.
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
 
     Raises:
         OSError: The file cannot be written.
@@ -85,10 +85,10 @@ class CommandLog:
         add_detour(self._number, self)
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        """Calls a function, and takes it down."""
+        """Calls a function, and records the call."""
         if function.name not in COMMANDS or function.name == _STEP:
             return self._pass_on(function, arguments, keywords)
-        # Held, so that the order in the file is that of the calls.
+        # The lock is held so that the order in the file is that of the calls.
         with self._client.lock:
             result = self._pass_on(function, arguments, keywords)
             positional, named = function.with_client(0, list(arguments), keywords)
@@ -96,15 +96,15 @@ class CommandLog:
             return result
 
     def before_step(self) -> None:
-        """Nothing: the step is taken down when it is done."""
+        """Does nothing: the step is recorded afterwards."""
 
     def after_step(self) -> None:
-        """Takes a step down."""
+        """Records a step."""
         self._file.write(self._step)
 
     def close(self) -> None:
         """Ends the log."""
-        # The detour of a client that is gone has gone with it.
+        # The detour of a closed client was removed with it.
         if detour_of(self._number) is self:
             if self._way is None:
                 remove_detour(self._number)
@@ -119,12 +119,12 @@ class CommandLog:
 
 
 def replay(number: int, client: Client, path: Path) -> None:
-    """Performs the commands of a log. Its whole file is checked before the first of them.
+    """Replays the commands of a log. The whole file is checked before the first command.
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: It is no such log, or damaged, and nothing has been done; or a command cannot be
-            performed, or gives something else than it gave, and those before it have been performed.
+        ValueError: It is not such a log, or damaged: then nothing is done. Or a command fails, or its result
+            differs from the recorded one: then the commands before it have been performed.
     """
     content = memoryview(path.read_bytes())
     try:
@@ -133,7 +133,7 @@ def replay(number: int, client: Client, path: Path) -> None:
         for place, command in enumerate(_commands(content)):
             try:
                 _perform(index(number), client, command)
-            # Anybody may have made the file up, so any argument may be in it.
+            # The file may be forged, so it may contain any argument.
             except Exception as problem:
                 raise Malformed(
                     f"command {place + 1}, {command.name}, cannot be repeated; the {place} before it have "
@@ -145,7 +145,7 @@ def replay(number: int, client: Client, path: Path) -> None:
 
 def _perform(number: int, client: Client, command: Command) -> None:
     if command.name == _STEP:
-        # Not by the function, which would wait for a window that is held.
+        # Not by the public function, which would wait while the simulation is paused.
         with client.lock:
             client.world.step()
         return
@@ -168,7 +168,7 @@ def _record(command: Command) -> bytes:
 
 
 def _commands(content: memoryview) -> Iterator[Command]:
-    """The commands of a file; raises `Malformed` at the first thing that is not as it should be."""
+    """The commands of a file; raises `Malformed` at the first error."""
     if len(content) < _HEADER.size or bytes(content[: len(_MAGIC)]) != _MAGIC:
         raise Malformed("this is no log of commands")
     _, version, _ = _HEADER.unpack_from(content)

@@ -29,10 +29,10 @@ ANY_BODY = -1
 
 
 class BinaryLog:
-    """A binary log without records; the kinds build on it.
+    """Base class of binary logs.
 
     Args:
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
         columns: Names of the columns.
         types: Type of each column.
 
@@ -47,11 +47,11 @@ class BinaryLog:
         self._steps = 0
         self._time = 0.0
         self._start_of_step = (0, 0.0)
-        # Of the present step; the file may be a device, which would not give them back.
+        # Of the present step; they cannot be removed from the file again if it is a device.
         self._records: list[bytes] = []
 
     def before_step(self) -> None:
-        """Notes where the records of the step begin."""
+        """Starts the records of the step."""
         self._records.clear()
         self._start_of_step = (self._steps, self._time)
 
@@ -64,7 +64,7 @@ class BinaryLog:
         """Makes the records of a substep."""
 
     def step_repeated(self) -> None:
-        """Takes the records of the step back."""
+        """Discards the records of the step."""
         self._records.clear()
         self._steps, self._time = self._start_of_step
 
@@ -79,7 +79,7 @@ class BinaryLog:
         try:
             packed = self._pack(*values)
         except OverflowError:
-            # What single precision cannot hold is infinite in it.
+            # Numbers too large for single precision become infinite.
             packed = self._pack(*(c_float(v).value if isinstance(v, float) else v for v in values))
         self._records.append(_MARKER + packed)
 
@@ -91,14 +91,14 @@ class BinaryLog:
 class RobotLog(BinaryLog):
     """Bases and joints of bodies.
 
-    A body that has more joints than there are columns, or a spherical or planar one, leaves nothing but the
-    marker, as in PyBullet.
+    For a body with more joints than columns, or with a spherical or planar joint, only the marker is written,
+    as in PyBullet.
 
     Args:
         path: The file.
         world: The world.
         bodies: Ids of the bodies; empty for all.
-        room: Number of joints there are columns for.
+        room: Number of joints that have columns.
         flags: `STATE_LOG_JOINT_MOTOR_TORQUES` and `STATE_LOG_JOINT_USER_TORQUES`, added up.
     """
 
@@ -120,7 +120,7 @@ class RobotLog(BinaryLog):
         self._torque = self._applied = world.joint_torque.copy()
 
     def before_step(self) -> None:
-        """Keeps the torques that scripts apply: the step takes them away."""
+        """Keeps the torques that scripts apply: the step clears them."""
         super().before_step()
         self._torque = self._world.joint_torque.copy()
         self._keep_torques()
@@ -158,7 +158,7 @@ class RobotLog(BinaryLog):
             values += [*torques, *rest]
         x, y, z, qx, qy, qz, qw = world.position[body.first_position :][:7]
         wx, wy, wz, vx, vy, vz = world.velocity[body.first_velocity :][:6]
-        # PyBullet keeps the inverse rotation and turns it round: its zeros are negative.
+        # PyBullet stores the inverse rotation and inverts it: its zeros are negative.
         turn = (-(0.0 - qx), -(0.0 - qy), -(0.0 - qz), qw)
         self._record(body.id, x, y, z, *turn, vx, vy, vz, wx, wy, wz, len(joints), *values)
 
@@ -170,7 +170,7 @@ class ContactLog(BinaryLog):
         path: The file.
         client_id: The connection.
         world: Its world.
-        sides: Body, -1 for any, and link, -2 for any, of the one and of the other side.
+        sides: Body, -1 for any, and link, -2 for any, of both sides.
     """
 
     def __init__(
@@ -206,7 +206,7 @@ def _matches(side: tuple[int, int], place: tuple[int, int]) -> bool:
 
 
 class ControllerLog(BinaryLog):
-    """Controllers of virtual reality: there are none, so there are no records."""
+    """Virtual reality controllers, which are not supported: a log without records."""
 
     def __init__(self, path: Path) -> None:
         columns = "controllerId,numMoveEvents,m_numButtonEvents,posX,posY,posZ,oriX,oriY,oriZ,oriW,analogAxis"
@@ -219,7 +219,7 @@ class ControllerLog(BinaryLog):
 
 
 class TimingLog:
-    """Where the time goes, as a trace that Chrome and Perfetto show: steps, and zones that scripts name.
+    """A timing profile for Chrome or Perfetto: steps, and zones named by scripts.
 
     Args:
         path: The file; `_0.json` is added, as PyBullet adds the number of the thread.

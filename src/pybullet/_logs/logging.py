@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
 _DEFAULT_ROOM = 12
-# More than the joints of any body that can be simulated at a useful speed.
+# More joints than any body that can be simulated at a useful speed.
 _MOST_ROOM = 10_000
 
 
@@ -47,7 +47,7 @@ def startStateLogging(
     logFlags: int = -1,
     physicsClientId: int = 0,
 ) -> Any:
-    """Starts to write a log after each step, or after each of the substeps it has.
+    """Starts a log, written after each step or substep.
 
     Args:
         loggingType: `STATE_LOGGING_GENERIC_ROBOT` for bases and joints, `STATE_LOGGING_CONTACT_POINTS`
@@ -56,15 +56,15 @@ def startStateLogging(
             that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
             `_0.json` added; `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of
             simulated time, from where the camera of the window is, which needs `pip install carom[video]`
-            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for a log that stays empty.
+            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for an empty log.
 
             `STATE_LOGGING_ALL_COMMANDS` for all calls that change the world, one such log at a time;
-            `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results to the last
-            bit in a world that is as it was when the log began. See docs/command-logs.md.
-        fileName: The file; one that is there is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
-        objectUniqueIds: Bodies to log; none for all, but a Minitaur has to be named. Those with more
+            `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results, bit for bit,
+            in a world in the same state as at the start of the log. See docs/command-logs.md.
+        fileName: The file; an existing one is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
+        objectUniqueIds: Bodies to log; an empty list for all, but a Minitaur has to be given. Those with more
             joints than columns, or with spherical or planar joints, are left out.
-        maxLogDof: Number of joints there are columns for, 10,000 at most; 12 when negative.
+        maxLogDof: Number of joints that have columns, at most 10,000; 12 if negative.
         bodyUniqueIdA: Of contacts: only those of this body; -1 for any.
         bodyUniqueIdB: Of contacts: and of this one.
         linkIndexA: Of contacts: only those of this link of `bodyUniqueIdA`; -2 for any.
@@ -75,13 +75,13 @@ def startStateLogging(
         physicsClientId: The connection.
 
     Returns:
-        The id of the log; None for types that log nothing (`STATE_LOGGING_CUSTOM_TIMER` and others),
-        when the first body is no Minitaur, and when commands are being logged already.
+        The id of the log; None for types that log nothing (`STATE_LOGGING_CUSTOM_TIMER` and others), if the
+        first body is not a Minitaur, and if there is a log of commands already.
 
     Raises:
         pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, a
-            video is asked for and PyAV is not installed, or a log cannot be replayed: its file is missing
-            or damaged and nothing has been done, or one of its commands fails.
+            video is asked for and PyAV is not installed, or a log cannot be replayed: its file is missing or
+            damaged (then nothing is done), or one of its commands fails.
 
     Examples:
         >>> log = p.startStateLogging(p.STATE_LOGGING_GENERIC_ROBOT, folder + "/arm.bin", [arm])
@@ -168,12 +168,12 @@ def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
 
 @exported_as("(eventName=None, physicsClientId=0)")
 def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0, **spaced: str | None) -> None:
-    """Begins a zone of the logs of `STATE_LOGGING_PROFILE_TIMINGS`, or ends the one begun last.
+    """Begins a named zone in the logs of `STATE_LOGGING_PROFILE_TIMINGS`, or ends the last one.
 
     Args:
         eventName: Name of a zone that begins; None ends one.
         physicsClientId: The connection.
-        spaced: `"eventName "`: what PyBullet calls the first argument, by mistake.
+        spaced: `"eventName "`: PyBullet's misspelt name of the first argument.
 
     Raises:
         pybullet.error: Not connected.

@@ -23,7 +23,7 @@ _MOTORS = (
     "motor_back_rightL_joint",
     "motor_back_rightR_joint",
 )
-# What PyBullet writes as the mode of the motors.
+# PyBullet's value for the mode of the motors.
 _MODE = 6
 
 
@@ -43,7 +43,7 @@ class MinitaurLog(BinaryLog):
         self._motors = motors
 
     def after_substep(self) -> None:
-        """Writes a record, or none when the robot is gone."""
+        """Writes a record, unless the robot was removed."""
         body, world = self._body, self._body.world
         if world.bodies.get(body.id) is body:
             first = body.first_position

@@ -29,13 +29,13 @@ def cross(a: Vector3, b: Vector3) -> Vector3:
 
 
 def unit(v: Vector3) -> Vector3 | None:
-    """A vector shortened to length 1; None for the zero vector."""
+    """A vector normalised to length 1; None for the zero vector."""
     length = hypot(*v)
     return (v[0] / length, v[1] / length, v[2] / length) if length > 0.0 else None
 
 
 def look_at(eye: Vector3, target: Vector3, up: Vector3) -> Matrix16 | None:
-    """World to camera: x to the right, y up, z towards the viewer. None when no such frame exists."""
+    """World to camera: x to the right, y up, z towards the viewer. None if no such frame exists."""
     forward = unit(subtracted(target, eye))
     right = unit(cross(forward, up)) if forward else None
     if forward is None or right is None:
@@ -96,20 +96,20 @@ def _rotation_zyx(z: float, y: float, x: float) -> tuple[Vector3, Vector3, Vecto
 def computeViewMatrix(
     cameraEyePosition: Vector, cameraTargetPosition: Vector, cameraUpVector: Vector, physicsClientId: int = 0
 ) -> Matrix16:
-    """View matrix of a camera by where it is and what it looks at. Needs no connection.
+    """View matrix of a camera from its position and target. Needs no connection.
 
     Args:
-        cameraEyePosition: Where the camera is [m], world frame.
+        cameraEyePosition: Position of the camera [m], world frame.
         cameraTargetPosition: What it looks at [m], world frame.
-        cameraUpVector: Upward direction; need be neither of unit length nor square to the view.
+        cameraUpVector: Upward direction; need not have unit length or be perpendicular to the view.
         physicsClientId: Not used.
 
     Returns:
         16 numbers, column after column, for `getCameraImage`.
 
     Raises:
-        pybullet.error: A vector does not have three finite numbers, or the camera looks at itself or
-            straight along its upward direction.
+        pybullet.error: A vector does not have three finite numbers, eye and target coincide, or the camera
+            looks along its upward direction.
 
     Examples:
         >>> view = p.computeViewMatrix([0, 0, 5], [0, 0, 0], [0, 1, 0])

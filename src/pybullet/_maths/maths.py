@@ -1,8 +1,8 @@
 """Rotations and rigid transforms. None of these functions needs a connection.
 
-PyBullet computes most of them in single precision; here they are in double precision throughout, and
-only where single precision decides between two answers is it asked. The native library, which tries these
-calls first (`pybullet._calls.quick`), works all of them out: here arguments are made numbers, and checked.
+PyBullet computes most of them in single precision; here they are in double precision, and single precision is
+used only where it decides between two results. The native library, which tries these calls first
+(`pybullet._calls.quick`), computes all of them: these functions convert and check arguments.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def getQuaternionFromEuler(eulerAngles: Vector, physicsClientId: int = 0) -> Qua
 def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vector3:
     """Roll, pitch and yaw of a rotation, the inverse of `getQuaternionFromEuler`.
 
-    At a pitch of ±90 degrees roll and yaw turn about the same axis; roll is then 0.
+    At a pitch of ±90 degrees (gimbal lock) roll and yaw rotate about the same axis; roll is then 0.
 
     Args:
         quaternion: (x, y, z, w), of unit length.
@@ -106,7 +106,7 @@ def getMatrixFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tup
 def multiplyTransforms(
     positionA: Vector, orientationA: Vector, positionB: Vector, orientationB: Vector, physicsClientId: int = 0
 ) -> tuple[Vector3, Quaternion]:
-    """Pose of frame B, which is given in frame A, seen from where A is given.
+    """Composes two poses: frame B is given in frame A; returns B in the reference frame of A.
 
     Args:
         positionA: Origin of A [m].
@@ -142,7 +142,7 @@ def multiplyTransforms(
 def invertTransform(
     position: Vector, orientation: Vector, physicsClientId: int = 0
 ) -> tuple[Vector3, Quaternion]:
-    """The inverse of a pose: of frame B in A, it gives that of A in B.
+    """The inverse of a pose: from frame B in A it computes A in B.
 
     Args:
         position: Origin [m].
@@ -167,7 +167,7 @@ def invertTransform(
 
 @exported
 def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -> Vector3:
-    """A vector turned by a quaternion.
+    """Rotates a vector by a quaternion.
 
     Args:
         quaternion: (x, y, z, w), of unit length.
@@ -175,7 +175,7 @@ def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -
         physicsClientId: Not used.
 
     Returns:
-        The turned vector.
+        The rotated vector.
 
     Raises:
         pybullet.error: An argument has not three, or four, finite numbers.
@@ -194,7 +194,7 @@ def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int 
     """Quaternion of a rotation about an axis.
 
     Args:
-        axis: Direction, of any length; the x axis when the length is 0.
+        axis: Direction, of any length; the x axis if the length is 0.
         angle: Angle [rad].
         physicsClientId: Not used.
 
@@ -217,7 +217,7 @@ def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int 
 def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tuple[Vector3, float]:
     """Axis and angle of a rotation.
 
-    For angles below about 0.002 rad the axis is (1, 0, 0), whatever it was.
+    For angles below about 0.002 rad the axis is always (1, 0, 0).
 
     Args:
         quaternion: (x, y, z, w), of unit length.
@@ -244,7 +244,7 @@ def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> 
 def getQuaternionSlerp(
     quaternionStart: Vector, quaternionEnd: Vector, interpolationFraction: float, physicsClientId: int = 0
 ) -> Quaternion:
-    """A rotation between two others, on the shorter way round and at constant speed.
+    """Spherical linear interpolation (slerp) between two rotations, by the shorter way.
 
     Args:
         quaternionStart: (x, y, z, w).
@@ -272,7 +272,7 @@ def getQuaternionSlerp(
 def getDifferenceQuaternion(
     quaternionStart: Vector, quaternionEnd: Vector, physicsClientId: int = 0
 ) -> Quaternion:
-    """The rotation that leads from one to another, in world axes: end · start⁻¹, on the shorter way.
+    """The rotation from one orientation to another, in world axes: end · start⁻¹, by the shorter way.
 
     Args:
         quaternionStart: (x, y, z, w), of unit length.
@@ -324,7 +324,7 @@ def getAxisDifferenceQuaternion(
 def calculateVelocityQuaternion(
     quaternionStart: Vector, quaternionEnd: Vector, deltaTime: float, physicsClientId: int = 0
 ) -> Vector3:
-    """Constant angular velocity that leads from one rotation to another, on the shorter way round.
+    """Constant angular velocity from one orientation to another, by the shorter way.
 
     Args:
         quaternionStart: (x, y, z, w), of unit length.
@@ -355,8 +355,8 @@ def calculateVelocityQuaternion(
 
 
 def _numbers(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...]:
-    """What a kernel gives that has a result for all numbers."""
-    # From now on it is asked without going through here, if that is possible.
+    """The result of a kernel that accepts all numbers."""
+    # From now on the native library is called directly, if possible.
     install()
     result = worked_out(kernel, numbers, count)
     assert result is not None

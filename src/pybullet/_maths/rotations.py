@@ -8,10 +8,10 @@ from carom.description.pose import Quaternion, Vector3
 
 
 def canonical(quaternion: Quaternion) -> Quaternion:
-    """The one of the two quaternions of a rotation that PyBullet reports.
+    """The sign of a rotation's quaternion as reported by PyBullet.
 
-    It reads it off a rotation matrix: w is positive while the trace is, or else the largest of x, y
-    and z is.
+    PyBullet derives it from a rotation matrix: w is positive if the trace is, otherwise the largest of x, y
+    and z is positive.
     """
     x, y, z, w = quaternion
     leading = w if w * w > 0.25 else max(x, y, z, key=abs)
@@ -19,14 +19,14 @@ def canonical(quaternion: Quaternion) -> Quaternion:
 
 
 def unit(quaternion: Quaternion) -> Quaternion:
-    """A quaternion shortened to length 1."""
+    """A quaternion normalised to length 1."""
     x, y, z, w = quaternion
     length = sqrt(x * x + y * y + z * z + w * w)
     return (x / length, y / length, z / length, w / length)
 
 
 def turned(quaternion: Quaternion, v: Vector3) -> Vector3:
-    """A vector turned by a quaternion of unit length."""
+    """A vector rotated by a quaternion of unit length."""
     qx, qy, qz, qw = quaternion
     x, y, z = v
     tx = 2.0 * (qy * z - qz * y)

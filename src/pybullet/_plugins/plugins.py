@@ -1,4 +1,4 @@
-"""Plugins: those that are part of PyBullet, of which the one for files does something here."""
+"""Plugins: those that are part of PyBullet; only that for files has an effect here."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ _INSTEAD = {
 
 @exported
 def loadPlugin(pluginPath: str, postFix: str | None = None, physicsClientId: int = 0) -> int:
-    """Loads a plugin that is part of PyBullet. Those in libraries of their own are for PyBullet's engine.
+    """Loads a plugin that is part of PyBullet; plugins in separate libraries need PyBullet's engine.
 
     Args:
         pluginPath: `fileIOPlugin`, which lets files be found in zip archives; `pdControlPlugin`,
-            `collisionFilterPlugin`, `tinyRendererPlugin` or the file of the module `eglRenderer`, whose work
-            Carom does without them.
+            `collisionFilterPlugin`, `tinyRendererPlugin` or the file of the module `eglRenderer`, whose
+            functions Carom has without plugins.
         postFix: Not used.
         physicsClientId: The connection.
 
     Returns:
-        Its id; -1, with a warning, for any other.
+        Its id; -1, with a warning, for other plugins.
 
     Raises:
         pybullet.error: Not connected.
@@ -69,7 +69,7 @@ def loadPlugin(pluginPath: str, postFix: str | None = None, physicsClientId: int
 
 @exported
 def unloadPlugin(pluginUniqueId: int, physicsClientId: int = 0) -> None:
-    """Unloads a plugin. One that is not loaded is no error; `fileIOPlugin` forgets its archives.
+    """Unloads a plugin. One that is not loaded is no error; for `fileIOPlugin` its archives are removed.
 
     Args:
         pluginUniqueId: The plugin.
@@ -98,7 +98,7 @@ def executePluginCommand(
     floatArgs: Sequence[float] | None = None,
     physicsClientId: int = 0,
 ) -> int:
-    """Tells a plugin to do something.
+    """Sends a command to a plugin.
 
     The commands of `fileIOPlugin` are `[AddFileIOAction, ZipFileIO]`, to look for files in the zip archive
     `textArgument` as well, itself found like any file; `[AddFileIOAction, PosixFileIO]`, to look in the
@@ -112,11 +112,11 @@ def executePluginCommand(
         physicsClientId: The connection.
 
     Returns:
-        Of a place that was added the slot, of one that was removed the same; -1, with a warning, for
-        anything that cannot be done.
+        The slot of the place that was added or removed; -1, with a warning, if the command cannot be
+        executed.
 
     Raises:
-        pybullet.error: Not connected, or what should be a sequence of numbers is not.
+        pybullet.error: Not connected, or an argument is not a sequence of numbers.
 
     Examples:
         >>> plugin = p.loadPlugin("fileIOPlugin")

@@ -31,7 +31,7 @@ __all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollision
 
 _FAILED = "createCollisionShape failed."
 
-# What PyBullet puts around meshes that are part of a compound [m].
+# PyBullet's margin of meshes that are part of a compound [m].
 _MARGIN = 0.001
 
 
@@ -56,7 +56,7 @@ def createCollisionShape(
     replaceHeightfieldIndex: int = -1,
     physicsClientId: int = 0,
 ) -> int:
-    """Makes a collision shape, from which `createMultiBody` makes bodies; any number from one shape.
+    """Makes a collision shape, for any number of bodies made by `createMultiBody`.
 
     Meshes collide as their convex hull, one hull for each group of an OBJ file; hulls of fine meshes are
     simplified to 128 vertices. With `GEOM_FORCE_CONCAVE_TRIMESH`, or with `indices`, the triangles
@@ -72,19 +72,19 @@ def createCollisionShape(
         meshScale: Factor on a mesh along x, y and z; distance between the points of a heightfield along x
             and y, and factor on its heights.
         planeNormal: Direction out of the half space; z if not given.
-        flags: `GEOM_FORCE_CONCAVE_TRIMESH`. `GEOM_CONCAVE_INTERNAL_EDGE` changes nothing here.
+        flags: `GEOM_FORCE_CONCAVE_TRIMESH`. `GEOM_CONCAVE_INTERNAL_EDGE` has no effect.
         collisionFramePosition: Origin of the shape in the link frame [m]. A heightfield stays at the
             origin.
         collisionFrameOrientation: Orientation of the shape in the link frame (x, y, z, w).
         vertices: Points of a mesh, three numbers each, instead of a file.
         indices: Three vertices for each triangle, one after the other.
-        heightfieldTextureScaling: For a window: how often the texture repeats.
-        heightfieldData: `numHeightfieldRows` * `numHeightfieldColumns` heights, those along x first. The
-            middle between the least and the greatest lies at the origin.
+        heightfieldTextureScaling: In a window: how often the texture repeats.
+        heightfieldData: `numHeightfieldRows` * `numHeightfieldColumns` heights, x fastest. The mean of the
+            minimum and the maximum is at the origin.
         numHeightfieldRows: Points along x.
         numHeightfieldColumns: Points along y.
-        replaceHeightfieldIndex: A heightfield of as many points that gets these heights instead, along
-            with all bodies made of it; where it lies stays.
+        replaceHeightfieldIndex: A heightfield of the same size, which gets these heights, as do all bodies
+            made of it; its position does not change.
         physicsClientId: The connection.
 
     Returns:
@@ -152,7 +152,7 @@ def createCollisionShapeArray(
 ) -> int:
     """Makes one collision shape of several parts.
 
-    The lists hold a value for each part, whether its type needs it or not. Parts that cannot be made are
+    The lists have a value for each part, even if its type does not need it. Parts that cannot be made are
     left out, with a warning.
 
     Args:
@@ -223,9 +223,9 @@ def createCollisionShapeArray(
 
 @exported
 def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> None:
-    """Forgets a collision shape. Nothing happens if there is none, or if a body has been made of it.
+    """Removes a collision shape. Nothing happens if it does not exist, or if a body was made of it.
 
-    Its id is given to the shape that is made next.
+    The next shape gets its id.
 
     Args:
         collisionShapeId: The shape.
@@ -300,7 +300,7 @@ def _heightfield(
     mesh_scale: Any,
     replaced: int,
 ) -> CollisionShape | None:
-    """A landscape; None if it went into the shape `replaced`."""
+    """A heightfield; None if its heights went into the shape `replaced`."""
     from pybullet._shapes.heightfields import (
         heightfield,
         heights_from_data,
@@ -321,7 +321,7 @@ def _heightfield(
 
 
 def _check_pieces(shape: CollisionShape, problem: str) -> None:
-    """Makes what collision detection needs now, so that what is wrong with it comes out now."""
+    """Prepares the shape for collision detection now, so that errors are raised now."""
     from carom.errors import DescriptionError
     from carom.model.shape_pieces import shape_pieces
 

@@ -1,4 +1,4 @@
-"""Landscapes: heights from arrays and files."""
+"""Heightfields: heights from arrays and files."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _WRONG_SIZE = "Size of heightfieldData doesn't match numHeightfieldColumns*numHe
 
 
 def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDArray[np.float64]:
-    """Heights given one by one, x fastest.
+    """Heights from a sequence of numbers, x fastest.
 
     Args:
         values: rows * columns numbers.
         rows: Points along x.
         columns: Points along y.
-        problem: PyBullet's text when they cannot be used.
+        problem: PyBullet's error message if they cannot be used.
 
     Returns:
         (columns, rows) heights, rounded to single precision as PyBullet's are.
@@ -46,8 +46,8 @@ def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDA
 def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
     """Heights from a text file of comma-separated numbers, or from the red of an image, from 0 to 1.
 
-    The lines of a text are rows along y, with PyBullet's transposition: what comes first in the text comes
-    first along y. An image is seen from above, mirrored along x.
+    The lines of a text are rows along y, transposed as in PyBullet: the first number is first along y. An
+    image is a view from above, mirrored along x.
 
     Returns:
         (points along y, points along x) heights.
@@ -73,7 +73,7 @@ def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
         fail(problem, f"{path}: the lines do not all hold equally many numbers.")
     values = np.array(rows)
     height, width = values.shape
-    # PyBullet lays the numbers out the other way round than it reads them.
+    # PyBullet stores the numbers in another order than it reads them.
     return _checked(values.T.reshape(height, width), problem, rounded=False)
 
 
@@ -92,20 +92,20 @@ def _checked(heights: NDArray[np.float64], problem: str, *, rounded: bool = True
 
 
 def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> Heightfield:
-    """A landscape whose middle height lies at the origin."""
+    """A heightfield whose mean of minimum and maximum height is at the origin."""
     if 0.0 in scale[:2]:
         fail(problem, f"meshScale is {list(scale)}, which leaves no area.")
     return Heightfield(heights, scale, 0.5 * float(heights.min() + heights.max()))
 
 
 def replace_heights(client: Client, number: int, heights: NDArray[np.float64], problem: str) -> None:
-    """Gives a landscape, and all bodies made of it, new heights; where it lies stays as it was.
+    """Replaces the heights of a heightfield, and of all bodies made of it; its position does not change.
 
     Args:
         client: The connection.
         number: Id of the collision shape.
         heights: As many as before.
-        problem: PyBullet's text when that is not possible.
+        problem: PyBullet's error message if that is not possible.
     """
     shape = client.shapes.collisions.get(number)
     if shape is None:

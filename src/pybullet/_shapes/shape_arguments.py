@@ -1,4 +1,4 @@
-"""From the arguments of createCollisionShape and createVisualShape to shapes."""
+"""Shapes from the arguments of createCollisionShape and createVisualShape."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def primitive(
 
     Args:
         kind: `GEOM_*`, one of `PRIMITIVES`.
-        problem: PyBullet's text when it cannot be made.
+        problem: PyBullet's error message if it cannot be made.
         radius: Of a sphere, cylinder or capsule.
         length: Of a cylinder, or of the straight part of a capsule.
         half_extents: Of a box; None is not enough.
@@ -78,7 +78,7 @@ def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
     Args:
         position: Three numbers or None.
         orientation: Four numbers or None.
-        problem: PyBullet's text for what is neither.
+        problem: PyBullet's error message for other values.
         prefix: Of the names of both arguments.
     """
     if position is None and orientation is None:

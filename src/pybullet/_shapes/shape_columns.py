@@ -19,7 +19,7 @@ class Column:
     Args:
         values: The list; None if it is not given.
         name: Of the argument.
-        words: What its items are, in PyBullet's text for what is no sequence.
+        words: Name of its items, in PyBullet's error message for an argument that is not a sequence.
     """
 
     def __init__(self, values: Any, name: str, words: str) -> None:
@@ -29,7 +29,7 @@ class Column:
         )
 
     def item(self, index: int, default: Any = None) -> Any:
-        """An entry; the default where the list is too short or not given."""
+        """An entry; the default if the list is too short or not given."""
         return self._items[index] if index < len(self._items) else default
 
 
@@ -51,7 +51,7 @@ class ShapeColumns:
         orientations: `...FrameOrientations`.
 
     Attributes:
-        problem: PyBullet's text when nothing can be made.
+        problem: PyBullet's error message if nothing can be made.
         kinds: `GEOM_*` of each shape.
         files: Names of mesh files.
         scales: Factors on meshes.
@@ -119,7 +119,7 @@ class ShapeColumns:
         )
 
     def each(self, make: Callable[[int, int], Made]) -> list[Made]:
-        """Makes every shape; like PyBullet it leaves out those that cannot be made, with a warning.
+        """Makes every shape; as in PyBullet those that cannot be made are left out, with a warning.
 
         Args:
             make: Makes a shape from its index and kind.

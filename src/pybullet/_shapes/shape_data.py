@@ -1,4 +1,4 @@
-"""What scripts can read of the shapes of bodies."""
+"""Queries about the shapes of bodies."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ CollisionData = tuple[int, int, int, Vector3, bytes, Vector3, Quaternion]
 _NO_COLLISION_DATA = "Error receiving collision shape info"
 _NO_AABB = "getAABB failed."
 _NO_MESH = "getMeshData failed"
-# What PyBullet calls meshes whose file it does not remember, and their dimensions.
+# PyBullet's file name for meshes whose file it does not store, and their dimensions.
 _UNKNOWN_FILE = (b"unknown_file", (1.0, 1.0, 1.0))
 
 
@@ -155,14 +155,14 @@ def getMeshData(
     Args:
         bodyUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
-        collisionShapeIndex: Which of several shapes; -1 for all.
-        flags: Of a soft body: `MESH_DATA_SIMULATION_MESH` for its nodes; else the corners of all triangles
-            of its surface, three for each. 8 besides: the velocities of the nodes [m/s].
+        collisionShapeIndex: Index of the shape; -1 for all.
+        flags: For a soft body: `MESH_DATA_SIMULATION_MESH` for its nodes; otherwise the corners of all
+            triangles of its surface, three for each. Plus 8: the velocities of the nodes [m/s].
         physicsClientId: The connection.
 
     Returns:
-        (how many, (x, y, z) of each [m] in the inertial frame of the link; of a soft body in the world
-        frame).
+        (number of corners, (x, y, z) of each [m] in the inertial frame of the link; for a soft body in the
+        world frame).
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
@@ -189,10 +189,10 @@ def getMeshData(
 
 @exported
 def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) -> tuple[Vector3, Vector3]:
-    """A box along the world's axes around the collision shapes of a link.
+    """The bounding box (AABB, axis-aligned in the world frame) of a link's collision shapes.
 
-    Like PyBullet's it is the box around the turned box of the shapes, which for anything but boxes and
-    spheres is larger than need be, and it includes collision margins.
+    As in PyBullet it is the box around the rotated local box of the shapes, which is larger than necessary
+    except for boxes and spheres, and it includes collision margins.
 
     Args:
         bodyUniqueId: The body.
@@ -200,7 +200,7 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
         physicsClientId: The connection.
 
     Returns:
-        (lowest corner, highest corner) [m].
+        (minimum corner, maximum corner) [m].
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
@@ -279,5 +279,5 @@ _SIGNED_DISTANCE_FIELD = 8
 
 
 def _file_name(mesh: Mesh) -> bytes:
-    """The file of a mesh: as a script asked for it, or where a robot file's reference was found."""
+    """The file of a mesh: as named by a script, or where a robot file's reference was found."""
     return (mesh.asked_for or str(mesh.path)).encode()

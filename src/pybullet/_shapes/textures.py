@@ -1,4 +1,4 @@
-"""The looks of shapes: colours and textures."""
+"""The appearance of shapes: colours and textures."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _UNCHANGED, _NO_TEXTURE = -2, -1
 
 @exported
 def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
-    """Loads an image, so that shapes can be painted with it by `changeVisualShape`.
+    """Loads an image as a texture for `changeVisualShape`.
 
-    `resetSimulation` forgets it.
+    `resetSimulation` removes it.
 
     Args:
         textureFilename: A PNG, JPEG, TGA or BMP file: as given, in `data` folders near the working
@@ -114,19 +114,19 @@ def changeVisualShape(
     flags: int = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """Changes how a link looks. No such body, link or shape is no error.
+    """Changes the colour or texture of a link. A body, link or shape that does not exist is no error.
 
-    A colour of another length is white, as in PyBullet, with a warning.
+    A colour of the wrong length becomes white, as in PyBullet, with a warning.
 
     Args:
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
-        shapeIndex: Which of its shapes, from 0; -1 for all.
-        textureUniqueId: Its texture from now on; -1 for none, -2 leaves it.
-        rgbaColor: Its colour from now on, each from 0 to 1; it multiplies the texture. Alpha 0 hides the
-            shape from cameras.
+        shapeIndex: Index of the visual shape, from 0; -1 for all.
+        textureUniqueId: The new texture; -1 for none, -2: no change.
+        rgbaColor: The new colour (red, green, blue, alpha), each from 0 to 1; it multiplies the texture.
+            Alpha 0 hides the shape from cameras.
         specularColor: Colour of its highlights, in a window.
-        flags: `VISUAL_SHAPE_DOUBLE_SIDED` draws triangles from behind as well, 0 does not; -1 leaves it.
+        flags: `VISUAL_SHAPE_DOUBLE_SIDED` draws back faces as well, 0 does not; -1: no change.
         physicsClientId: The connection.
 
     Raises:
@@ -183,16 +183,16 @@ def resetVisualShapeData(
     flags: int = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """The older name of `changeVisualShape`; it does the same.
+    """The old name of `changeVisualShape`.
 
     Args:
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
         shapeIndex: Which of the link's visual shapes, from 0; -1 for all.
-        textureUniqueId: From `loadTexture`; -1 takes the texture off, -2 leaves it.
+        textureUniqueId: From `loadTexture`; -1 removes the texture, -2: no change.
         rgbaColor: Red, green, blue, opacity, each from 0 to 1.
         specularColor: Red, green, blue of highlights, each from 0 to 1.
-        flags: `VISUAL_SHAPE_DOUBLE_SIDED`, or 0; -1 leaves it.
+        flags: `VISUAL_SHAPE_DOUBLE_SIDED`, or 0; -1: no change.
         physicsClientId: The connection.
 
     Raises:

@@ -17,7 +17,7 @@ __all__ = ["vhacd"]
 
 _FAILED = "vhacd failed."
 
-# What V-HACD takes by default, and what of CoACD's options stands for it.
+# V-HACD's defaults, and the corresponding options of CoACD.
 _DEFAULT_CONCAVITY, _DEFAULT_THRESHOLD = 0.001, 0.05
 _DEFAULT_RESOLUTION, _DEFAULT_GRID = 1_000_000, 50
 _DEFAULT_VERTICES = 64
@@ -44,30 +44,30 @@ def vhacd(
     convexhullApproximation: int = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """Cuts the mesh of an OBJ file into convex pieces, each a group of another OBJ file.
+    """Decomposes the mesh of an OBJ file into convex pieces, each a group of another OBJ file.
 
-    `createCollisionShape` then makes a hull of each. It needs no connection, but the library CoACD:
-    `pip install carom[decompose]`. CoACD cuts differently from V-HACD, usually into fewer pieces; arguments
-    that it has no counterpart for are checked and have no effect.
+    `createCollisionShape` then makes a hull of each. It needs no connection, but it needs the library CoACD:
+    `pip install carom[decompose]`. CoACD works differently from V-HACD, usually with fewer pieces; arguments
+    without a counterpart are checked, but have no effect.
 
     Args:
         fileNameIn: The OBJ file.
         fileNameOut: The OBJ file to write.
-        fileNameLogging: A text file to write, which says what was done.
-        concavity: Concavity that may be left; 0.001 at first, which stands for CoACD's threshold 0.05.
-        alpha: Of V-HACD only.
-        beta: Of V-HACD only.
-        gamma: Of V-HACD only.
-        minVolumePerCH: Of V-HACD only.
-        resolution: Number of voxels; 1000000 at first, which stands for 50 cells along a side in CoACD.
-        maxNumVerticesPerCH: Most vertices of a piece; 64 at first.
-        depth: Of V-HACD only.
-        planeDownsampling: Of V-HACD only.
-        convexhullDownsampling: Of V-HACD only.
-        pca: 1 turns the mesh into its principal axes before cutting.
-        mode: Of V-HACD only.
-        convexhullApproximation: Of V-HACD only.
-        physicsClientId: Nothing here.
+        fileNameLogging: A log file to write.
+        concavity: Maximum concavity; default 0.001, which stands for CoACD's threshold 0.05.
+        alpha: For V-HACD only.
+        beta: For V-HACD only.
+        gamma: For V-HACD only.
+        minVolumePerCH: For V-HACD only.
+        resolution: Number of voxels; default 1000000, which stands for 50 cells along a side in CoACD.
+        maxNumVerticesPerCH: Maximum number of vertices of a piece; default 64.
+        depth: For V-HACD only.
+        planeDownsampling: For V-HACD only.
+        convexhullDownsampling: For V-HACD only.
+        pca: 1 rotates the mesh to its principal axes first.
+        mode: For V-HACD only.
+        convexhullApproximation: For V-HACD only.
+        physicsClientId: No effect.
 
     Raises:
         pybullet.error: CoACD is not installed, or a file cannot be read or written.

@@ -56,7 +56,7 @@ def createVisualShape(
     uvs: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> int:
-    """Makes a visual shape, from which `createMultiBody` makes what is seen of bodies.
+    """Makes a visual shape, for bodies made by `createMultiBody`.
 
     Args:
         shapeType: `GEOM_SPHERE`, `GEOM_BOX`, `GEOM_CAPSULE`, `GEOM_CYLINDER`, `GEOM_PLANE` or `GEOM_MESH`.
@@ -64,11 +64,11 @@ def createVisualShape(
         radius: Of a sphere, capsule or cylinder [m].
         halfExtents: Half the size of a box along x, y and z [m]; boxes need it.
         length: Of a cylinder, or of the part of a capsule between its two half balls [m].
-        fileName: OBJ, STL or DAE file of a mesh. One that is missing or cannot be used logs a warning, and
-            nothing is seen.
+        fileName: OBJ, STL or DAE file of a mesh. If it is missing or cannot be used, a warning is logged, and
+            nothing is visible.
         meshScale: Factor on a mesh along x, y and z.
         planeNormal: Direction out of the plane; z if not given.
-        flags: Nothing here.
+        flags: No effect.
         rgbaColor: Red, green, blue and opacity from 0 to 1; white if not given.
         specularColor: Red, green and blue of its highlights.
         visualFramePosition: Origin of the shape in the link frame [m].
@@ -80,7 +80,7 @@ def createVisualShape(
         physicsClientId: The connection.
 
     Returns:
-        The id of the shape; visual and collision shapes are counted apart.
+        The id of the shape; visual and collision shapes are numbered separately.
 
     Raises:
         pybullet.error: Not connected, an unknown type, or a size that is missing, negative or not finite.
@@ -135,7 +135,7 @@ def createVisualShapeArray(
 ) -> int:
     """Makes one visual shape of several parts.
 
-    The lists hold a value for each part, whether its type needs it or not. Parts that cannot be made are
+    The lists have a value for each part, even if its type does not need it. Parts that cannot be made are
     left out, with a warning.
 
     Args:
@@ -146,7 +146,7 @@ def createVisualShapeArray(
         fileNames: As `fileName`.
         meshScales: As `meshScale`.
         planeNormals: As `planeNormal`.
-        flags: Nothing here.
+        flags: No effect.
         rgbaColors: As `rgbaColor`.
         visualFramePositions: As `visualFramePosition`.
         visualFrameOrientations: As `visualFrameOrientation`.
@@ -201,7 +201,7 @@ def createVisualShapeArray(
 
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
-    """A mesh file. One that cannot be used stops nobody, as in PyBullet: nothing is seen then."""
+    """A mesh file. If it cannot be used, nothing is visible, as in PyBullet, and no error is raised."""
     from carom.errors import DescriptionError
     from carom.formats.files import is_fresh
     from carom.formats.mesh import read_mesh
@@ -211,7 +211,7 @@ def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) ->
         mesh = Mesh(find_file(client, name, problem), scale, asked_for=name)
         read_mesh(mesh.path)
         if is_fresh(mesh.path):
-            # It may be gone when somebody looks.
+            # It may be deleted before it is drawn.
             from carom.render.mesh_visuals import read_mesh_visual
 
             read_mesh_visual(mesh.path)

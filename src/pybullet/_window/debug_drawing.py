@@ -1,4 +1,4 @@
-"""Drawing into the scene of the window: lines, texts, points, colours."""
+"""Debug drawing in the window: lines, texts, points, colours."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def addUserDebugLine(
     """Draws a line.
 
     Args:
-        lineFromXYZ: Where it starts [m].
-        lineToXYZ: Where it ends [m].
-        lineColorRGB: Red, green and blue from 0 to 1; white when left out.
+        lineFromXYZ: Start point [m].
+        lineToXYZ: End point [m].
+        lineColorRGB: Red, green and blue from 0 to 1; white by default.
         lineWidth: In pixels.
-        lifeTime: How long it stays [s]; 0 for ever.
+        lifeTime: Life time [s]; 0 for ever.
         parentObjectUniqueId: Body to draw it on: the points are then in the frame of its link.
         parentLinkIndex: That link, from 0; -1 for the base.
-        replaceItemUniqueId: Item to put it in the place of.
+        replaceItemUniqueId: Item that it replaces.
         physicsClientId: The connection.
 
     Returns:
@@ -89,15 +89,15 @@ def addUserDebugText(
     """Writes text into the scene.
 
     Args:
-        text: What to write.
+        text: The text.
         textPosition: Where [m].
-        textColorRGB: Red, green and blue from 0 to 1; white when left out.
+        textColorRGB: Red, green and blue from 0 to 1; white by default.
         textSize: Height of the letters.
-        lifeTime: How long it stays [s]; 0 for ever.
+        lifeTime: Life time [s]; 0 for ever.
         textOrientation: Quaternion (x, y, z, w); without one the text faces the camera.
         parentObjectUniqueId: Body to write it on: the position is then in the frame of its link.
         parentLinkIndex: That link, from 0; -1 for the base.
-        replaceItemUniqueId: Item to put it in the place of.
+        replaceItemUniqueId: Item that it replaces.
         physicsClientId: The connection.
 
     Returns:
@@ -146,10 +146,10 @@ def addUserDebugPoints(
         pointPositions: Where they are [m].
         pointColorsRGB: A colour for each: red, green and blue from 0 to 1.
         pointSize: In pixels.
-        lifeTime: How long they stay [s]; 0 for ever.
+        lifeTime: Life time [s]; 0 for ever.
         parentObjectUniqueId: Body to draw them on: the points are then in the frame of its link.
         parentLinkIndex: That link, from 0; -1 for the base.
-        replaceItemUniqueId: Item to put them in the place of.
+        replaceItemUniqueId: Item that they replace.
         physicsClientId: The connection.
 
     Returns:
@@ -187,7 +187,7 @@ def addUserDebugPoints(
 
 @exported
 def removeUserDebugItem(itemUniqueId: int, physicsClientId: int = 0) -> None:
-    """Takes a line, text, cloud of points, slider or button away. One that does not exist is no error.
+    """Removes a line, text, cloud of points, slider or button. One that does not exist is no error.
 
     Args:
         itemUniqueId: The item.
@@ -205,7 +205,7 @@ def removeUserDebugItem(itemUniqueId: int, physicsClientId: int = 0) -> None:
 
 @exported
 def removeAllUserDebugItems(physicsClientId: int = 0) -> None:
-    """Takes all lines, texts and points away; sliders and buttons stay.
+    """Removes all lines, texts and points, but not sliders and buttons.
 
     Args:
         physicsClientId: The connection.
@@ -228,7 +228,7 @@ def setDebugObjectColor(
     Args:
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
-        objectDebugColorRGB: Red, green and blue from 0 to 1; left out, the link has its own colour again.
+        objectDebugColorRGB: Red, green and blue from 0 to 1; without it the link gets its own colour again.
         physicsClientId: The connection.
 
     Raises:

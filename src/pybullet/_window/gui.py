@@ -37,9 +37,9 @@ def addUserDebugParameter(
 
     Args:
         paramName: Its name.
-        rangeMin: Least value.
-        rangeMax: Greatest value; less than the least for a button, which counts its clicks.
-        startValue: Value at first.
+        rangeMin: Minimum value.
+        rangeMax: Maximum value; if less than the minimum, a button is made, which counts its clicks.
+        startValue: Initial value.
         physicsClientId: The connection.
 
     Returns:
@@ -64,7 +64,7 @@ def addUserDebugParameter(
 
 @exported
 def readUserDebugParameter(itemUniqueId: int, physicsClientId: int = 0) -> float:
-    """Where a slider is, or how often a button was clicked.
+    """The value of a slider, or the number of clicks of a button.
 
     Args:
         itemUniqueId: The slider or button.
@@ -89,7 +89,7 @@ def readUserDebugParameter(itemUniqueId: int, physicsClientId: int = 0) -> float
 
 @exported
 def removeAllUserParameters(physicsClientId: int = 0) -> None:
-    """Takes all sliders and buttons away.
+    """Removes all sliders and buttons.
 
     Args:
         physicsClientId: The connection.
@@ -157,13 +157,13 @@ def configureDebugVisualizer(
     rgbBackground: Vector | None = None,
     physicsClientId: int = 0,
 ) -> None:
-    """Sets what the window shows. Negative numbers change nothing; nothing happens in `DIRECT`.
+    """Sets options of the window. Negative numbers change nothing; in `DIRECT` it has no effect.
 
     Args:
         flag: `COV_*`. `COV_ENABLE_SINGLE_STEP_RENDERING` makes the call return when the pages in view have
             drawn the present state, or after a tenth of a second; videos get a picture of it.
         enable: 1 to switch that on, 0 to switch it off.
-        lightPosition: Where the light is [m].
+        lightPosition: Position of the light [m].
         shadowMapResolution: Width and height of the shadow map in pixels.
         shadowMapWorldSize: Width and height of the area with shadows [m].
         remoteSyncTransformInterval: Not used: pages get the newest state at display rate.
@@ -210,7 +210,7 @@ def resetDebugVisualizerCamera(
 ) -> None:
     """Moves the camera of the window.
 
-    Nothing happens in `DIRECT`, when the distance is negative, or when the target has not three items.
+    It has no effect in `DIRECT`, with a negative distance, or if the target does not have three items.
 
     Args:
         cameraDistance: From the target to the camera [m].
@@ -236,7 +236,7 @@ def resetDebugVisualizerCamera(
 
 @exported
 def getDebugVisualizerCamera(physicsClientId: int = 0) -> tuple[Any, ...]:
-    """Where the camera of the window is, and what it sees.
+    """Pose, matrices and image size of the window's camera.
 
     Args:
         physicsClientId: The connection.
@@ -262,7 +262,7 @@ def getDebugVisualizerCamera(physicsClientId: int = 0) -> tuple[Any, ...]:
 def getVREvents(
     deviceTypeFilter: int = 1, allAnalogAxes: int = 0, physicsClientId: int = 0
 ) -> tuple[tuple[Any, ...], ...]:
-    """Events of virtual reality devices. Carom knows no such devices, so there are none.
+    """Events of virtual reality devices. Carom does not support such devices, so there are none.
 
     Args:
         deviceTypeFilter: `VR_DEVICE_*`, added up.
@@ -293,10 +293,10 @@ def setVRCameraState(
     trackObjectFlag: int = -1,
     physicsClientId: int = 0,
 ) -> None:
-    """Moves the camera of a virtual reality headset. Carom knows no such devices, so nothing moves.
+    """Moves the camera of a virtual reality headset. Carom does not support such devices: it has no effect.
 
     Args:
-        rootPosition: Where the room is [m].
+        rootPosition: Position of the room [m].
         rootOrientation: Its quaternion (x, y, z, w).
         trackObject: Body that the camera follows.
         trackObjectFlag: `VR_CAMERA_TRACK_OBJECT_ORIENTATION` to turn with it.

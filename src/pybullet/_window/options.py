@@ -1,4 +1,4 @@
-"""The camera of the window, and what `configureDebugVisualizer` sets."""
+"""The camera of the window, and the options of `configureDebugVisualizer`."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class DebugCamera:
         eye, _ = orbit(self.target, self.distance, self.yaw, self.pitch, 0.0, self.up_axis)
         up = (0.0, 1.0, 0.0) if self.up_axis == Y_UP else (0.0, 0.0, 1.0)
         forward = unit(subtracted(self.target, eye)) or (1.0, 0.0, 0.0)
-        # Straight up or down there is no horizontal direction; any will do.
+        # When it looks straight up or down, any horizontal direction will do.
         right = unit(cross(forward, up)) or (1.0, 0.0, 0.0)
         upward = cross(right, forward)
         return (
@@ -65,7 +65,7 @@ class DebugCamera:
 
 @dataclass(slots=True)
 class VisualizerOptions:
-    """What `configureDebugVisualizer` sets; None where the script said nothing.
+    """The options of `configureDebugVisualizer`; None if not set.
 
     Attributes:
         flags: On or off by `COV_*` number.

@@ -26,22 +26,22 @@ if TYPE_CHECKING:
     from carom.viewer.viewer import Viewer
     from pybullet._clients.clients import Client
 
-# Options that are whole numbers, and the least they can be.
+# Integer options, and their minimum.
 _COUNTS = {"width": 1, "height": 1, "port": 0}
 _PAUSED = (
     "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
 )
 _GOES_ON = "The simulation continues."
-# A colour component that is not stated, or is no number.
+# A colour component that is not given, or is not a number.
 _DEFAULT_SHADE = 0.8
 
 
 class PageWindow(RecordingWindow):
-    """A window that keeps what the script shows, like its base, and has a viewer show it.
+    """A window that shows the script's items in a viewer.
 
     Args:
         viewer: The viewer.
-        client: Whose world it shows.
+        client: The connection whose world it shows.
     """
 
     def __init__(self, viewer: Viewer, client: Client) -> None:
@@ -50,7 +50,7 @@ class PageWindow(RecordingWindow):
         self._client = client
         self.items = viewer.drawings.items
         self.sliders = viewer.controls.sliders
-        # Simulated time at which the script last asked what the user does.
+        # Simulated time at which the script last read user input.
         self._asked = -1.0
         self.held = viewer.held
         viewer.on_hold = self._hold
@@ -153,7 +153,7 @@ class PageWindow(RecordingWindow):
         self.held = held
 
     def _profile(self, running: bool) -> None:
-        """Writes a trace of where the time goes for as long as the key p is held."""
+        """Writes a timing profile while the key p is held."""
         from pybullet._logs.log_files import TimingLog
 
         client = self._client
@@ -168,7 +168,7 @@ class PageWindow(RecordingWindow):
                 print(f"Wrote {Path(gettempdir(), f'timings_{self._profiles}_0.json')}", flush=True)
 
     def _say_pause(self, paused: bool) -> None:
-        # When a script that was paused has been ended by Ctrl-C, its pages go, and nothing goes on.
+        # When Ctrl-C ends a paused script, its pages close, but the simulation does not continue.
         if main_thread().is_alive():
             print(_PAUSED if paused else _GOES_ON, flush=True)
 
@@ -183,10 +183,10 @@ def open_window(client: Client, options: str) -> PageWindow:
 
     Args:
         client: The connection.
-        options: What `connect` was told of the window.
+        options: Options of `connect` for the window.
 
     Raises:
-        pybullet.error: The address asked for cannot be listened on, or the video asked for not be written.
+        pybullet.error: The server cannot listen at the address, or the video cannot be written.
     """
     from carom.viewer.display import tunnel_command
     from carom.viewer.viewer import Viewer

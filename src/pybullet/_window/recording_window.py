@@ -1,4 +1,4 @@
-"""A window without a screen, which viewers build upon."""
+"""A window without a screen: the base class for viewers."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 class RecordingWindow(Window):
-    """A window without a screen: it keeps what the script shows.
+    """A window without a screen, which stores the script's items.
 
     Attributes:
         items: Lines, texts and points by id.
         sliders: Sliders and buttons by id; ids are shared with `items`.
         colours: Wireframe colours by body and link.
         options: What `configureDebugVisualizer` has set.
-        camera: Where the camera is.
+        camera: The camera.
     """
 
     def __init__(self, width: int = 1024, height: int = 768) -> None:
@@ -71,7 +71,7 @@ class RecordingWindow(Window):
 
     def remove_drawings(self) -> None:
         self.items.clear()
-        # Ids start again as far as no slider has them.
+        # Ids start again, except those of sliders.
         self._next_item = max(self.sliders, default=-1) + 1
 
     def remove_sliders(self) -> None:
@@ -101,7 +101,7 @@ class RecordingWindow(Window):
             self.camera.up_axis = Y_UP if changes.flags[COV_ENABLE_Y_AXIS_UP] else Z_UP
 
     def draw_now(self) -> None:
-        """Nobody would see it."""
+        """Does nothing."""
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         camera = self.camera

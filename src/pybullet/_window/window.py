@@ -1,4 +1,4 @@
-"""What a script can ask of a graphical interface: the seam between the drop-in and a viewer.
+"""The interface of a graphical window, between the drop-in and a viewer.
 
 Viewers are subclasses of `Window`, such as `PageWindow`. `NoWindow` is for clients without one.
 """
@@ -28,7 +28,7 @@ class Window(ABC):
     """A graphical interface.
 
     Attributes:
-        held: Steps have to ask `wait_for_turn` or `has_turn` first, and may find the window closed then.
+        held: Steps have to call `wait_for_turn` or `has_turn` first; the window may be closed then.
         background: The plain background the script has asked for; None for the sky.
     """
 
@@ -37,31 +37,31 @@ class Window(ABC):
 
     @property
     def speed(self) -> float | None:
-        """Simulated time by real time that the user wants of the simulation; None if nothing was said."""
+        """Speed set by the user: simulated time / real time; None if not set."""
         return None
 
     @abstractmethod
     def wait_for_turn(self) -> bool:
-        """Returns whether the user lets the simulation make a step, once that is known.
+        """Waits while the simulation is paused; returns whether a step may be made.
 
-        False means that the user has done something that the script listens to: it is to look, and come back.
+        False means that there is user input that the script reads: it should read it, and call again.
         """
 
     @abstractmethod
     def has_turn(self) -> bool:
-        """Whether the user lets it make a step now; the step then counts as made."""
+        """Whether a step may be made now; it then counts as made."""
 
     @abstractmethod
     def is_open(self) -> bool:
-        """False once the user has closed it: the client then counts as disconnected."""
+        """False after the user has closed it: the client then counts as disconnected."""
 
     @abstractmethod
     def close(self) -> None:
-        """Takes it off the screen."""
+        """Closes the window."""
 
     @abstractmethod
     def draw(self, item: DebugItem, replaced: int) -> int:
-        """Shows an item, in place of item `replaced` unless that is negative; returns its id."""
+        """Shows an item, which replaces item `replaced` unless that is negative; returns its id."""
 
     @abstractmethod
     def add_slider(self, slider: Slider) -> int:
@@ -69,23 +69,23 @@ class Window(ABC):
 
     @abstractmethod
     def slider_value(self, item: int) -> float | None:
-        """What the user has set; None when there is no such slider."""
+        """The value set by the user; None if there is no such slider."""
 
     @abstractmethod
     def remove(self, item: int) -> None:
-        """Takes one item or slider away; unknown ids do no harm."""
+        """Removes an item or slider; unknown ids are ignored."""
 
     @abstractmethod
     def remove_drawings(self) -> None:
-        """Takes away every line, text and point, but no slider."""
+        """Removes all lines, texts and points, but not sliders."""
 
     @abstractmethod
     def remove_sliders(self) -> None:
-        """Takes away every slider."""
+        """Removes all sliders."""
 
     @abstractmethod
     def colour_link(self, body: int, link: int, colour: Vector3 | None) -> None:
-        """Colours the wireframe of a link; None gives it back its own colour."""
+        """Colours the wireframe of a link; None restores its own colour."""
 
     @abstractmethod
     def key_events(self) -> dict[int, int]:
@@ -97,11 +97,11 @@ class Window(ABC):
 
     @abstractmethod
     def configure(self, changes: VisualizerOptions) -> None:
-        """Changes the options that are not None, and the flags that are there."""
+        """Changes the options that are not None, and the given flags."""
 
     @abstractmethod
     def draw_now(self) -> None:
-        """Returns when the world is shown as it is now."""
+        """Waits until the present state is drawn."""
 
     @abstractmethod
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
@@ -119,7 +119,7 @@ class Window(ABC):
     def show_rays(  # noqa: B027 (most windows do not show them)
         self, starts: Points, ends: Points, hits: Sequence[RayHit]
     ) -> None:
-        """Shows rays that the script has cast, and what they hit."""
+        """Shows rays that the script has cast, and their hits."""
 
     @abstractmethod
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
@@ -127,13 +127,13 @@ class Window(ABC):
 
 
 class NoWindow(Window):
-    """No graphical interface: nothing is drawn, nothing comes back."""
+    """No graphical interface: nothing is drawn, and there is no user input."""
 
     def is_open(self) -> bool:
         return True
 
     def close(self) -> None:
-        """There is nothing to take off the screen."""
+        """Does nothing."""
 
     def wait_for_turn(self) -> bool:
         return True
@@ -160,7 +160,7 @@ class NoWindow(Window):
         """There are none."""
 
     def colour_link(self, body: int, link: int, colour: Vector3 | None) -> None:
-        """Nobody would see it."""
+        """Does nothing."""
 
     def key_events(self) -> dict[int, int]:
         return {}
@@ -169,10 +169,10 @@ class NoWindow(Window):
         return ()
 
     def configure(self, changes: VisualizerOptions) -> None:
-        """Nobody would see it."""
+        """Does nothing."""
 
     def draw_now(self) -> None:
-        """Nobody would see it."""
+        """Does nothing."""
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """There is no camera."""

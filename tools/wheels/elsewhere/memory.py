@@ -148,7 +148,7 @@ class Memory:
                 self._pointers[arguments + offset] = address
 
     def image(self) -> tuple[bytearray, list[int], list[tuple[int, str]]]:
-        """All of it.
+        """The packed recording.
 
         Returns:
             The bytes, in which addresses have become offsets; the offsets of those; and the offsets where

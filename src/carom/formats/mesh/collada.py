@@ -156,7 +156,7 @@ class ColladaReader:
         raise self.error(vertices, "it has no POSITION input with a source in this mesh")
 
     def shared_input(self, mesh: Element, primitive: Element) -> tuple[Element, int] | None:
-        """What the corners at one place are the same in, `<vertices>`, and the place of its index."""
+        """The input that the corners of one vertex share, `<vertices>`, and the position of its index."""
         entries = list(inputs(primitive, "VERTEX"))
         vertices = referenced(mesh, "vertices", entries[-1]) if entries else None
         return None if vertices is None else (vertices, self.offset(entries[-1]))
@@ -218,7 +218,7 @@ class ColladaReader:
         except ValueError:
             raise self.error(element, "it must hold numbers") from None
         if count is not None and len(values) != count:
-            raise self.error(element, f"{len(values)} numbers where {count} are due")
+            raise self.error(element, f"{len(values)} numbers instead of {count} are due")
         if not np.isfinite(values).all():
             raise self.error(element, "it must hold finite numbers")
         return values

@@ -1,4 +1,4 @@
-"""Signed distance fields (CDF): where the grid lies."""
+"""Signed distance fields (CDF): the bounds of the grid."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class _Group:
     Attributes:
         faces: What follows the `f` of each line.
         lines: Line number of each face.
-        vertex_counts: How many vertices were known at each face: negative indices count back from there.
+        vertex_counts: Number of vertices known at each face: negative indices count back from there.
     """
 
     name: str = ""

@@ -21,7 +21,7 @@ def read_stl(data: bytes, file: Path) -> list[MeshPart]:
     Raises:
         DescriptionError: It is neither, is cut off, or holds no triangles.
     """
-    # Binary files may begin with "solid" as well: only the length tells.
+    # Binary files may begin with "solid" as well: only the length distinguishes them.
     if len(data) >= _HEADER_BYTES:
         count = int.from_bytes(data[80:84], "little")
         if len(data) == _HEADER_BYTES + count * _TRIANGLE.itemsize:

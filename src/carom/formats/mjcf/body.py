@@ -43,7 +43,7 @@ _LEFT_OUT = ("light", "camera", "site", "freejoint", "composite", "flexcomp", "p
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What an element is in.
+    """The context of an element.
 
     Attributes:
         child_class: Class of defaults that the bodies around it name.
@@ -56,7 +56,7 @@ class Scope:
 
 @dataclass(slots=True)
 class _Content:
-    """What a body is made of, as far as it is read."""
+    """The contents of a body, as far as they are read."""
 
     frame: Pose = IDENTITY
     mass: float | None = None
@@ -72,7 +72,7 @@ class ModelReader:
 
     Args:
         context: The reading it belongs to.
-        number: How many models the file had before.
+        number: Number of models in the file before it.
         name: Name of all robots of the file.
     """
 
@@ -113,7 +113,7 @@ class ModelReader:
         child_class = element.attributes.get("childclass", scope.child_class)
         defaults = class_defaults(context, element, scope.child_class)
         pose = read_pose(context, element, self._placing({**defaults, **element.attributes}, element))
-        # What is inside is given in the body's frame, or like everything in that of the world.
+        # Its contents are given in the body's frame, or like everything in that of the world.
         inner = Scope(child_class, inverse(pose) if context.compiler.global_frames else IDENTITY)
         own = compose(scope.into, pose)
         frame, carrier = own, parent
@@ -244,7 +244,7 @@ class ModelReader:
 
 
 def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> ContactParameters:
-    """What the last geom of a body says, with the kinds of friction that only earlier ones have."""
+    """Contact parameters of a body's last geom, with kinds of friction that only earlier ones have."""
     return replace(
         contact,
         spinning_friction=earlier.spinning_friction
@@ -257,7 +257,7 @@ def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> Con
 
 
 def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
-    """The elements of a body or of the world, those in `<frame>` included, and what they are in."""
+    """The elements of a body or of the world, those in `<frame>` included, and their contexts."""
     for child in parent.children:
         if child.tag == "frame":
             child_class = child.attributes.get("childclass", scope.child_class)
@@ -268,7 +268,7 @@ def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iter
 
 
 def world_elements(context: MjcfContext, world: Element) -> Iterator[tuple[Element, Scope]]:
-    """The bodies, geoms and so on of a `<worldbody>`, and what they are in."""
+    """The bodies, geoms and so on of a `<worldbody>`, and their contexts."""
     return _without_frames(context, world, Scope())
 
 

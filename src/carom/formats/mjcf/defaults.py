@@ -14,7 +14,7 @@ Attributes = dict[str, str]
 def read_defaults(context: MjcfContext, element: Element, parent: str | None = None) -> None:
     """A `<default>` with the classes inside of it, each of which begins with what its parent has.
 
-    The outermost is the main class, whatever it calls itself; several of them add up.
+    The outermost is the main class, whatever its name; several of them add up.
     """
     name = element.attributes.get("class", MAIN if parent is None else "")
     if not name:
@@ -32,7 +32,7 @@ def read_defaults(context: MjcfContext, element: Element, parent: str | None = N
 
 
 def class_defaults(context: MjcfContext, element: Element, child_class: str | None) -> Attributes:
-    """What an element has from its class, that of the bodies around it, or the main one."""
+    """The defaults of an element: from its class, that of the enclosing bodies, or the main one."""
     name = element.attributes.get("class") or child_class or MAIN
     if name not in context.classes:
         if name != MAIN:

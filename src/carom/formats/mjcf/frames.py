@@ -33,7 +33,7 @@ def read_pose(
         context: The reading it belongs to.
         element: The element.
         attributes: Its attributes, defaults included.
-        radians: The angle of `axisangle` is in radians, whatever the compiler options.
+        radians: The angle of `axisangle` is in radians, regardless of compiler options.
     """
     position = (0.0, 0.0, 0.0)
     if "pos" in attributes:

@@ -1,4 +1,4 @@
-"""`<geom>`: a shape that touches and is seen, and how much its link weighs for it."""
+"""`<geom>`: a collision and visual shape, and its mass."""
 
 from __future__ import annotations
 

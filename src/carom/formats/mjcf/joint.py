@@ -43,7 +43,7 @@ def read_joint(
     """
     kind = attributes.get("type", _HINGE)
     if kind not in (_HINGE, _SLIDE, _BALL, _FIXED):
-        raise context.error(element, f"unknown joint type {shown(kind)}, or one for which this is no place")
+        raise context.error(element, f"unknown joint type {shown(kind)}, or one that is not allowed here")
     lower, upper = _range(context, element, attributes, kind)
     limited = lower <= upper
     axis, length = _axis(context, element, attributes, kind, into)

@@ -46,7 +46,7 @@ def read_mjcf(
             PyBullet gives to swept spheres.
         as_mujoco: `axisangle` turns bodies, and named classes limit joints. Otherwise both are left out, as
             PyBullet leaves them out.
-        search: Where the file and what it refers to are looked for.
+        search: Folders in which the file and files it refers to are searched.
 
     Returns:
         The bodies and geoms of the world, in the order of the file.

@@ -1,4 +1,4 @@
-"""What the readers of all robot files have in common.
+"""Shared code of the readers of robot files.
 
 The formats say the same things in different places: URDF and MJCF in the attributes of elements, SDF in the
 text of their children. `FileContext.states`, `value` and `pose` hide it from everything else here.

@@ -95,8 +95,8 @@ class FileContext:
     def parse_bits(self, element: Element, attribute: str, text: str) -> int:
         """32 bits, as a signed number.
 
-        As in PyBullet no bit is set by what is no number, such as the name of a group, and the highest alone
-        by what is too large.
+        As in PyBullet a text that is not a number, such as the name of a group, sets no bit, and a number
+        that is too large only the highest.
         """
         match = _LEADING_BITS.match(text.strip())
         if match is None:
@@ -122,7 +122,7 @@ class FileContext:
     def parse_components(
         self, element: Element, name: str, text: str, counts: tuple[int, ...]
     ) -> list[float] | None:
-        """The components of a colour; None, with a warning, where they cannot be read: looks stop nobody."""
+        """The components of a colour; None, with a warning, if they cannot be read, which is not an error."""
         try:
             components = [self.parse_number(element, name, word) for word in text.split()]
         except DescriptionError as error:

@@ -60,7 +60,7 @@ def read_inertial(
 
 def read_collision(context: FileContext, element: Element, geometry: Geometry) -> Collision:
     """A `<collision>` of this shape."""
-    # The attribute counts by being there, whatever it says.
+    # The attribute counts if it is present, with any value.
     if "concave" in element.attributes and isinstance(geometry, Mesh):
         geometry = replace(geometry, concave=True)
     return Collision(

@@ -25,7 +25,8 @@ def find_root(
         if first is not None:
             raise context.error(
                 joint_elements[index],
-                f"link {shown(links[joint.child].name)} already hangs on joint {shown(joints[first].name)}",
+                f"link {shown(links[joint.child].name)} is already the child of "
+                f"joint {shown(joints[first].name)}",
             )
         carrier[joint.child] = index
     roots = [index for index, joint in enumerate(carrier) if joint is None]

@@ -13,7 +13,7 @@ class SdfContext(FileContext):
     """State of one reading; its root is the `<sdf>` element, and values stand in the text of children."""
 
     def text(self, parent: Element, tag: str) -> str | None:
-        """The text of a child, blanks around it taken off; None where there is no child."""
+        """The text of a child without surrounding blanks; None without such a child."""
         child = parent.first(tag)
         return None if child is None else child.text.strip()
 

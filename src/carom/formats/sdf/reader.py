@@ -30,7 +30,7 @@ def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = Non
         path: The file; looked up with `AssetSearch.find`.
         scale: Factor on lengths: positions, boxes, cylinders, capsules and meshes, but as in PyBullet
             neither spheres nor limits.
-        search: Where the file and what it refers to are looked for.
+        search: Folders in which the file and files it refers to are searched.
 
     Returns:
         The models of the world, in the order of the file.

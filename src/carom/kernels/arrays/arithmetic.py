@@ -1,4 +1,4 @@
-"""Elementwise arithmetic on arrays of numbers of up to three axes, whatever their strides."""
+"""Elementwise arithmetic on arrays of numbers of up to three axes, with any strides."""
 
 import warp as wp
 

@@ -50,7 +50,7 @@ def magnitudes(matrix: Matrix3) -> Matrix3:
 
 @func
 def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape: Int32):
-    """World pose and bounds of one shape: as in Bullet, the box around its turned local box.
+    """World pose and bounds of one shape: as in Bullet, the box around its rotated local box.
 
     A shape whose pose is not finite gets empty bounds, so that it meets nothing.
     """

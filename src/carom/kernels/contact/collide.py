@@ -176,7 +176,7 @@ def add_manifold(
 
 @func
 def report_overflow(state: State, world: Int32, pairs_wanted: Int32, contacts_wanted: Int32):
-    """Note that pairs or contacts did not fit, and how many there would have been."""
+    """Record that pairs or contacts did not fit, and the number needed."""
     state.status_entry[world, STATUS] = OVERFLOW
     state.status_entry[world, PAIRS_WANTED] = pairs_wanted
     state.status_entry[world, CONTACTS_WANTED] = contacts_wanted

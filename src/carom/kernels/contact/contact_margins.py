@@ -1,4 +1,4 @@
-"""Contact margins: how far apart two shapes may be and still be in contact, as Bullet has it.
+"""Contact margins: the maximum distance of two shapes in contact, as in Bullet.
 
 A contact is given up where its points are further apart than the smaller *breaking distance* of the
 two shapes, and most pairs make one as early as that, so that it can slow them in time.

@@ -44,7 +44,7 @@ def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
 
 @func
 def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
-    """What users said about two links: 1 touch, 0 do not touch, -1 nothing."""
+    """A user's setting for two links: 1 collide, 0 do not collide, -1 none."""
     low = wp.min(a, b)
     high = wp.max(a, b)
     first = Int32(0)

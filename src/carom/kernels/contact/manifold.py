@@ -64,7 +64,7 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
 
 @func
 def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
-    """Put back the contacts at the start of a step, if they have been put aside."""
+    """Restore the contacts of the start of a step, if they were saved."""
     count = pairs.count_pairs[world, START_CONTACTS]
     if count == NONE_KEPT:
         return

@@ -117,7 +117,7 @@ def measure_joint_wrenches(
 def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
-    """Second pass: add to the sensors what the constraint forces do."""
+    """Second pass: add the effect of constraint forces to the sensors."""
     link_bias_forces(model, settings, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)

@@ -158,7 +158,7 @@ def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, 
 
 @kernel
 def forward_kinematics_kernel(model: Model, state: State, tree: Int32, first_world: Int32):
-    """Bring the link poses of one tree up to date with its coordinates."""
+    """Update the link poses of one tree from its coordinates."""
     forward_kinematics(model, state, state.link_pose, first_world + wp.tid(), tree)
 
 
@@ -176,7 +176,7 @@ def update_link_poses(
 
 @kernel
 def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
-    """Bring the link poses of all trees up to date with their coordinates."""
+    """Update the link poses of all trees from their coordinates."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         update_link_poses(settings, model, state, scratch, world, tree)

@@ -68,12 +68,12 @@ def command_motors_kernel(
 
     Args:
         state: The state of all worlds.
-        commands: What the motors are told.
+        commands: The commands of the motors.
         world: Their world.
         count: How many joints there are.
         default_force: Force of motors whose forces are not given [N or N m].
-        default_kp: Gain likewise.
-        default_kd: Gain likewise.
+        default_kp: Default gain.
+        default_kd: Default gain.
         mode: `VELOCITY`, `TORQUE` or `POSITION`.
         given: What is given; other positions and velocities are 0.
         time_step: Of a step [s]; makes impulses of forces.

@@ -1,7 +1,7 @@
-"""Joint motors (POSITION_CONTROL, VELOCITY_CONTROL): constraint rows with gains and a greatest impulse.
+"""Joint motors (POSITION_CONTROL, VELOCITY_CONTROL): constraint rows with gains and a maximum impulse.
 
 A motor asks for a joint rate after the step; the solver gives the impulse that reaches it, as far
-as the motor's greatest impulse allows. Explicit drives (PD, joint damping) are forces instead.
+as the motor's maximum impulse allows. Explicit drives (PD, joint damping) are forces instead.
 """
 
 import warp as wp

@@ -64,7 +64,7 @@ def free_motion(
     tree: Int32,
     pushed: bool,
 ):
-    """Velocities after the substep if there were no constraints; what they need if something is `pushed`."""
+    """Velocities after the substep without constraints; with `pushed`, the data for them."""
     if is_asleep(state, world, tree):
         return
     if is_single_body(model, tree):
@@ -79,7 +79,7 @@ def free_motion(
 
 @func
 def constrained_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
-    """Add what the solver found to the velocities, and move on by them."""
+    """Add the solver's change to the velocities, and integrate positions."""
     for tree in range(settings.tree_count):
         move_or_stop(settings, model, state, scratch, world, tree)
 

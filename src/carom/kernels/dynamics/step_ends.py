@@ -35,7 +35,7 @@ def begin_world(state: State, pairs: Pairs, world: Int32):
 def abandon_tree(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Put a tree back to where the step started.
 
-    The forces that were applied are gone with a step that went wrong; one that is repeated needs them.
+    Applied forces are cleared after a step that failed; a step that is repeated needs them.
     """
     return_to_start(model, state, scratch, world, tree)
     if state.status_entry[world, STATUS] > WELL:
@@ -71,7 +71,7 @@ def begin_step_kernel(
     moves: Int32,
     first_world: Int32,
 ):
-    """Begin a step; `moves` is 0 where nothing but contacts are to be found."""
+    """Begin a step; `moves` is 0 if only contacts are to be detected."""
     begin_step(settings, model, state, scratch, pairs, first_world + wp.tid(), moves)
 
 

@@ -14,7 +14,7 @@ def project_kernel(scene: Scene, view: View, chunk: Int32):
 
 @kernel
 def depth_kernel(scene: Scene, view: View, first_row: Int32, end_row: Int32):
-    """Finds what is nearest in each pixel of some rows."""
+    """Finds the nearest depth in each pixel of some rows."""
     fill_rows(scene, view, first_row, end_row)
 
 

@@ -44,7 +44,7 @@ def surface_colour(scene: Scene, part: Int32, uv: Vector2) -> Vector3:
 
 @func
 def is_lit(light: View, lighting: Lighting, point: Vector4) -> bool:
-    """Nothing lies between the light and a point, given in homogeneous pixels of the light's view."""
+    """Whether the light reaches a point, given in homogeneous pixels of the light's view."""
     if point[3] <= 0.0:
         return True
     x = wp.round(point[0] / point[3])

@@ -97,10 +97,10 @@ def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
 
 @wp.struct
 class Errors:
-    """How far the ends are from their targets."""
+    """The errors of the ends."""
 
-    distance: real  # the greatest [m]
-    angle: real  # the greatest [rad]
+    distance: real  # the largest [m]
+    angle: real  # the largest [rad]
     squares: real  # sum of the squares of all errors
 
 
@@ -134,7 +134,7 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
 
 @func
 def write_column(search: Search, entry: Int32, oriented: Int32, linear: Vector3, angular: Vector3):
-    """Set what a unit of one freedom does to an end."""
+    """Set a column of the Jacobian: the effect of one degree of freedom on an end."""
     search.entry_jacobian[entry] = linear
     if oriented == 1:
         search.entry_jacobian[entry + 1] = angular

@@ -1,4 +1,4 @@
-"""The search for joint positions that bring the ends of a chain to their targets.
+"""The search for joint positions at which the ends of a chain reach their targets.
 
 It follows PyBullet's iteration first, so that where that arrives the result is the same. Where it does
 not arrive, where the angles are still off or a limit is violated, it may go on from there by the method of
@@ -36,7 +36,7 @@ _LITTLE_PROGRESS = real(0.999)
 _SLOW_STEPS = wp.constant(3)
 # Tolerance [m], at least, where there is `patience`: called in each step, the search comes nearer each time.
 _NEAR = real(0.02)
-# Poses to try at least where limits are to be kept: often only another pose of the arm arrives within them.
+# Minimum number of poses to try with limits: often only another pose of the arm is within them.
 _WITHIN_LIMITS = wp.constant(300)
 # Hysteresis: another pose that does not arrive either must have at most this share of the squared errors,
 # lest an arm that is asked in each step jumps for little.
@@ -77,7 +77,7 @@ def follow(
 
 @func
 def keep_limits(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals) -> Int32:
-    """Move joints into their limits; tells whether any was outside."""
+    """Move joints into their limits; returns whether any was outside."""
     changed = Int32(0)
     for dof in range(sizes.dofs):
         coordinate = chain.dof_coordinate[dof]
@@ -103,11 +103,11 @@ def descend(
     """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
 
     Args:
-        sizes: How many of everything there are.
+        sizes: The numbers of links, joints and so on.
         chain: The chain; its joints are placed.
         search: The question; its errors are measured.
         oriented: 1 if the ends are to be turned as well.
-        budget: How many poses may be tried.
+        budget: Maximum number of poses to try.
         threshold: Distance and angle that are close enough.
         errors: Those at `coordinate_now`.
 
@@ -204,12 +204,12 @@ def inverse_kinematics_kernel(
     """Leave in `coordinate_best` the joint positions found.
 
     Args:
-        sizes: How many of everything there are.
+        sizes: The numbers of links, joints and so on.
         chain: The chain.
         search: The question.
         oriented: 1 if the ends are to be turned as well.
         step_kind: What follows PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
-        bounded: 1 if limits are to be kept.
+        bounded: 1 if there are limits.
         iterations: Most steps of PyBullet's iteration.
         further: How many poses may be tried after that; with limits `_WITHIN_LIMITS` at least.
         threshold: Distance [m] and angle [rad] that are close enough.

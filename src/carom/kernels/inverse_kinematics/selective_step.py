@@ -68,7 +68,7 @@ def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
 
 @func
 def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
-    """Fill `dof_step`; returns its greatest part."""
+    """Fill `dof_step`; returns its largest part."""
     rows = 3 * blocks
     a = search.spectrum_matrix
     v = search.spectrum_vectors

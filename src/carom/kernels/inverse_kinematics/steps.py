@@ -132,7 +132,7 @@ def solve_blocks(sizes: ChainSizes, search: Search, blocks: Int32, damping: real
 
 @func
 def limit_step(sizes: ChainSizes, search: Search) -> real:
-    """Scale a step down to the greatest turn of a joint; returns the greatest one before that."""
+    """Scale a step down to the maximum rotation of a joint; returns the largest one before that."""
     greatest = real(0.0)
     for dof in range(sizes.dofs):
         greatest = wp.max(greatest, wp.abs(search.dof[dof].step))
@@ -144,7 +144,7 @@ def limit_step(sizes: ChainSizes, search: Search) -> real:
 
 @func
 def damped_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
-    """Damped least squares as in PyBullet, a damping for each joint; returns the step's greatest part."""
+    """Damped least squares as in PyBullet, a damping for each joint; returns the step's largest part."""
     start_from_errors(search, blocks)
     solve_blocks(sizes, search, blocks, real(1.0))
     for column in range(sizes.columns):
@@ -160,7 +160,7 @@ def null_space_step(
 ) -> real:
     """Null-space step as in PyBullet: towards rest poses, and back into limits, without moving the ends.
 
-    Returns its greatest part.
+    Returns its largest part.
     """
     for dof in range(sizes.dofs):
         pull = real(0.0)

@@ -28,10 +28,10 @@ def direction(x: real, y: real):
 
 @func
 def turned_back_in_opposite_order(q: Quaternion, v: Vector3) -> Vector3:
-    """A vector seen from a frame that is turned by a quaternion's yaw, pitch and roll in the wrong order.
+    """A vector in a frame rotated by a quaternion's yaw, pitch and roll in the wrong order.
 
-    PyBullet takes the orientation of a floating base apart like this, and puts it together the other way
-    round. Only a base that is turned about more than one axis is wrong by it.
+    PyBullet splits the orientation of a floating base like this, and combines it in the opposite order. The
+    result is wrong only for a base rotated about more than one axis.
     """
     x, y, z, w = q[0], q[1], q[2], q[3]
     sp = -2.0 * (x * z - w * y)

@@ -28,7 +28,7 @@ from carom.layouts.status import STATUS, WELL
 def shape_bounds_kernel(
     settings: Settings, shapes: Shapes, model: Model, state: State, scratch: Scratch, pairs: Pairs
 ):
-    """Poses and bounds of each shape, and how far ahead continuous detection looks for it."""
+    """Poses and bounds of each shape, and its look-ahead distance for continuous detection."""
     shape, world = wp.tid()
     pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
     place_shape(shapes, state, pairs, world, shape)

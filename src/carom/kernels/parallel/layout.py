@@ -36,7 +36,7 @@ from carom.layouts.contacts import ROWS_PER_PAIR
 def room_for_constraints(
     model: Model, users: UserConstraints, pair_rows: PairRows, world: Int32, root: Int32
 ) -> Window:
-    """What the motors, limits and user constraints of an island need at most."""
+    """Maximum room for the motors, limits and user constraints of an island."""
     room = Window()
     constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
@@ -57,7 +57,7 @@ def room_for_constraints(
 def room_for_contacts(
     model: Model, shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32, root: Int32
 ) -> Window:
-    """What the contacts of an island need at most.
+    """Maximum room for the contacts of an island.
 
     The rows of articulated manifold block are written one after the other in the same place.
     """

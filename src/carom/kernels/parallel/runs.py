@@ -1,4 +1,4 @@
-"""Which worlds have a part in a run of steps, and what has become of each step."""
+"""The worlds that take part in a run of steps, and the result of each step."""
 
 import warp as wp
 
@@ -12,7 +12,7 @@ from carom.layouts.status import CONTACTS_WANTED, LEFT_OUT, PAIRS_WANTED, STATUS
 
 @kernel
 def ask_kernel(state: State, run: RunWork):
-    """Let each world begin a run of steps, go on with one, or stay as it is."""
+    """Let each world begin a run of steps, continue one, or do nothing."""
     world = wp.tid()
     part = run.world_part[world]
     if part == STAY:
@@ -27,7 +27,7 @@ def ask_kernel(state: State, run: RunWork):
 
 @kernel
 def finish_kernel(state: State, contacts: Contacts, pairs: Pairs, run: RunWork):
-    """Count the step of each world, or put its contacts back to what they were when the step began."""
+    """Count the step of each world, or restore its contacts from the start of the step."""
     world = wp.tid()
     if went_wrong(state, world):
         restore_contacts(contacts, pairs, world)

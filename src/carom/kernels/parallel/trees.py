@@ -54,7 +54,7 @@ def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs, mov
 
 @kernel
 def tree_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch):
-    """Bring the link poses of each tree up to date with its coordinates."""
+    """Update the link poses of each tree from its coordinates."""
     tree, world = wp.tid()
     if not is_called_off(state, world):
         update_link_poses(settings, model, state, scratch, world, tree)

@@ -1,4 +1,4 @@
-"""What the islands of a world need to be solved side by side: each has its own part of the workspace.
+"""Workspace for solving the islands of a world in parallel: each has its own part.
 
 Where islands are solved one after the other, each writes its rows from the first on. Side by side they get
 windows: the arrays of `Scratch` and `PairRows` that begin where those of the island before end.

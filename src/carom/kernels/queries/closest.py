@@ -1,4 +1,4 @@
-"""The nearest points of two shapes, however far apart, or the deepest ones."""
+"""The nearest points of two shapes at any distance, or the deepest ones."""
 
 import warp as wp
 
@@ -101,7 +101,7 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
         shapes: All shapes.
         pairs: Room for intermediate results, and the poses of the shapes, from `place_shapes_kernel`.
         searches: The pairs, and room for what is found.
-        count: How many there are.
+        count: Number of them.
         max_distance: Largest distance of interest [m].
     """
     world = wp.tid()

@@ -33,7 +33,7 @@ def report_contacts_kernel(
         places: What their links are.
         report: Room for as many as there are.
         world: The world.
-        count: How many there are.
+        count: Number of them.
         body_a: One body, which comes first in the report; negative for any, which then changes no places.
         link_a: Its link; see `fits`.
         body_b: The other body.

@@ -13,7 +13,7 @@ from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 
 # Stands for one over zero.
 HUGE = real(1.0e30)
-# Rays hit this share of a triangle's size beside it, lest they slip between two.
+# Triangles are larger by this share for rays, so that no ray passes between two.
 EDGE_TOLERANCE = real(1.0e-9)
 
 

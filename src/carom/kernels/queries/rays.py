@@ -226,13 +226,13 @@ def cast_packet(
                 looking = with_lane(looking, lane, NOWHERE)
             else:
                 found = Int32(1)
-        # Behind the last hit there are no others, however many are asked for.
+        # After the last hit there are no others, for any number asked for.
         remaining = wp.where(found == 1, remaining - 1, Int32(-1))
 
 
 @func
 def tell_hit(shapes: Shapes, places: Places, rays: Rays, ray: Int32):
-    """Write what a ray hit as users read it, from its shape, normal and fraction."""
+    """Write the hit of a ray for users, from its shape, normal and fraction."""
     shape = rays.ray_shape[ray]
     if shape >= 0:
         row = shapes.shape_link[shape]

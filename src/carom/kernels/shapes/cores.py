@@ -1,4 +1,4 @@
-"""What the narrow phase sees of a convex shape: a core, and a radius by which it is rounded.
+"""Convex shapes in the narrow phase: a core, and a radius by which it is rounded.
 
 Bullet's margins decide the core. A ball is a point and a capsule a segment. The margin of a box or a
 cylinder lies inside: the core is that much smaller, and edges are round. That of a hull or a triangle

@@ -12,7 +12,7 @@ TINY = real(1.0e-30)
 
 @func
 def any_perpendicular(direction: Vector3) -> Vector3:
-    """A unit vector perpendicular to `direction`, whatever its length; (1, 0, 0) for none."""
+    """A unit vector perpendicular to `direction`, which may have any length; (1, 0, 0) for length 0."""
     if wp.length_sq(direction) < TINY:
         return Vector3(1.0, 0.0, 0.0)
     size = wp.abs(direction)

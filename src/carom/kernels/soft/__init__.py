@@ -1,1 +1,1 @@
-"""Soft bodies: nodes tied by springs and tetrahedra, and what they do to shapes."""
+"""Soft bodies: nodes connected by springs and tetrahedra, and their contacts with shapes."""

@@ -1,4 +1,4 @@
-"""Touches and anchors within a small step: what they do to nodes and to links."""
+"""Touches and anchors within a small step: their effect on nodes and links."""
 
 import warp as wp
 

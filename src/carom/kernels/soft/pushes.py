@@ -100,7 +100,7 @@ def add_push_rows(
 
     Args:
         model: The trees.
-        state: Where they are.
+        state: Their state.
         scratch: Their inverse mass matrices.
         pair_rows: Room for rows.
         world: The world.

@@ -54,7 +54,7 @@ def small_steps(soft: SoftModel, dt: real) -> Int32:
 def move_freely(
     model: Model, soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32, h: real
 ):
-    """Let nodes move on under gravity and what users push them with."""
+    """Move nodes under gravity and users' forces."""
     gravity = model.gravity_vector[world, 0] * soft.soft[body].gravity_factor
     for node in range(soft.soft[body].first_node, node_end(soft, body)):
         position = state.node_position[world, node]
@@ -210,7 +210,7 @@ def end_soft_kernel(soft: SoftModel, state: State, first_world: Int32):
 
 @kernel
 def abandon_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_world: Int32):
-    """Put nodes back to where the step started; the forces are gone with a step that went wrong."""
+    """Restore the nodes from the start of the step; forces are cleared after a step that failed."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
         for node in range(soft.soft[body].first_node, node_end(soft, body)):
@@ -222,7 +222,7 @@ def abandon_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, firs
 
 @kernel
 def follow_nodes_kernel(model: Model, state: State, soft: SoftModel, first_world: Int32):
-    """Bring the pose and the velocity of all soft bodies as a whole up to date with their nodes."""
+    """Update the base pose and velocity of all soft bodies from their nodes."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
         follow_nodes(model, state, soft, world, body)

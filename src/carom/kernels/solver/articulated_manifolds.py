@@ -35,7 +35,7 @@ def matrix_parts(matrices: Int32, place: Index4) -> Index4:
 def relax_articulated_normals(
     scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
 ) -> real:
-    """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
+    """Relax the normal rows of a manifold block; returns the maximum change of velocity squared."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     wanted = pair_rows.manifold_block[world, manifold_block].normal_share - wp.cw_mul(

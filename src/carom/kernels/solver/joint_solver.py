@@ -99,7 +99,7 @@ def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
 
 @func
 def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> real:
-    """Relax `count` rows once; returns the greatest change squared."""
+    """Relax `count` rows once; returns the maximum change squared."""
     residual = real(0.0)
     row = Int32(0)
     stride = Int32(1)
@@ -181,7 +181,7 @@ def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: I
 
 @func
 def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Add what the solver found to the velocities of a tree."""
+    """Add the solver's change to the velocities of a tree."""
     bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     delta = model.tree[tree].first_delta

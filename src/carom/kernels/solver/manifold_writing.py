@@ -1,4 +1,4 @@
-"""Making manifold blocks of contacts, and reporting what they did; see `rigid_manifolds`."""
+"""Making manifold blocks from contacts, and storing their impulses; see `rigid_manifolds`."""
 
 from carom.kernels.solver.articulated_manifold_rows import clear_matrices, write_articulated_contact
 from carom.kernels.solver.contact_terms import keep_contact_impulse

@@ -141,7 +141,7 @@ def write_row(
 def row_velocity_change(
     scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32
 ) -> real:
-    """What the solver has changed so far about the velocity of a row, by its place and start."""
+    """The solver's change of a row's velocity so far, by its place and start."""
     total = real(0.0)
     if place[1] > 0:
         total = dot_product(pair_rows.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
@@ -170,7 +170,7 @@ def push_row(scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4,
 def wanted_impulse(
     scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, terms: Vector8
 ) -> real:
-    """Impulse that would bring a row to its target if it had no bounds."""
+    """Impulse that would bring a row to its target without bounds."""
     return (
         terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
         + terms[ROW_SHARE]

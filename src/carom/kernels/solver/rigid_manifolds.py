@@ -19,7 +19,7 @@ from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, s
 
 @func
 def body_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
-    """What the solver has changed so far about the velocity of a rigid body."""
+    """The solver's change of a rigid body's velocity so far."""
     first = scratch.delta_velocity[world, delta]
     second = scratch.delta_velocity[world, delta + 1]
     return Vector8(first[0], first[1], first[2], first[3], second[0], second[1], second[2], second[3])
@@ -70,7 +70,7 @@ def push_manifold_block(
 
 @func
 def greatest_square(change: Vector4) -> real:
-    """The greatest of the squares."""
+    """The largest of the squares."""
     square = wp.cw_mul(change, change)
     return maximum(maximum(square[0], square[1]), maximum(square[2], square[3]))
 
@@ -93,7 +93,7 @@ def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) ->
 
 @func
 def normal_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector4) -> real:
-    """The greatest change of velocity squared that goes with a change of normal impulses."""
+    """The maximum change of velocity squared that goes with a change of normal impulses."""
     return greatest_square(
         wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].normal_inverse_mass)
     )
@@ -149,7 +149,7 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
 
 @func
 def friction_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector8) -> real:
-    """The greatest change of velocity squared that goes with a change of friction."""
+    """The maximum change of velocity squared that goes with a change of friction."""
     velocity = wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].friction_inverse_mass)
     return greatest_square(
         Vector4(
@@ -163,7 +163,7 @@ def friction_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, 
 
 @func
 def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
-    """Relax the normal rows of a rigid manifold block; returns the greatest change of velocity squared."""
+    """Relax the normal rows of a rigid manifold block; returns the maximum change of velocity squared."""
     place = pair_rows.manifold_block[world, manifold_block].place
     pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
         world, manifold_block

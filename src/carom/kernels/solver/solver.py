@@ -112,18 +112,18 @@ def sweep_island(
     """Sweep over the rows of an island until they hardly change; along conjugate directions if it rests.
 
     Args:
-        settings: How many sweeps there may be, and what may be left over.
+        settings: Maximum number of sweeps, and the residual threshold.
         scratch: Rows of one tree.
         pair_rows: Rows over two trees.
         world: The world.
         visits: Rows to visit.
-        units: How many units its contacts are relaxed in.
-        manifold_blocks: How many of them are manifold blocks.
+        units: Number of units in which its contacts are relaxed.
+        manifold_blocks: Number of manifold blocks among them.
         torsion: 1 if there is rolling or spinning friction.
         resting: 1 if all units are manifold blocks that start from their last impulses.
 
     Returns:
-        Greatest change of a velocity in the last sweep, squared; number of sweeps.
+        Maximum change of a velocity in the last sweep, squared; number of sweeps.
     """
     threshold = settings.residual_threshold
     most = settings.iterations

@@ -16,7 +16,7 @@ from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROW_FRICTION, ROW_IMPUL
 def visit_sweep(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, count: Int32, sweep: Int32
 ) -> real:
-    """Relax motors, limits and user constraints once; returns the greatest change squared."""
+    """Relax motors, limits and user constraints once; returns the maximum change squared."""
     residual = real(0.0)
     inner = Int32(0)
     while inner < settings.inner_iterations:
@@ -45,7 +45,7 @@ def visit_sweep(
 
 @func
 def relax_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
-    """Relax the normal rows of a manifold block; returns the greatest change of velocity squared."""
+    """Relax the normal rows of a manifold block; returns the maximum change of velocity squared."""
     if pair_rows.manifold_block[world, manifold_block].matrices < 0:
         return relax_rigid_normals(scratch, pair_rows, world, manifold_block)
     return relax_articulated_normals(scratch, pair_rows, world, manifold_block)
@@ -63,7 +63,7 @@ def relax_friction(
 
 @func
 def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32) -> real:
-    """Relax the normal rows of an island's contacts once; returns the greatest change squared."""
+    """Relax the normal rows of an island's contacts once; returns the maximum change squared."""
     residual = real(0.0)
     for unit in range(units):
         code = pair_rows.unit_code[world, unit]
@@ -79,7 +79,7 @@ def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int
 
 @func
 def friction_bound(pair_rows: PairRows, world: Int32, row: Int32) -> real:
-    """Greatest impulse of a friction row: its coefficient times the normal impulse."""
+    """Maximum impulse of a friction row: its coefficient times the normal impulse."""
     normal = pair_rows.row_bound[world, row]
     return pair_rows.row_terms[world, row][ROW_FRICTION] * pair_rows.row_terms[world, normal][ROW_IMPULSE]
 
@@ -88,7 +88,7 @@ def friction_bound(pair_rows: PairRows, world: Int32, row: Int32) -> real:
 def relax_contact_friction(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, contact: Int32, kind: Int32
 ) -> real:
-    """Relax the spinning, rolling or lateral rows of a contact; returns the greatest change squared."""
+    """Relax the spinning, rolling or lateral rows of a contact; returns the maximum change squared."""
     row = pair_rows.contact_rows[world, contact][kind]
     change = real(0.0)
     if row >= 0:
@@ -148,7 +148,7 @@ def contact_sweep(
 def resting_sweep(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_blocks: Int32
 ) -> real:
-    """Relax all rows of a resting island's manifold blocks once; returns the greatest change squared.
+    """Relax all rows of a resting island's manifold blocks once; returns the maximum change squared.
 
     Manifold block by manifold block, the friction of each right after its normals.
     """

@@ -41,7 +41,7 @@ RESTING_SWEEPS = 4
 # How the search for the impulses of a contact went: it was in no island at rest; that was solved; it was
 # not; it was, and the manifold block holds.
 NOT_RESTING, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
-# Share of the greatest friction, squared, from which on a contact slides.
+# Share of the largest friction, squared, from which on a contact slides.
 SLIDING = real(1.0 - 1e-9)
 # What `next_warm_start` says of a contact in a manifold block that holds; others go up to 1.
 HOLDS = real(2.0)
@@ -104,7 +104,7 @@ def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -
 def contact_traits(
     settings: Settings, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
 ) -> Int32:
-    """What a contact adds to `PairRows.tree_contacts` of the trees it moves."""
+    """The bits that a contact adds to `PairRows.tree_contacts` of the trees it moves."""
     if not is_plain(shapes, contacts, world, contact):
         return HAS_CONTACTS | HAS_OTHER_CONTACTS
     gap = contacts.contact_distance[world, contact] + settings.contact_slop
@@ -115,7 +115,7 @@ def contact_traits(
 
 @func
 def rest_of(model: Model, state: State, pair_rows: PairRows, world: Int32, tree: Int32) -> Int32:
-    """How much at rest a tree allows its island to be: `MOVING`, `RESTING` or `HELD`."""
+    """The highest state of rest that a tree allows its island: `MOVING`, `RESTING` or `HELD`."""
     touches = pair_rows.tree_contacts[world, tree]
     motion = squared_motion(model, state, world, tree)
     if touches & HAS_OTHER_CONTACTS != 0 or motion >= REST or not is_rigid(model, tree):
@@ -127,7 +127,7 @@ def rest_of(model: Model, state: State, pair_rows: PairRows, world: Int32, tree:
 
 @func
 def find_resting_islands(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
-    """Mark the roots of islands by how much at rest these are, and stop what is held."""
+    """Mark the roots of islands by their state of rest, and stop islands that are held."""
     for tree in range(settings.tree_count):
         pair_rows.tree_rest[world, tree] = Int32(HELD)
         if pair_rows.tree_first_constraint[world, tree] >= 0 or settings.contact_warm_starting == 0.0:

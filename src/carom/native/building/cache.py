@@ -1,4 +1,4 @@
-"""Where what is built is kept, so that nothing is built twice.
+"""The cache of built files, so that nothing is built twice.
 
 Every start in a clone comes here to find its library: what only building needs is imported when that begins.
 """
@@ -76,7 +76,7 @@ def mark_used(entry: Path) -> None:
     Args:
         entry: A file or folder directly in one of the cache's folders.
     """
-    # Somebody else's, or one that cannot be written, is as good unmarked.
+    # A folder of another user, or one that is not writable, needs no mark.
     with contextlib.suppress(OSError):
         os.utime(entry)
 
@@ -99,7 +99,7 @@ def content_key(*contents: bytes | str) -> str:
 
 @contextlib.contextmanager
 def work_folder(cache: Path) -> Iterator[Path]:
-    """A new folder in the cache, on its file system, that is gone afterwards.
+    """A temporary folder in the cache, on its file system.
 
     Args:
         cache: The cache folder.
@@ -112,7 +112,7 @@ def work_folder(cache: Path) -> Iterator[Path]:
 
 
 def keep(made: Path, kept: Path) -> None:
-    """Move a file or folder to where it is to be kept, at once or not at all.
+    """Move a file or folder into the cache atomically.
 
     Another process may have put the same there meanwhile.
 
@@ -133,7 +133,7 @@ def keep(made: Path, kept: Path) -> None:
 def alone(cache: Path) -> Iterator[None]:
     """Wait until no other process builds with this cache, and keep others waiting meanwhile.
 
-    The lock goes with the process that holds it, however that ends.
+    The lock is released when its process ends, in any way.
 
     Args:
         cache: The cache folder.

@@ -1,4 +1,4 @@
-"""What the compiler is told.
+"""Compiler flags.
 
 The same sources have to give the same bits on every platform and CPU level. So nothing here lets a compiler
 round differently: no contraction of products and sums, no reordering, no processor of the machine that

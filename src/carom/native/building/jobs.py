@@ -43,10 +43,10 @@ def run_all(
     Args:
         jobs: The programs.
         environment: Environment variables that they get.
-        progress: Called again and again with how many have ended, and how many there are.
+        progress: Called repeatedly with the number of finished jobs, and of all jobs.
 
     Raises:
-        BuildError: One of them failed; the others are ended. The message has what it printed.
+        BuildError: A job failed; the others are stopped. The message has its output.
     """
     waiting = list(reversed(jobs))
     running: list[tuple[Job, subprocess.Popen[bytes], IO[bytes]]] = []

@@ -70,9 +70,9 @@ def build(
         root: The folder that the package `carom` is in.
         target: For which platform.
         level: For which of its CPU levels.
-        progress: Where to say how far it is; None for nowhere.
+        progress: Progress display; None for none.
         modules: Python modules whose kernels are in it.
-        cache: Where to keep what is built; None for `cache_folder()`.
+        cache: Cache folder; None for `cache_folder()`.
 
     Returns:
         The library, in the cache; `manifest.json` is beside it.
@@ -120,12 +120,12 @@ def _make(parts: _Build, library: Path) -> None:
 
 
 def build_all(root: Path, target: Target, progress: TextIO | None = sys.stderr) -> list[Path]:
-    """Build, or find in the cache, what a wheel has in it.
+    """Build, or take from the cache, the contents of a wheel.
 
     Args:
         root: The folder that the package `carom` is in.
         target: For which platform.
-        progress: Where to say how far it is; None for nowhere.
+        progress: Progress display; None for none.
 
     Returns:
         A library for each CPU level that is shipped, and their manifest.

@@ -1,4 +1,4 @@
-"""A line that says how far a build is."""
+"""A line with the progress of a build."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _LOG_SECONDS = 5.0
 
 
 class ProgressLine:
-    """Says how far a build is.
+    """Shows the progress of a build.
 
     Args:
         stream: Where to; None for nowhere.
@@ -24,11 +24,11 @@ class ProgressLine:
         self._length = 0
 
     def show(self, doing: str, *, now: bool = False) -> None:
-        """Say what is being done, if it is time to.
+        """Show what is being done, at intervals.
 
         Args:
             doing: `compiling kernels 7/16`.
-            now: Whatever the time.
+            now: At once.
         """
         time_now = time.monotonic()
         wait = _TERMINAL_SECONDS if self._terminal else _LOG_SECONDS

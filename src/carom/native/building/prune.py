@@ -9,17 +9,17 @@ from pathlib import Path
 
 _MOST_SECONDS = 30 * 24 * 3600.0
 _MOST_BYTES = 400 << 20
-# Folders of builds that were killed; those of builds that go on are younger.
+# Folders of killed builds; those of running builds are younger.
 _MOST_WORK_SECONDS = 24 * 3600.0
-# What is compiled again where it is missing. Zig looks after its own.
+# Files that are compiled again if missing. Zig manages its own cache.
 _FOLDERS = ("libraries", "code", "objects")
 
 
 def prune(cache: Path, most_bytes: int = _MOST_BYTES) -> None:
-    """Remove what has not been used for 30 days, and the oldest of the rest until it is small enough.
+    """Remove files not used for 30 days, then the oldest ones until the cache is small enough.
 
     Args:
-        cache: The cache folder; nobody else builds with it meanwhile.
+        cache: The cache folder; no other build may use it meanwhile.
         most_bytes: How large libraries, code and objects may be together.
     """
     now = time.time()

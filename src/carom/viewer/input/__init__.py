@@ -1,1 +1,1 @@
-"""What users do on pages: keys, the mouse, sliders, pulling and driving, and leaving."""
+"""User input on pages: keys, mouse, sliders, pulling bodies, driving joints, and closing."""

@@ -1,4 +1,4 @@
-"""Sliders, buttons, choices and boxes to check of the panel."""
+"""Sliders, buttons, choices and checkboxes of the panel."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ class Controls:
         self._show(number, slider)
 
     def remove(self, number: int) -> None:
-        """Takes one away; an unknown number does no harm."""
+        """Removes one; unknown numbers are ignored."""
         self.sliders.pop(number, None)
         self._board.take_down(("slider", number), {"type": "no slider", "slider": number})
 
     def move(self, number: int, value: float) -> None:
-        """The user has moved a slider; it stops at its ends."""
+        """The user has moved a slider; the value is clipped to its range."""
         slider = self.sliders.get(number)
         if slider is not None and not slider.is_button and isfinite(value):
             within = min(max(value, slider.lower), slider.upper)

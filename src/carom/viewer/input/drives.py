@@ -1,4 +1,4 @@
-"""Driving joints from a page, without code. Its functions are called while nobody steps the world."""
+"""Driving joints from a page, without code. Its functions are called between steps."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _GAIN, _VELOCITY_GAIN = 0.1, 1.0
-# Greatest force of the drive where the file states no effort [N m or N].
+# Maximum force of the drive if the file has no effort limit [N m or N].
 _FORCE = 500.0
-# Greatest speed of a driven joint [rad/s or m/s]: a slider is moved faster than a robot should.
+# Maximum speed of a driven joint [rad/s or m/s]: a slider is moved faster than a robot should.
 _SPEED = 2.0
 
 
 def drive(world: World, body_id: int, joint: int, target: float, *, place: bool) -> None:
-    """Moves a joint to where a page's slider is; what does not exist or cannot be driven is left alone.
+    """Moves a joint to the value of a page's slider; other joints are ignored.
 
     Args:
         world: The world.
         body_id: Number of the body.
         joint: Index of the joint.
         target: Its position [rad or m].
-        place: Put it there at once, as nothing is moving; else its motor moves it.
+        place: Set the position at once, for a paused world; otherwise its motor moves it.
     """
     body = world.bodies.get(body_id)
     if body is None or not 0 <= joint < body.joint_count or not isfinite(target):

@@ -1,4 +1,4 @@
-"""Keys as PyBullet reports them: codes, and what happened to them since they were last asked for."""
+"""Keys as PyBullet reports them: codes, and their events since the last query."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ DOWN, TRIGGERED, RELEASED = 1, 2, 4
 # A script that has asked for keys within this time will ask again [s].
 _ATTENTION = 1.0
 
-# Keys without a character, by their name in a browser's events.
+# Keys without a character, by their names in browser events.
 _FUNCTION_KEYS = {f"F{number}": 65279 + number for number in range(1, 16)}
 _NAMED = {
     "ArrowLeft": 65295,
@@ -35,7 +35,7 @@ _NAMED = {
 
 
 def key_code(key: str, place: str) -> int | None:
-    """PyBullet's code of a key; None for those it does not know.
+    """PyBullet's code of a key; None for keys without a code.
 
     Letters have their lower-case character, whatever Shift and Caps Lock say, and digits stay digits.
 
@@ -58,18 +58,18 @@ class Keyboard:
 
     def __init__(self) -> None:
         self._lock = Lock()
-        # Codes of the keys each page holds; a key is up when nobody holds it.
+        # Codes of the keys held on each page; a key is up if no page holds it.
         self._held: defaultdict[int, dict[str, int]] = defaultdict(dict)
         self._states: dict[int, int] = {}
         self._asked = -_ATTENTION
 
     @property
     def is_asked(self) -> bool:
-        """Whether a script asks for keys again and again."""
+        """Whether a script asks for keys regularly."""
         return monotonic() - self._asked < _ATTENTION
 
     def press(self, page: int, key: str, place: str) -> None:
-        """A key goes down on a page. Keyboards repeat held keys; that is no second press."""
+        """A key goes down on a page. Repeats of a held key are ignored."""
         code = key_code(key, place)
         if code is None:
             return
@@ -86,13 +86,13 @@ class Keyboard:
                 self._let_go(code)
 
     def release_all(self, page: int) -> None:
-        """A page has lost the keyboard, or is gone: it will not tell which keys go up."""
+        """A page has lost the focus or was closed: it will not report released keys."""
         with self._lock:
             for code in self._held.pop(page, {}).values():
                 self._let_go(code)
 
     def events(self) -> dict[int, int]:
-        """What happened since the last call, by key: the sum of `DOWN`, `TRIGGERED` and `RELEASED`.
+        """Events since the last call, by key: the sum of `DOWN`, `TRIGGERED` and `RELEASED`.
 
         A key that went down and up in between is triggered and released.
         """

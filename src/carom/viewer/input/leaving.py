@@ -1,4 +1,4 @@
-"""How a user ends a simulation: by the close button at once, by ESC after the script has seen the key."""
+"""Closing a simulation: at once by the close button, or by ESC after the script has seen the key."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ _PATIENCE = 1.0
 class Leaving:
     """Ends a simulation when the user presses ESC. Safe to use from all threads.
 
-    PyBullet closes its window within a frame of ESC, and a loop that asks for the keys sees the key
-    before. Here that is no matter of luck: a script that asks for keys is given the key first.
+    PyBullet closes its window within a frame of ESC, and a loop that asks for keys may see the key before.
+    Here a script that asks for keys always gets the key first.
 
     Args:
         close: Ends the simulation; called once or more.
@@ -26,7 +26,7 @@ class Leaving:
 
     @property
     def pending(self) -> bool:
-        """Whether ESC has been pressed, and the script has yet to see it."""
+        """Whether ESC was pressed, and the script has not seen it yet."""
         return self._timer is not None
 
     def escape(self, *, listening: bool) -> None:
@@ -43,12 +43,12 @@ class Leaving:
             self._timer.start()
 
     def told(self, events: dict[int, int]) -> None:
-        """The script has been told of these keys."""
+        """The script has read these keys."""
         if self._timer is not None and ESCAPE in events:
             self._timer.cancel()
             self._close()
 
     def cancel(self) -> None:
-        """The simulation has ended otherwise."""
+        """The simulation has ended in another way."""
         if self._timer is not None:
             self._timer.cancel()

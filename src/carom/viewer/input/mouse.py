@@ -8,7 +8,7 @@ from carom.viewer.input.keys import DOWN, RELEASED, TRIGGERED
 
 MOVED, CLICKED = 1, 2
 _NO_BUTTON = -1
-# Scripts that never ask must not fill the memory; those that ask do so many times a second.
+# Limit for scripts that never ask for events; others ask many times a second.
 _MOST_EVENTS = 1000
 
 MouseEvent = tuple[int, float, float, int, int]
@@ -29,7 +29,7 @@ class Mouse:
         self._events.append((CLICKED, x, y, button, DOWN | TRIGGERED if down else RELEASED))
 
     def events(self) -> list[MouseEvent]:
-        """Type, x, y, button and state of what happened since the last call."""
+        """Type, x, y, button and state of the events since the last call."""
         events = []
         while self._events:
             events.append(self._events.popleft())

@@ -1,4 +1,4 @@
-"""Pulling bodies with the mouse: a point of a link is tied to where the mouse is, softly."""
+"""Pulling bodies with the mouse: a soft constraint between a point of a link and the mouse."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
-# The greatest force a hand pulls with, by the mass of what it pulls [N/kg] and at least [N]: enough to lift
-# and swing a body, and too little to tear it through others.
+# The maximum force of a pull, per mass of the body [N/kg] and at least [N]: enough to lift and swing a body,
+# but not to pull it through others.
 _FORCE_BY_MASS = 100.0
 _LEAST_FORCE = 5.0
 _PATIENCE = 0.02
@@ -26,15 +26,15 @@ _PATIENCE = 0.02
 
 @dataclass(slots=True)
 class _Hand:
-    """What one page pulls at.
+    """The pull of one page.
 
     Attributes:
         body: Number of the body.
         link: Index of the link; -1 is the base.
-        point: Where the link is held, in its inertial frame [m].
-        target: Where the mouse is, in the world [m].
-        tie: The constraint, once it is made.
-        moved: The target has changed since the constraint was told.
+        point: The point of the link, in its inertial frame [m].
+        target: The point of the mouse, in the world [m].
+        tie: The constraint, after it was made.
+        moved: The target has changed since the constraint was updated.
     """
 
     body: int
@@ -46,11 +46,11 @@ class _Hand:
 
 
 class Picking:
-    """The hands of all pages. Belongs to one thread; the world is only touched in `apply`.
+    """The pulls of all pages. For use by one thread; only `apply` changes the world.
 
     Args:
         world: The world.
-        lock: Held by whoever steps or changes the world.
+        lock: Held while the world is stepped or changed.
     """
 
     def __init__(self, world: World, lock: Any) -> None:
@@ -60,29 +60,29 @@ class Picking:
         self._released: list[UserConstraint] = []
 
     def take(self, page: int, body: int, link: int, point: Vector3, target: Vector3) -> None:
-        """A page takes hold of a point of a link, given in its inertial frame."""
+        """A page starts to pull at a point of a link, given in its inertial frame."""
         self.release(page)
         if all(map(isfinite, (*point, *target))):
             self._picking[page] = _Hand(body, link, point, target)
 
     def move(self, page: int, target: Vector3) -> None:
-        """The mouse of a page goes somewhere else in the world."""
+        """The mouse of a page has moved."""
         hand = self._picking.get(page)
         if hand is not None and all(map(isfinite, target)):
             hand.target = target
             hand.moved = True
 
     def release(self, page: int) -> None:
-        """A page lets go."""
+        """A page stops pulling."""
         hand = self._picking.pop(page, None)
         if hand is not None and hand.tie is not None:
             self._released.append(hand.tie)
 
     def apply(self, patience: float = _PATIENCE) -> None:
-        """Makes, moves and removes constraints as the hands say; if the world is busy, the next time.
+        """Makes, moves and removes the constraints; if the world is busy, at the next call.
 
         Args:
-            patience: How long to wait for a world that is stepping [s].
+            patience: How long to wait for a step to end [s].
         """
         if not self._released and not any(hand.moved or hand.tie is None for hand in self._picking.values()):
             return
@@ -99,13 +99,13 @@ class Picking:
     def _remove_released(self) -> None:
         constraints = self._world.user_constraints
         for tie in self._released:
-            # Its body may have gone in the meantime.
+            # Its body may have been removed in the meantime.
             if constraints.get(tie.id) is tie:
                 self._world.untie(tie)
         self._released.clear()
 
     def _hold(self, hand: _Hand) -> bool:
-        """Brings the constraint of a hand up to date; false if there is nothing to hold any more."""
+        """Updates the constraint of a pull; false if the body or link no longer exists."""
         world = self._world
         if hand.tie is not None:
             if world.user_constraints.get(hand.tie.id) is not hand.tie:

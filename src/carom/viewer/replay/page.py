@@ -1,7 +1,7 @@
 """The page as one file that plays a recording, without a server and without a network.
 
-Browsers load no modules from the files beside a page that is itself a file. So the modules come along packed,
-under names of their own (`carom/view/scene.js`) that an import map leads to, and a few lines unpack them.
+Browsers load no modules from files if the page itself is a file. So the modules are packed into the page,
+under names (`carom/view/scene.js`) in an import map, and a short script unpacks them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _UNPACK = """
 
 @cache
 def replay_page() -> str:
-    """The page with `RECORDING` where the recording goes, in base 64."""
+    """The page with `RECORDING` in place of the recording, which is in base 64."""
     files = {name: content.decode() for name, content in page_files().items()}
     modules = {
         name: _with_absolute_imports(name, text) for name, text in files.items() if name.endswith(".js")

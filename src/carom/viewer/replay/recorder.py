@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _PAGE = 1
-# Times are sums of time steps: how far a frame may be early [of the time between two].
+# Tolerance for rounding of times, which are sums of time steps [of the time between two frames].
 _EARLY = 1e-6
-# What belongs to a moment; the rest says how a live page is to look.
+# Messages that belong to a moment; the others are options of a live page.
 _OF_BODIES = frozenset({"body", "mesh", "texture", "layout", "dynamics", "constraints"})
 _OF_SCRIPTS = frozenset({"line", "text", "points", "item", "slider"})
 
@@ -34,9 +34,9 @@ class ReplayRecorder:
 
     Args:
         world: The world.
-        path: The file; one that is there is replaced.
+        path: The file; an existing one is replaced.
         fps: Frames for each second of simulated time.
-        title: What the page is called; the name of the file by default.
+        title: Title of the page; the name of the file by default.
         contacts: Record contacts and their forces.
         joints: Record positions, velocities and torques of joints.
 
@@ -59,7 +59,7 @@ class ReplayRecorder:
         self._title = self._path.stem if title is None else title
         self._interval = 1.0 / float(positive(fps, "fps"))
         self._board = Board()
-        # Of the own board, and of that of a viewer: what scripts draw is there.
+        # Revisions of its own board, and of a viewer's, which has the drawings of scripts.
         self._told = [0, 0]
         lock = RLock()
         self._feed = SceneFeed(world, lock, self._board)
@@ -85,7 +85,7 @@ class ReplayRecorder:
     def look_from(
         self, distance: float, yaw: float, pitch: float, target: tuple[float, float, float]
     ) -> None:
-        """Where the page looks from at first; by default it shows everything.
+        """Sets the initial view; by default it shows everything.
 
         Args:
             distance: To the target [m].
@@ -108,7 +108,7 @@ class ReplayRecorder:
         time = float(self._world.time)
         passed = time - self._last
         self._last = time
-        # Time goes back when a state is restored: what follows is seen at once.
+        # Time goes back when a state is restored: the next frame is taken at once.
         self._due = 0.0 if passed < 0.0 else self._due - passed / self._interval
         if self._due <= _EARLY:
             self.shoot()
@@ -124,7 +124,7 @@ class ReplayRecorder:
             self._recording.add(*decoded(frame))
 
     def stop(self) -> None:
-        """Records no more and writes the file; stopping again does nothing.
+        """Stops recording and writes the file; calling it again does nothing.
 
         Raises:
             OSError: The file cannot be written.
@@ -143,14 +143,14 @@ class ReplayRecorder:
         return self._recording.frame_count
 
     def _repr_html_(self) -> str:
-        """What has been recorded so far, for notebooks: it needs no connection."""
+        """The recording so far, for notebooks, which needs no connection."""
         return replay_frame(self._page())
 
     def _page(self) -> str:
         return replay_of(self._recording.packed(title=self._title, **self._facts))
 
     def _take_news(self) -> None:
-        """Takes in what is new on the boards."""
+        """Records the news of the boards."""
         self._take_from(0, self._board, _OF_BODIES)
         viewer_board = boards.get(self._world)
         if viewer_board is not None:

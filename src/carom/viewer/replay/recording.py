@@ -1,10 +1,11 @@
-"""Recordings: what a page was told, packed into one piece of bytes.
+"""Recordings: the messages of a page, packed into bytes.
 
 A recording is compressed by zlib. Inside are the length of an index as a little-endian integer of four bytes,
 the index in JSON, and the numbers of its records one after the other. A record is a *message* about the scene
-(its header, and how many bytes follow), or a run of *frames* that have all but their times and numbers in
-common. The numbers of a run are floats of four bytes, each frame as the differences in bits from the one
-before it, sorted by byte, then by column, then by frame: what hardly changes becomes zeros, which pack well.
+(its header, and the number of bytes that follow), or a run of *frames* that differ only in their times and
+numbers. The numbers of a run are floats of four bytes, each frame as the differences in bits from the one
+before it, sorted by byte, then by column, then by frame: small changes become zeros,
+which are compressed well.
 
 `page/time/recording.js` reads and writes the same.
 """
@@ -24,7 +25,7 @@ _UINT = np.dtype("<u4")
 
 
 class Recording:
-    """Messages to a page, in the order they came."""
+    """Messages to a page, in order."""
 
     def __init__(self) -> None:
         self._records: list[dict[str, Any]] = []
@@ -35,7 +36,7 @@ class Recording:
         self.frame_count: int = 0
 
     def add(self, header: dict[str, Any], payload: bytes) -> None:
-        """Takes in the next message."""
+        """Adds the next message."""
         if header["type"] != "frame":
             self._end_run()
             self._records.append({"message": header, "bytes": len(payload)})
@@ -50,10 +51,10 @@ class Recording:
         self.frame_count += 1
 
     def packed(self, **facts: Any) -> bytes:
-        """All of it.
+        """The packed recording.
 
         Args:
-            **facts: What to tell of it: `title`, `camera`, `options`.
+            **facts: Further data: `title`, `camera`, `options`.
         """
         self._end_run()
         index = json.dumps({"format": FORMAT, **facts, "records": self._records}, separators=(",", ":"))
@@ -76,7 +77,7 @@ class Recording:
 
 
 def unpacked(recording: bytes) -> tuple[dict[str, Any], list[tuple[dict[str, Any], bytes]]]:
-    """What is told of a recording, and its messages in order, as headers and payloads.
+    """The further data of a recording, and its messages in order, as headers and payloads.
 
     Raises:
         ValueError: It has another format.

@@ -1,1 +1,1 @@
-"""The hold of pages on the steps of a world: pausing, slowing, going back, and what waits between steps."""
+"""Control of steps by pages: pausing, slow motion, going back, and tasks between steps."""

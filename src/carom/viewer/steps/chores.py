@@ -1,4 +1,4 @@
-"""What pages ask to be done to a world, between two of its steps."""
+"""Tasks of pages, done between two steps of a world."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from collections.abc import Callable
 from typing import Any
 
 _log = logging.getLogger("carom")
-# How long to wait for a world that is stepping before the chores are put off to the next frame [s].
+# How long to wait for a step to end, before the chores are left to the next frame [s].
 _PATIENCE = 0.02
 
 
 class Chores:
-    """Functions that wait for the lock of a world. Safe to use from all threads.
+    """A queue of functions that need the lock of a world. Safe to use from all threads.
 
     Args:
-        lock: Held by whoever steps or changes the world.
+        lock: Held while the world is stepped or changed.
     """
 
     def __init__(self, lock: Any) -> None:
@@ -24,11 +24,11 @@ class Chores:
         self._waiting: deque[Callable[[], None]] = deque()
 
     def add(self, chore: Callable[[], None]) -> None:
-        """Does something as soon as nobody steps the world; one that fails is logged."""
+        """Queues a function for the time between steps; errors are logged."""
         self._waiting.append(chore)
 
     def do(self) -> None:
-        """Does what waits; if the world is busy, the next time."""
+        """Runs the queue; if the world is busy, at the next call."""
         if not self._waiting or not self._world_lock.acquire(timeout=_PATIENCE):
             return
         try:

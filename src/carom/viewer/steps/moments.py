@@ -1,4 +1,4 @@
-"""Going back in time: to the start, or to a moment a user has marked."""
+"""Going back in time: to the start, or to a mark set by a user."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _MOST_MARKS = 32
 
 
 class Moments:
-    """States of a world to go back to. Its methods are called while nobody steps the world.
+    """Saved states of a world. Its methods are called between steps.
 
-    The start is the state before the first step, or before the first one with the bodies there are now.
+    The start is the state before the first step with the present bodies.
 
     Args:
         world: The world.
-        board: Where pages learn of the marks.
+        board: The board for the marks.
     """
 
     def __init__(self, world: World, board: Board) -> None:
@@ -35,11 +35,11 @@ class Moments:
 
     @property
     def start_is_known(self) -> bool:
-        """Whether the bodies there are now have been stepped from a state that is kept."""
+        """Whether the start state of the present bodies is saved."""
         return self._start is not None and self._bodies == list(self._world.bodies.values())
 
     def keep_start(self) -> None:
-        """Keeps the present state as the start, and gives up the marks, unless the bodies are those of it."""
+        """Saves the present state as the start, and drops the marks, unless the bodies are the same."""
         if self.start_is_known:
             return
         self._start = self._world.snapshot()
@@ -49,12 +49,12 @@ class Moments:
         self._marks.clear()
 
     def reset(self) -> None:
-        """Goes back to the start; before the first step there is no other state."""
+        """Restores the start state; does nothing before the first step."""
         if self._start is not None and self.start_is_known:
             self._world.restore(self._start)
 
     def mark(self) -> None:
-        """Keeps the present state, and forgets the oldest one if there are too many."""
+        """Saves the present state, and drops the oldest mark if there are too many."""
         if len(self._marks) >= _MOST_MARKS:
             oldest = next(iter(self._marks))
             del self._marks[oldest]
@@ -66,7 +66,7 @@ class Moments:
         self._next += 1
 
     def restore(self, number: int) -> None:
-        """Goes back to a mark; one whose bodies are gone is given up."""
+        """Restores a mark; a mark of removed bodies is dropped."""
         state = self._marks.get(number)
         if state is None:
             return

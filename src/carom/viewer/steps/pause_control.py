@@ -1,4 +1,4 @@
-"""Pausing a simulation, letting it go step by step, and slowing it down."""
+"""Pausing a simulation, single steps, and slow motion."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from time import monotonic, sleep
 
 # On Windows a Ctrl-C is noticed only between two waits [s].
 _LOOK = 0.1
-# A simulation that falls behind its speed by more than this does not catch up [s].
+# A simulation that is slower than its speed catches up at most this delay [s].
 _GREATEST_LAG = 0.1
 
 
 class PauseControl:
-    """What a step has to pass while a simulation is paused or slowed down. Safe to use from all threads.
+    """A gate for steps while a simulation is paused or slowed down. Safe to use from all threads.
 
     Attributes:
-        closed: Steps have to wait. Read without a lock, so that it costs nothing while nobody pauses.
-        speed: Greatest speed, as simulated time by real time; None for any.
-        listeners: How many waits end at `call_back`.
+        closed: Steps have to wait. Read without a lock, so that it costs nothing while not paused.
+        speed: Maximum speed, simulated time / real time; None for any.
+        listeners: Number of waits that end at `call_back`.
     """
 
     def __init__(self) -> None:
@@ -37,32 +37,32 @@ class PauseControl:
             self._steps = 0
 
     def open(self) -> None:
-        """Goes on."""
+        """Continues."""
         with self._changed:
             self.closed = False
             self._origin = None
             self._changed.notify_all()
 
     def let_through(self, steps: int = 1) -> None:
-        """Lets some steps pass and stays closed after them."""
+        """Lets some steps pass, and stays paused after them."""
         with self._changed:
             self._steps += steps
             self._changed.notify_all()
 
     def set_speed(self, speed: float | None) -> None:
-        """Bounds the speed from now on, as simulated time by real time; None for no bound."""
+        """Limits the speed, simulated time / real time; None for no limit."""
         with self._changed:
             self.speed = speed
             self._origin = None
 
     def call_back(self) -> None:
-        """Ends a wait without a step, if the waiting script wants to hear of what the user does."""
+        """Ends a wait without a step, if the waiting script reads user input."""
         with self._changed:
             self._calls += 1
             self._changed.notify_all()
 
     def wait(self, *, listening: bool = False) -> bool:
-        """Returns when a step may be made, or when the user has done something a script listens to.
+        """Waits until a step may be made, or until there is user input that the script reads.
 
         Args:
             listening: Return at `call_back`, too.
@@ -83,7 +83,7 @@ class PauseControl:
                 self.listeners -= listening
 
     def keep_pace(self, time: float) -> None:
-        """Waits as long as a step at this simulated time [s] would be too early for the speed."""
+        """Waits until a step at this simulated time [s] is due at the set speed."""
         speed = self.speed
         if speed is None:
             return

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Sleeping:
-    """Whether bodies may fall asleep. Its method is called while nobody steps the world.
+    """Whether bodies may fall asleep. Its method is called between steps.
 
     Args:
         world: The world.
@@ -25,7 +25,7 @@ class Sleeping:
         self._kept_awake: list[Body] | None = None
 
     def toggle(self) -> None:
-        """Wakes all bodies up and lets none fall asleep, or lets those that could before."""
+        """Wakes all bodies and keeps them awake, or restores which of them may sleep."""
         if self._kept_awake is None:
             can_sleep = self._world.arrays.model.numpy["tree_can_sleep"]
             self._kept_awake = [body for body in self._world.bodies.values() if can_sleep[body.rows.tree]]

@@ -1,4 +1,4 @@
-"""The viewer's hold on the steps of a world that nobody else guards."""
+"""The viewer's lock on the steps of a world of the modern API."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 class StepLock:
     """One of `World.observers`: a step waits for the viewer and holds its lock.
 
-    So that pages can pause, pull and go back in time while a script calls `World.step`.
+    With it pages can pause, pull bodies and go back in time while a script calls `World.step`.
 
     Args:
         viewer: The viewer.
@@ -26,12 +26,12 @@ class StepLock:
         """Waits while the simulation is paused, then takes the lock."""
         if self._viewer.held:
             self._viewer.wait_for_turn()
-        # A step that failed has not given it back.
+        # A step that failed has not released it.
         if not self._held:
             self._lock.acquire()
             self._held = True
 
     def after_step(self) -> None:
-        """Gives the lock back."""
+        """Releases the lock."""
         self._held = False
         self._lock.release()
