@@ -108,9 +108,9 @@ def rolls_on(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, outward: 
 def gathers_everywhere(shapes: Shapes, a: Int32, b: Int32) -> bool:
     """Whether one of two shapes is an infinite plane.
 
-    On planes all shapes gather their points, also where they lie on a face: boxes that land flat tip and creep
-    by them. On faces of other shapes the deepest point of what lies exactly flat is in the middle, and would
-    stay alone.
+    On planes all shapes gather their points, also where they lie on a face: boxes that land flat tip and
+    creep by them. On faces of other shapes the deepest point of what lies exactly flat is in the middle, and
+    would stay alone.
     """
     return shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
 
