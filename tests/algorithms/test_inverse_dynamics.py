@@ -12,8 +12,8 @@ from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulu
 
 from carom import Body, World
 from carom.algorithms import inverse_dynamics, mass_matrix
+from carom.algorithms.mechanism import mechanism_of
 from carom.algorithms.motion import forces_of_motion
-from carom.algorithms.moving_tree import moving_tree
 from carom.description.transform import quaternion_from_rpy, rpy_from_quaternion
 from carom.layouts.codes import MOTOR_MAX_IMPULSE
 
@@ -182,7 +182,7 @@ def gravity_turned_back(quaternion, *, opposite_order: bool) -> np.ndarray:
     world = World()
     world.gravity = GRAVITY
     body = world.load(random_tree(1, 1, fixed_base=False))
-    forces = forces_of_motion(moving_tree(body), as_pybullet=opposite_order)
+    forces = forces_of_motion(mechanism_of(body), as_pybullet=opposite_order)
     dofs = sum(body.velocity_count)
     position = [0.1, 0.2, 0.3, *quaternion, *np.zeros(dofs)]
     still = [0.0] * (6 + dofs)

@@ -31,31 +31,35 @@ def test_every_box_of_the_hierarchy_holds_what_is_below_it(seed: int, count: int
     rng = np.random.default_rng(seed)
     vertices = rng.normal(size=(3 * count, 3))
     surface = polyhedron_of_triangles(vertices, np.arange(3 * count).reshape(-1, 3))
-    tree = triangle_hierarchy(surface)
-    assert tree.leaf_count >= count > tree.leaf_count // 2
-    corners = tree.surface.vertices[tree.surface.corners].reshape(-1, 3, 3)
+    hierarchy = triangle_hierarchy(surface)
+    assert hierarchy.leaf_count >= count > hierarchy.leaf_count // 2
+    corners = hierarchy.surface.vertices[hierarchy.surface.corners].reshape(-1, 3, 3)
     assert {tuple(sorted(map(tuple, t))) for t in corners.tolist()} == {
         tuple(sorted(map(tuple, t))) for t in vertices.reshape(-1, 3, 3).tolist()
     }
-    for leaf in range(tree.leaf_count):
-        node = tree.leaf_count + leaf
+    for leaf in range(hierarchy.leaf_count):
+        node = hierarchy.leaf_count + leaf
         if leaf >= count:
-            assert (tree.lower[node] > tree.upper[node]).all()
+            assert (hierarchy.lower[node] > hierarchy.upper[node]).all()
             continue
-        np.testing.assert_array_equal(tree.lower[node], corners[leaf].min(axis=0))
-        np.testing.assert_array_equal(tree.upper[node], corners[leaf].max(axis=0))
-    for node in range(1, tree.leaf_count):
-        np.testing.assert_array_equal(tree.lower[node], tree.lower[2 * node : 2 * node + 2].min(axis=0))
-        np.testing.assert_array_equal(tree.upper[node], tree.upper[2 * node : 2 * node + 2].max(axis=0))
+        np.testing.assert_array_equal(hierarchy.lower[node], corners[leaf].min(axis=0))
+        np.testing.assert_array_equal(hierarchy.upper[node], corners[leaf].max(axis=0))
+    for node in range(1, hierarchy.leaf_count):
+        np.testing.assert_array_equal(
+            hierarchy.lower[node], hierarchy.lower[2 * node : 2 * node + 2].min(axis=0)
+        )
+        np.testing.assert_array_equal(
+            hierarchy.upper[node], hierarchy.upper[2 * node : 2 * node + 2].max(axis=0)
+        )
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    np.testing.assert_allclose(tree.surface.planes[:, :3], normals, atol=1e-9)
+    np.testing.assert_allclose(hierarchy.surface.planes[:, :3], normals, atol=1e-9)
 
 
 def test_the_hierarchy_of_a_sheet_is_tight() -> None:
     field = Heightfield(np.zeros((17, 17)), (1.0, 1.0, 1.0), 0.0)
-    tree = triangle_hierarchy(heightfield_surface(field))
-    areas = np.prod(tree.upper[:, :2] - tree.lower[:, :2], axis=1)
+    hierarchy = triangle_hierarchy(heightfield_surface(field))
+    areas = np.prod(hierarchy.upper[:, :2] - hierarchy.lower[:, :2], axis=1)
     for level in range(1, 9):
         total = areas[2**level : 2 ** (level + 1)].sum()
         assert total == pytest.approx(256.0, rel=0.15), "boxes of one level hardly overlap"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.moving_tree import MovingTree
+from carom.algorithms.mechanism import Mechanism
 from carom.algorithms.nodes import Node
 from carom.description.pose import Vector3
 from carom.description.transform import matrix_vector, rotation_matrix, transposed
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class ExtendedModel:
-    """A tree of nodes in extended coordinates.
+    """A mechanism of nodes in extended coordinates.
 
     Rates and forces are those of the base along the world's axes, linear before angular, and a zero; then of
     a spherical joint its angular velocity and a zero. Positions are those of the base and of the joints,
@@ -34,9 +34,9 @@ class ExtendedModel:
     """
 
     def __init__(self, nodes: Sequence[Node]) -> None:
-        self._tree = MovingTree(nodes, free=True)
-        self.size: int = BASE_POSITIONS + self._tree.coordinates
-        # The coordinate of each dof of the tree, whose base has its angular dofs first.
+        self._mechanism = Mechanism(nodes, free=True)
+        self.size: int = BASE_POSITIONS + self._mechanism.coordinates
+        # The coordinate of each dof of the mechanism, whose base has its angular dofs first.
         places = [3, 4, 5, 0, 1, 2]
         first = BASE_POSITIONS
         for node in nodes:
@@ -50,8 +50,8 @@ class ExtendedModel:
         Returns:
             (size, size); zeros for the fourth coordinate of quaternions.
         """
-        moving = np.array(self._tree.mass_matrix(position[BASE_POSITIONS:]))
-        turn = np.eye(self._tree.dofs)
+        moving = np.array(self._mechanism.mass_matrix(position[BASE_POSITIONS:]))
+        turn = np.eye(self._mechanism.dofs)
         turn[:3, :3] = turn[3:6, 3:6] = _rotation(position)
         matrix = np.zeros((self.size, self.size))
         matrix[np.ix_(self._places, self._places)] = product(product(turn, moving), turn.T)
@@ -61,10 +61,10 @@ class ExtendedModel:
         """Forces of inertia and gravity [m/s²] at zero acceleration, (size,)."""
         rotation = _rotation(position)
         velocity, omega = rate[:3].tolist(), rate[3:6].tolist()
-        self._tree.set_base_motion(*base_motion(position[3:7].tolist(), velocity, omega, gravity))
-        still = np.zeros(self._tree.joint_dofs)
+        self._mechanism.set_base_motion(*base_motion(position[3:7].tolist(), velocity, omega, gravity))
+        still = np.zeros(self._mechanism.joint_dofs)
         rates = rate[self._places[BASE_VELOCITIES:]]
-        forces = np.array(self._tree.forces(position[BASE_POSITIONS:], rates, still))
+        forces = np.array(self._mechanism.forces(position[BASE_POSITIONS:], rates, still))
         forces[:3], forces[3:6] = dots(rotation, forces[:3]), dots(rotation, forces[3:6])
         result = np.zeros(self.size)
         result[self._places] = forces
@@ -74,7 +74,7 @@ class ExtendedModel:
 def base_motion(
     orientation: Sequence[float], velocity: Sequence[float], omega: Sequence[float], gravity: Vector3
 ) -> tuple[float, ...]:
-    """Motion of a base at zero acceleration, as `MovingTree.set_base_motion` takes it, in PyBullet's way.
+    """Motion of a base at zero acceleration, as `Mechanism.set_base_motion` takes it, in PyBullet's way.
 
     Args:
         orientation: Of the base, a quaternion (x, y, z, w).

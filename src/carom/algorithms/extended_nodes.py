@@ -1,4 +1,4 @@
-"""Bodies as trees of nodes, as in PyBullet's stable PD controller.
+"""Bodies as mechanisms of nodes, as in PyBullet's stable PD controller.
 
 Differences between PyBullet's controller and its engine are kept, so that torques are equal: inertias come
 from the first collision shape of a link alone, capsules have their axis along y, sliders move along the

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.moving_tree import moving_tree
+from carom.algorithms.mechanism import mechanism_of
 from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
@@ -49,15 +49,20 @@ def inverse_dynamics(
         first = body.first_position
         own = body.world.position[first + 3 : first + BASE_POSITIONS]
         gravity = _gravity_seen_from(body, own if base_orientation is None else base_orientation)
-    tree = moving_tree(body)
-    positions_count = tree.coordinates + (BASE_POSITIONS if tree.free else 0)
-    if (len(positions), len(velocities), len(accelerations)) != (positions_count, tree.dofs, tree.dofs):
+    mechanism = mechanism_of(body)
+    positions_count = mechanism.coordinates + (BASE_POSITIONS if mechanism.free else 0)
+    if (len(positions), len(velocities), len(accelerations)) != (
+        positions_count,
+        mechanism.dofs,
+        mechanism.dofs,
+    ):
         raise ValueError(
-            f"it does not fit the body, which takes {positions_count} positions and {tree.dofs} velocities"
+            f"it does not fit the body, which takes {positions_count} positions "
+            f"and {mechanism.dofs} velocities"
         )
-    if not tree.dofs:
+    if not mechanism.dofs:
         return np.zeros(0)
-    return np.array(tree.forces_of_motion(gravity, positions, velocities, accelerations))
+    return np.array(mechanism.forces_of_motion(gravity, positions, velocities, accelerations))
 
 
 def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> Vector3:

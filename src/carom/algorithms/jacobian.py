@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.moving_tree import moving_tree
+from carom.algorithms.mechanism import mechanism_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -32,7 +32,7 @@ def jacobian(
         Matrices J with velocity = J rates, in axes of the base's inertial frame, each of shape
         (3, n); of a free body (3, 6 + n), the base first: angular, then linear.
     """
-    tree = moving_tree(body)
-    linear, angular = tree.jacobian(link, local_position, positions)
-    shape = (3, tree.dofs)
+    mechanism = mechanism_of(body)
+    linear, angular = mechanism.jacobian(link, local_position, positions)
+    shape = (3, mechanism.dofs)
     return np.array(linear).reshape(shape), np.array(angular).reshape(shape)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.moving_tree import moving_tree
+from carom.algorithms.mechanism import mechanism_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -24,5 +24,5 @@ def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarr
         Symmetric matrix, shape (n, n); of a free body (6 + n, 6 + n), the base first: angular, then
         linear velocity along its own axes.
     """
-    tree = moving_tree(body)
-    return np.array(tree.mass_matrix(positions)).reshape(tree.dofs, tree.dofs)
+    mechanism = mechanism_of(body)
+    return np.array(mechanism.mass_matrix(positions)).reshape(mechanism.dofs, mechanism.dofs)

@@ -8,20 +8,20 @@ import numpy as np
 
 from carom.algorithms.ask import Ask, asking
 from carom.layouts.codes import BASE_POSITIONS
-from carom.layouts.moving_tree import POSE
+from carom.layouts.mechanism import POSE
 from carom.native.kernels import motion_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, array_view, numbers_of
 
 if TYPE_CHECKING:
-    from carom.algorithms.moving_tree import MovingTree
+    from carom.algorithms.mechanism import Mechanism
 
 
-def forces_of_motion(tree: MovingTree, *, as_pybullet: bool = False) -> Ask:
-    """A function for the generalized forces of a motion of a tree.
+def forces_of_motion(mechanism: Mechanism, *, as_pybullet: bool = False) -> Ask:
+    """A function for the generalized forces of a motion of a mechanism.
 
     Args:
-        tree: The tree, of at least one dof; its output holds the answer.
+        mechanism: The mechanism, of at least one dof; its output holds the answer.
         as_pybullet: Gravity at a free base has the wrong direction that PyBullet gives it, see
             `turned_back_in_opposite_order`; and spherical joints have roll, pitch and yaw for positions.
 
@@ -35,9 +35,14 @@ def forces_of_motion(tree: MovingTree, *, as_pybullet: bool = False) -> Ask:
         no length, or the forces would not be finite; `TypeError` for what is no sequence; and `struct.error`
         for what is not a number.
     """
-    positions = tree.joint_dofs if as_pybullet else tree.coordinates
-    counts = (int(POSE), positions + (BASE_POSITIONS if tree.free else 0), tree.dofs, tree.dofs)
+    positions = mechanism.joint_dofs if as_pybullet else mechanism.coordinates
+    counts = (
+        int(POSE),
+        positions + (BASE_POSITIONS if mechanism.free else 0),
+        mechanism.dofs,
+        mechanism.dofs,
+    )
     numbers: np.ndarray = np.zeros(sum(counts), dtype=NUMPY_REAL)
-    launch = Launch(motion_kernel, 1, [*tree.structs, array_view(numbers), int(as_pybullet)])
-    output = numbers_of(tree.arrays["output"])
-    return asking(counts, numbers_of(numbers), launch.brief_function, output, tree.dofs)
+    launch = Launch(motion_kernel, 1, [*mechanism.structs, array_view(numbers), int(as_pybullet)])
+    output = numbers_of(mechanism.arrays["output"])
+    return asking(counts, numbers_of(numbers), launch.brief_function, output, mechanism.dofs)

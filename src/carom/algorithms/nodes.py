@@ -1,4 +1,4 @@
-"""Bodies as trees of nodes: moving joints, each with the rigid body behind it."""
+"""Bodies as mechanisms of nodes: moving joints, each with the rigid body behind it."""
 
 from __future__ import annotations
 

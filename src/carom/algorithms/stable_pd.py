@@ -15,9 +15,9 @@ import numpy as np
 
 from carom.algorithms.extended_model import base_motion
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.moving_tree import MovingTree
+from carom.algorithms.mechanism import Mechanism
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.layouts.moving_tree import BASE_MOTION, Control
+from carom.layouts.mechanism import BASE_MOTION, Control
 from carom.native.kernels import stable_pd_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
@@ -81,19 +81,21 @@ class _Controller:
 
     def __init__(self, body: Body) -> None:
         self._body = body
-        tree = MovingTree(extended_nodes(body, as_pybullet=not body.fixed_base), free=True)
-        self._tree = tree
+        mechanism = Mechanism(extended_nodes(body, as_pybullet=not body.fixed_base), free=True)
+        self._mechanism = mechanism
         control = ArrayTable(Control)
-        control.reserve({"coordinate": tree.coordinates, "dof": tree.dofs, "entry": tree.dofs**2})
+        control.reserve(
+            {"coordinate": mechanism.coordinates, "dof": mechanism.dofs, "entry": mechanism.dofs**2}
+        )
         arrays = control.numpy
         self._target = numbers_of(arrays["coordinate_target"])
         self._given = [arrays[f"dof_{name}"] for name in ("target_rate", "kp", "kd", "most")]
         self._target_rate, self._kp, self._kd, self._most = map(numbers_of, self._given)
-        self._torque = arrays["dof_torque"][: tree.dofs]
+        self._torque = arrays["dof_torque"][: mechanism.dofs]
         self._unaimed = array(_TYPE_CODE)
         for count in body.position_count:
             self._unaimed.extend(_NO_TURN if count == 4 else (0.0,) * count)
-        # The dofs of the tree begin with those of the base, as the body's do.
+        # The dofs of the mechanism begin with those of the base, as the body's do.
         shift_q, shift_u = body.first_position + BASE_POSITIONS, body.first_velocity
         self._places = [
             (
@@ -104,11 +106,11 @@ class _Controller:
             )
             for joint in range(body.joint_count)
         ]
-        rates = int(BASE_MOTION) + tree.coordinates
-        given = numbers_of(tree.arrays["input"])
+        rates = int(BASE_MOTION) + mechanism.coordinates
+        given = numbers_of(mechanism.arrays["input"])
         self._position = given[int(BASE_MOTION) : rates]
-        self._rate = given[rates : rates + tree.joint_dofs]
-        arguments = [*tree.structs, control.struct(), int(body.fixed_base), 0.0]
+        self._rate = given[rates : rates + mechanism.joint_dofs]
+        arguments = [*mechanism.structs, control.struct(), int(body.fixed_base), 0.0]
         self._launch = Launch(stable_pd_kernel, 1, arguments)
         self._time_step_at = stable_pd_kernel.indices["time_step"]
 
@@ -125,9 +127,9 @@ class _Controller:
         orientation = world.position_memory[q + 3 : q + BASE_POSITIONS].tolist()
         rates = world.velocity_memory[u : u + BASE_VELOCITIES].tolist()
         gravity = world.parameters.gravity
-        self._tree.set_base_motion(*base_motion(orientation, rates[3:], rates[:3], gravity))
-        self._position[:] = world.position_memory[q + BASE_POSITIONS :][: self._tree.coordinates]
-        self._rate[:] = world.velocity_memory[u + BASE_VELOCITIES :][: self._tree.joint_dofs]
+        self._mechanism.set_base_motion(*base_motion(orientation, rates[3:], rates[:3], gravity))
+        self._position[:] = world.position_memory[q + BASE_POSITIONS :][: self._mechanism.coordinates]
+        self._rate[:] = world.velocity_memory[u + BASE_VELOCITIES :][: self._mechanism.joint_dofs]
 
     def _take_targets(self, targets: Mapping[int, _Target]) -> None:
         for numbers in self._given:

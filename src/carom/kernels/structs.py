@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from carom.kernels.warp_types import warp_type
-from carom.layouts import chain, contacts, images, model, motor_commands, moving_tree, parallel, queries, soft
+from carom.layouts import chain, contacts, images, mechanism, model, motor_commands, parallel, queries, soft
 
 if TYPE_CHECKING:
     from carom.layouts.chain import Chain, ChainSizes, Search
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
         UserConstraints,
     )
     from carom.layouts.images import Lighting, Picture, Scene, View
+    from carom.layouts.mechanism import Control, Ends, MechanismSizes, MechanismTable
     from carom.layouts.model import Dofs, Model, Scratch, Settings, State, Trees
     from carom.layouts.motor_commands import MotorCommands
-    from carom.layouts.moving_tree import Control, Ends, Tree, TreeSizes
     from carom.layouts.parallel import IslandProgress, IslandWork, PairWork, RunWork
     from carom.layouts.queries import ContactReport, Places, Rays, Searches, Touching
     from carom.layouts.soft import SoftModel, SoftWork
@@ -57,10 +57,10 @@ else:
     State = warp_type(model.State)
     Scratch = warp_type(model.Scratch)
     MotorCommands = warp_type(motor_commands.MotorCommands)
-    TreeSizes = warp_type(moving_tree.TreeSizes)
-    Ends = warp_type(moving_tree.Ends)
-    Tree = warp_type(moving_tree.Tree)
-    Control = warp_type(moving_tree.Control)
+    MechanismSizes = warp_type(mechanism.MechanismSizes)
+    Ends = warp_type(mechanism.Ends)
+    MechanismTable = warp_type(mechanism.MechanismTable)
+    Control = warp_type(mechanism.Control)
     Places = warp_type(queries.Places)
     ContactReport = warp_type(queries.ContactReport)
     Searches = warp_type(queries.Searches)

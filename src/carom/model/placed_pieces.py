@@ -55,13 +55,13 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
 def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
     """Number of rows that pieces need on each axis of shapes."""
     solids = [piece.polyhedron for piece in pieces if piece.polyhedron is not None]
-    trees = [piece.hierarchy for piece in pieces if piece.hierarchy is not None]
+    hierarchies = [piece.hierarchy for piece in pieces if piece.hierarchy is not None]
     return {
         "shape": len(pieces),
         "vertex": sum(len(solid.vertices) for solid in solids),
         "face": sum(len(solid.planes) for solid in solids),
         "corner": sum(len(solid.corners) for solid in solids),
-        "node": sum(len(tree.lower) for tree in trees),
+        "node": sum(len(hierarchy.lower) for hierarchy in hierarchies),
     }
 
 

@@ -292,8 +292,8 @@ class Joint:
         """Force [N] and torque [N m] measured by the sensor in the last substep, shape (6,).
 
         What the joint carries from its parent to its link: weight and motion of the links on it, applied
-        forces, contacts, user constraints and soft bodies, but not what its own motor or limit does. In the inertial frame of the child link, unless `EngineParameters.joint_feedback_mode` says
-        otherwise.
+        forces, contacts, user constraints and soft bodies, but not what its own motor or limit does.
+        In the inertial frame of the child link, unless `EngineParameters.joint_feedback_mode` says otherwise.
         """
         return world_of(self.body).joint_reaction[self.body.first_link + 1 + self.index].copy()
 

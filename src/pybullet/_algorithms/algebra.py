@@ -146,11 +146,11 @@ def calculateInverseDynamics(
         _check_extended(body, q, _INVERSE_DYNAMICS)
         return tuple(extended_bias_forces(body, q, qd).tolist())
 
-    from carom.algorithms.moving_tree import moving_tree
+    from carom.algorithms.mechanism import mechanism_of
 
     if floating:
         _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
-    forces = client.bodies.forces_of_motion[body.id] = moving_tree(body).forces_in_pybullet
+    forces = client.bodies.forces_of_motion[body.id] = mechanism_of(body).forces_in_pybullet
     try:
         return forces(client.world.parameters.gravity, q, qd, qdd)
     except ValueError as problem:
@@ -195,11 +195,11 @@ def calculateJacobian(
         (3, 7)
     """
     try:
-        tree = clients[physicsClientId].bodies[bodyUniqueId].tree
-        if tree is not None and len(objVelocities) == len(objAccelerations) == tree.joint_dofs > 0:  # type: ignore[arg-type]
+        mechanism = clients[physicsClientId].bodies[bodyUniqueId].mechanism
+        if mechanism is not None and len(objVelocities) == len(objAccelerations) == mechanism.joint_dofs > 0:  # type: ignore[arg-type]
             check = sum(localPosition) + sum(objPositions) + sum(objVelocities) + sum(objAccelerations)
             if -inf < check < inf:
-                return tree.jacobian(linkIndex, localPosition, objPositions)  # type: ignore[arg-type]
+                return mechanism.jacobian(linkIndex, localPosition, objPositions)  # type: ignore[arg-type]
     except (KeyError, TypeError, ValueError, StructError):
         pass
     body = body_of(client_of(physicsClientId), bodyUniqueId, _JACOBIAN_SIZES)
@@ -259,9 +259,9 @@ def calculateMassMatrix(
         (7, 7)
     """
     try:
-        tree = clients[physicsClientId].bodies[bodyUniqueId].tree
-        if tree is not None and not flags and -inf < sum(objPositions) < inf:
-            return tree.mass_matrix(objPositions)  # type: ignore[arg-type]
+        mechanism = clients[physicsClientId].bodies[bodyUniqueId].mechanism
+        if mechanism is not None and not flags and -inf < sum(objPositions) < inf:
+            return mechanism.mass_matrix(objPositions)  # type: ignore[arg-type]
     except (KeyError, TypeError, ValueError, StructError):
         pass
     problem = "Internal error in calculateMassMatrix"

@@ -17,7 +17,7 @@ from pybullet._maths.rotations import canonical
 
 if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
-    from carom.algorithms.moving_tree import MovingTree
+    from carom.algorithms.mechanism import Mechanism
     from carom.native.quick_calls import Body as Record
     from carom.scene.body import Body
     from pybullet._bodies.link_box import LinkBox, SoftBox
@@ -103,13 +103,13 @@ class BodyAccess:
         return boxes
 
     @cached_property
-    def tree(self) -> MovingTree | None:
+    def mechanism(self) -> Mechanism | None:
         """Its equations of motion, if none of its joints has more than one degree of freedom."""
         if any(freedoms > 1 for freedoms in self.body.velocity_count):
             return None
-        from carom.algorithms.moving_tree import moving_tree
+        from carom.algorithms.mechanism import mechanism_of
 
-        return moving_tree(self.body)
+        return mechanism_of(self.body)
 
     @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:
@@ -118,7 +118,7 @@ class BodyAccess:
 
     def forget_inertia(self) -> None:
         """Drop data that depend on masses and inertias. Some scripts change a mass at every step."""
-        self.__dict__.pop("tree", None)
+        self.__dict__.pop("mechanism", None)
 
     def base_pose(self) -> tuple[Vector3, Quaternion]:
         """World pose of the base's inertial frame."""

@@ -17,12 +17,12 @@ from carom.layouts.types import ArrayType, Int32, Matrix3, Reals, Vector3, real,
 
 BASE_MOTION = 9
 """Numbers of `input` before the positions."""
-# Where a question begins to be about the tree; gravity comes before.
+# Where a question begins to be about the mechanism; gravity comes before.
 POSE = 3
 
 
 @struct
-class TreeSizes:
+class MechanismSizes:
     """The numbers of links, joints and so on."""
 
     nodes: Int32
@@ -95,7 +95,7 @@ else:
 
 
 @struct
-class Tree:
+class MechanismTable:
     """One body, and the memory of a question about it."""
 
     node: Nodes

@@ -4,17 +4,17 @@ import math
 
 import warp as wp
 
-from carom.kernels.moving_tree.dynamics import (
+from carom.kernels.mechanism.dynamics import (
     composite_inertia,
     first_rate,
     newton_euler,
     place_in_base,
     vector_at,
 )
-from carom.kernels.structs import Control, Tree, TreeSizes
+from carom.kernels.structs import Control, MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.codes import SPHERICAL
-from carom.layouts.moving_tree import BASE_MOTION
+from carom.layouts.mechanism import BASE_MOTION
 
 _NO_ANGLE = real(1e-6)
 _HALF_TURN = real(math.pi)
@@ -48,27 +48,27 @@ def advanced(start: Quaternion, rate: Vector3, time_step: real) -> Quaternion:
 
 
 @func
-def wanted_torques(sizes: TreeSizes, tree: Tree, control: Control, time_step: real):
+def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, time_step: real):
     """Fill `dof_torque`: from where the joints will be after a step at their rates to their targets."""
     rates = first_rate(sizes)
     for node in range(sizes.nodes):
-        q = tree.node[node].first_position
-        first = tree.node[node].first_dof
+        q = mechanism.node[node].first_position
+        first = mechanism.node[node].first_dof
         turn = Vector3(0.0, 0.0, 0.0)
-        if tree.node[node].joint_type == SPHERICAL:
-            start = quaternion_at(tree.input, BASE_MOTION + q)
+        if mechanism.node[node].joint_type == SPHERICAL:
+            start = quaternion_at(mechanism.input, BASE_MOTION + q)
             u = rates + first
-            rate = Vector3(tree.input[u], tree.input[u + 1], tree.input[u + 2])
+            rate = Vector3(mechanism.input[u], mechanism.input[u + 1], mechanism.input[u + 2])
             turn = turn_between(advanced(start, rate, time_step), quaternion_at(control.coordinate_target, q))
-        for k in range(tree.node[node].dof_count):
+        for k in range(mechanism.node[node].dof_count):
             dof = first + k
             if dof < sizes.base_dofs:
                 control.dof_torque[dof] = 0.0
             else:
-                rate_now = tree.input[rates + dof]
+                rate_now = mechanism.input[rates + dof]
                 error = turn[k % 3]
-                if tree.node[node].joint_type != SPHERICAL:
-                    position = tree.input[BASE_MOTION + q + k]
+                if mechanism.node[node].joint_type != SPHERICAL:
+                    position = mechanism.input[BASE_MOTION + q + k]
                     error = control.coordinate_target[q + k] - position - time_step * rate_now
                 control.dof_torque[dof] = control.dof_kp[dof] * error + control.dof_kd[dof] * (
                     control.dof_target_rate[dof] - rate_now
@@ -76,16 +76,16 @@ def wanted_torques(sizes: TreeSizes, tree: Tree, control: Control, time_step: re
 
 
 @func
-def solve(sizes: TreeSizes, tree: Tree, control: Control, first: Int32, time_step: real):
+def solve(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, first: Int32, time_step: real):
     """Fill `dof_acceleration` with what the wanted torques would do, the controller's damping included.
 
     By Cholesky's method; dofs before `first`, and those without inertia, stay at rest.
     """
     count = sizes.dofs
     for row in range(first, count):
-        value = control.dof_torque[row] - tree.output[row]
+        value = control.dof_torque[row] - mechanism.output[row]
         for column in range(first, row + 1):
-            entry = tree.matrix[row * count + column]
+            entry = mechanism.matrix[row * count + column]
             if row == column:
                 entry += time_step * control.dof_kd[row]
             for k in range(first, column):
@@ -94,7 +94,7 @@ def solve(sizes: TreeSizes, tree: Tree, control: Control, first: Int32, time_ste
             if row == column:
                 # The diagonal holds reciprocals, 0 for dofs that stay at rest.
                 pivot = 0.0
-                if tree.matrix[row * count + row] + time_step * control.dof_kd[row] > 0.0:
+                if mechanism.matrix[row * count + row] + time_step * control.dof_kd[row] > 0.0:
                     pivot = 1.0 / wp.sqrt(entry)
                 control.entry_factor[row * count + row] = pivot
                 control.dof_acceleration[row] = value * pivot
@@ -110,24 +110,26 @@ def solve(sizes: TreeSizes, tree: Tree, control: Control, first: Int32, time_ste
 
 
 @kernel
-def stable_pd_kernel(sizes: TreeSizes, tree: Tree, control: Control, base_is_held: Int32, time_step: real):
+def stable_pd_kernel(
+    sizes: MechanismSizes, mechanism: MechanismTable, control: Control, base_is_held: Int32, time_step: real
+):
     """Leave in `dof_torque` the torques for the next step."""
     still = Int32(-1)
     newton_euler(
         sizes,
-        tree,
-        vector_at(tree.input, 0),
-        vector_at(tree.input, 3),
-        vector_at(tree.input, 6),
-        tree.input,
+        mechanism,
+        vector_at(mechanism.input, 0),
+        vector_at(mechanism.input, 3),
+        vector_at(mechanism.input, 6),
+        mechanism.input,
         first_rate(sizes),
         still,
     )
     for node in range(sizes.nodes):
-        place_in_base(tree, node)
-    composite_inertia(sizes, tree)
-    wanted_torques(sizes, tree, control, time_step)
-    solve(sizes, tree, control, base_is_held * sizes.base_dofs, time_step)
+        place_in_base(mechanism, node)
+    composite_inertia(sizes, mechanism)
+    wanted_torques(sizes, mechanism, control, time_step)
+    solve(sizes, mechanism, control, base_is_held * sizes.base_dofs, time_step)
     for dof in range(sizes.base_dofs, sizes.dofs):
         torque = control.dof_torque[dof] - time_step * control.dof_kd[dof] * control.dof_acceleration[dof]
         most = control.dof_most[dof]

@@ -13,7 +13,7 @@ from carom.algorithms.ask import Ask
 from carom.algorithms.motion import forces_of_motion
 from carom.algorithms.nodes import End, Node, body_nodes
 from carom.layouts.codes import BASE_VELOCITIES, POSITION_COUNT
-from carom.layouts.moving_tree import BASE_MOTION, Tree, TreeSizes
+from carom.layouts.mechanism import BASE_MOTION, MechanismSizes, MechanismTable
 from carom.native.kernels import Kernel, inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable
@@ -29,8 +29,8 @@ _SIZE = np.dtype(NUMPY_REAL).itemsize
 _JACOBIAN_ROWS = 6
 
 
-class MovingTree:
-    """A tree of nodes, with the memory of a query and its answer.
+class Mechanism:
+    """A mechanism of nodes, with the memory of a query and its answer.
 
     Everything is in the frame of the base. Items of sequences may be anything that `float` accepts; other
     items, or a sequence of the wrong length, raise `struct.error`.
@@ -56,14 +56,14 @@ class MovingTree:
         self.joint_dofs: int = sum(len(node.axes) for node in nodes)
         self.dofs: int = self.joint_dofs + (BASE_VELOCITIES if free else 0)
         self.coordinates: int = sum(POSITION_COUNT[node.kind] for node in nodes)
-        sizes: Any = TreeSizes()
+        sizes: Any = MechanismSizes()
         sizes.nodes = len(nodes)
         sizes.coordinates = self.coordinates
         sizes.dofs = self.dofs
         sizes.base_dofs = self.dofs - self.joint_dofs
         first_position = int(BASE_MOTION)
         first_rate = first_position + self.coordinates
-        table = ArrayTable(Tree)
+        table = ArrayTable(MechanismTable)
         table.reserve(
             {
                 "node": len(nodes),
@@ -116,7 +116,7 @@ class MovingTree:
             and len(rates) == self.joint_dofs
             and len(accelerations) == self.joint_dofs
         ):
-            raise ValueError("the question does not fit the tree")
+            raise ValueError("the question does not fit the mechanism")
         self._put_motion(*positions, *rates, *accelerations)
         self._find_forces()
         forces = self._row.unpack_from(self._output)
@@ -212,9 +212,9 @@ class MovingTree:
             self.arrays["end_origin"][index] = end.origin
 
 
-def moving_tree(body: Body) -> MovingTree:
-    """The tree of a body as it is now; cached until masses, inertias or the base's fixation change."""
-    tree = body.derived.get(MovingTree)
-    if tree is None:
-        tree = body.derived[MovingTree] = MovingTree(*body_nodes(body), free=not body.fixed_base)
-    return tree
+def mechanism_of(body: Body) -> Mechanism:
+    """The mechanism of a body as it is now; cached until masses, inertias or the base's fixation change."""
+    mechanism = body.derived.get(Mechanism)
+    if mechanism is None:
+        mechanism = body.derived[Mechanism] = Mechanism(*body_nodes(body), free=not body.fixed_base)
+    return mechanism

@@ -1,15 +1,15 @@
-"""Inverse dynamics of a tree in the coordinates that users have."""
+"""Inverse dynamics of a mechanism in the coordinates that users have."""
 
 import math
 
 import warp as wp
 
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.moving_tree.dynamics import newton_euler, turned_back, vector_at
-from carom.kernels.structs import Tree, TreeSizes
+from carom.kernels.mechanism.dynamics import newton_euler, turned_back, vector_at
+from carom.kernels.structs import MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.codes import BASE_POSITIONS, SPHERICAL
-from carom.layouts.moving_tree import BASE_MOTION, POSE
+from carom.layouts.mechanism import BASE_MOTION, POSE
 
 NOT_FINITE = real(math.inf)
 # Sine of the pitch from which on Bullet takes the roll for 0.
@@ -65,12 +65,14 @@ def rotation_by_angles(roll: real, pitch: real, yaw: real) -> Quaternion:
 
 
 @func
-def take_positions(sizes: TreeSizes, tree: Tree, question: Reals, first: Int32, by_angles: Int32):
+def take_positions(
+    sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, first: Int32, by_angles: Int32
+):
     """Fill `input` with the positions of the joints that begin at `first` in the question.
 
     Args:
-        sizes: Sizes of the tree.
-        tree: The tree.
+        sizes: Sizes of the mechanism.
+        mechanism: The mechanism.
         question: The question.
         first: Where they begin.
         by_angles: 1: spherical joints have roll, pitch and yaw instead of a quaternion.
@@ -78,18 +80,18 @@ def take_positions(sizes: TreeSizes, tree: Tree, question: Reals, first: Int32, 
     joint_dofs = sizes.dofs - sizes.base_dofs
     if by_angles == 0 or sizes.coordinates == joint_dofs:
         for i in range(sizes.coordinates):
-            tree.input[BASE_MOTION + i] = question[first + i]
+            mechanism.input[BASE_MOTION + i] = question[first + i]
         return
     for node in range(1, sizes.nodes):
-        given = first + tree.node[node].first_dof - sizes.base_dofs
-        q = BASE_MOTION + tree.node[node].first_position
-        if tree.node[node].joint_type == SPHERICAL:
+        given = first + mechanism.node[node].first_dof - sizes.base_dofs
+        q = BASE_MOTION + mechanism.node[node].first_position
+        if mechanism.node[node].joint_type == SPHERICAL:
             turn = rotation_by_angles(question[given], question[given + 1], question[given + 2])
             for i in range(4):
-                tree.input[q + i] = turn[i]
+                mechanism.input[q + i] = turn[i]
         else:
-            for i in range(tree.node[node].dof_count):
-                tree.input[q + i] = question[given + i]
+            for i in range(mechanism.node[node].dof_count):
+                mechanism.input[q + i] = question[given + i]
 
 
 @func
@@ -106,12 +108,12 @@ def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
 
 
 @kernel
-def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, as_pybullet: Int32):
+def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, as_pybullet: Int32):
     """Leave in `output` the forces that cause a motion; of a free base force, then torque.
 
     Args:
-        sizes: Sizes of the tree.
-        tree: The tree.
+        sizes: Sizes of the mechanism.
+        mechanism: The mechanism.
         question: Gravity along the axes of the base; positions; rates; accelerations. With a free base
             gravity is in world axes; position and quaternion of the base come before the other positions,
             its angular velocity and its velocity along its own axes before the other rates, and their
@@ -137,11 +139,11 @@ def motion_kernel(sizes: TreeSizes, tree: Tree, question: Reals, as_pybullet: In
         # What has no influence has to be finite, too.
         idle = vector_at(question, POSE) + vector_at(question, rates + 3)
         unused = 0.0 * (idle[0] + idle[1] + idle[2])
-    take_positions(sizes, tree, question, positions, as_pybullet)
-    newton_euler(sizes, tree, omega, alpha, acceleration, question, rates, rates + sizes.dofs)
+    take_positions(sizes, mechanism, question, positions, as_pybullet)
+    newton_euler(sizes, mechanism, omega, alpha, acceleration, question, rates, rates + sizes.dofs)
     if sizes.base_dofs > 0:
-        unused += 0.0 * tree.output[0]
+        unused += 0.0 * mechanism.output[0]
         for axis in range(3):
-            torque = tree.output[axis]
-            tree.output[axis] = tree.output[3 + axis] + unused
-            tree.output[3 + axis] = torque
+            torque = mechanism.output[axis]
+            mechanism.output[axis] = mechanism.output[3 + axis] + unused
+            mechanism.output[3 + axis] = torque

@@ -1,0 +1,404 @@
+"""Inverse dynamics, mass matrix and Jacobian of a mechanism.
+
+Recursive Newton-Euler and the composite rigid body algorithm in node frames; notation and methods:
+R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5 and 6.
+"""
+
+import warp as wp
+
+from carom.kernels.maths.rotation import axis_rotation, rotation_matrix
+from carom.kernels.structs import MechanismSizes, MechanismTable
+from carom.kernels.types import Int32, Matrix3, Quaternion, Reals, Vector3, func, kernel, real
+from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.layouts.mechanism import BASE_MOTION
+
+
+@func
+def vector_at(numbers: Reals, first: Int32) -> Vector3:
+    """Three numbers of an array."""
+    return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
+
+
+@func
+def first_rate(sizes: MechanismSizes) -> Int32:
+    """Where in `input` the rate of dof 0 would be: those of a free base are not there."""
+    return BASE_MOTION + sizes.coordinates - sizes.base_dofs
+
+
+@func
+def turned_about_z(r: Matrix3, angle: real) -> Matrix3:
+    """A rotation after a turn about its own z axis."""
+    s = wp.sin(angle)
+    c = wp.cos(angle)
+    return Matrix3(
+        r[0, 0] * c + r[0, 1] * s, r[0, 1] * c - r[0, 0] * s, r[0, 2],
+        r[1, 0] * c + r[1, 1] * s, r[1, 1] * c - r[1, 0] * s, r[1, 2],
+        r[2, 0] * c + r[2, 1] * s, r[2, 1] * c - r[2, 0] * s, r[2, 2],
+    )  # fmt: skip
+
+
+@func
+def turned_back(r: Matrix3, v: Vector3) -> Vector3:
+    """The product rᵀ v."""
+    return Vector3(
+        r[0, 0] * v[0] + r[1, 0] * v[1] + r[2, 0] * v[2],
+        r[0, 1] * v[0] + r[1, 1] * v[1] + r[2, 1] * v[2],
+        r[0, 2] * v[0] + r[1, 2] * v[1] + r[2, 2] * v[2],
+    )
+
+
+@func
+def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
+    """The rotation from the frame of a node to its parent's, from the positions of its joint."""
+    turn = mechanism.node[node].turn
+    kind = mechanism.node[node].joint_type
+    q = BASE_MOTION + mechanism.node[node].first_position
+    if kind == REVOLUTE:
+        return turned_about_z(turn, mechanism.input[q])
+    if kind == SPHERICAL:
+        rotation = Quaternion(
+            mechanism.input[q], mechanism.input[q + 1], mechanism.input[q + 2], mechanism.input[q + 3]
+        )
+        return turn * rotation_matrix(wp.normalize(rotation))
+    if kind == PLANAR:
+        axis = wp.normalize(mechanism.dof[mechanism.node[node].first_dof].angular)
+        return turn * rotation_matrix(axis_rotation(axis, mechanism.input[q]))
+    return turn
+
+
+@func
+def joint_origin(mechanism: MechanismTable, node: Int32) -> Vector3:
+    """The origin of a node in the frame of its parent, from the positions of its joint."""
+    origin = mechanism.node[node].origin
+    kind = mechanism.node[node].joint_type
+    q = BASE_MOTION + mechanism.node[node].first_position
+    dof = mechanism.node[node].first_dof
+    if kind == PRISMATIC:
+        return origin + mechanism.node[node].turn * (mechanism.dof[dof].linear * mechanism.input[q])
+    if kind == PLANAR:
+        # The translations are measured along axes that do not turn with the joint.
+        slide = (
+            mechanism.dof[dof + 1].linear * mechanism.input[q + 1]
+            + mechanism.dof[dof + 2].linear * mechanism.input[q + 2]
+        )
+        return origin + mechanism.node[node].turn * slide
+    return origin
+
+
+@func
+def place(mechanism: MechanismTable, node: Int32):
+    """Find the frame of a node in its parent's."""
+    mechanism.motion[node].turn = joint_turn(mechanism, node)
+    mechanism.motion[node].origin = joint_origin(mechanism, node)
+
+
+@func
+def place_nodes(mechanism: MechanismTable, count: Int32):
+    """Find the frames of the first nodes but the base: in one loop, so that several are under way at once."""
+    for node in range(1, count):
+        place(mechanism, node)
+
+
+@func
+def newton_euler(
+    sizes: MechanismSizes,
+    mechanism: MechanismTable,
+    omega: Vector3,
+    alpha: Vector3,
+    acceleration: Vector3,
+    joints: Reals,
+    rates: Int32,
+    accelerations: Int32,
+):
+    """Leave the forces of the dofs in `output`, from the positions in `input` and what is given.
+
+    Args:
+        sizes: Sizes of the mechanism.
+        mechanism: The mechanism.
+        omega: Angular velocity of the base.
+        alpha: Its derivative.
+        acceleration: Acceleration of the base less gravity.
+        joints: Numbers about the dofs.
+        rates: Where among them the rate of dof 0 is, or would be.
+        accelerations: The same for accelerations; negative where all of them are 0.
+    """
+    keep_motion(mechanism, 0, omega, alpha, acceleration)
+    mechanism.motion[0].force = Vector3(0.0, 0.0, 0.0)
+    mechanism.motion[0].torque = Vector3(0.0, 0.0, 0.0)
+    # What holds a fixed base is not asked for.
+    if sizes.base_dofs > 0:
+        keep_forces(mechanism, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
+    place_nodes(mechanism, sizes.nodes)
+    for node in range(1, sizes.nodes):
+        parent = mechanism.node[node].parent
+        # Most nodes hang on the one before, whose motion is still at hand.
+        if parent != node - 1:
+            omega = mechanism.motion[parent].omega
+            alpha = mechanism.motion[parent].alpha
+            acceleration = mechanism.motion[parent].acceleration
+        omega, alpha, acceleration = moved_on(
+            mechanism, node, omega, alpha, acceleration, joints, rates, accelerations
+        )
+        keep_motion(mechanism, node, omega, alpha, acceleration)
+        keep_forces(mechanism, node, omega, alpha, acceleration, swing_matrix(omega, alpha))
+    gather_forces(sizes, mechanism)
+
+
+@func
+def moved_on(
+    mechanism: MechanismTable,
+    node: Int32,
+    omega: Vector3,
+    alpha: Vector3,
+    acceleration: Vector3,
+    joints: Reals,
+    rates: Int32,
+    accelerations: Int32,
+):
+    """The motion of a node, in its own frame, by that of its parent."""
+    turn = mechanism.motion[node].turn
+    swing = swing_matrix(omega, alpha)
+    linear = turned_back(turn, acceleration + swing * mechanism.motion[node].origin)
+    angular = turned_back(turn, omega)
+    change = turned_back(turn, alpha)
+    dof = mechanism.node[node].first_dof
+    if mechanism.node[node].joint_type == REVOLUTE:
+        per_rate = mechanism.dof[dof].angular[2]
+        spin = per_rate * joints[rates + dof]
+        spin_up = real(0.0)
+        if accelerations >= 0:
+            spin_up = per_rate * joints[accelerations + dof]
+        return (
+            Vector3(angular[0], angular[1], angular[2] + spin),
+            Vector3(change[0] + angular[1] * spin, change[1] - angular[0] * spin, change[2] + spin_up),
+            linear,
+        )
+    if mechanism.node[node].joint_type == PRISMATIC:
+        axis = mechanism.dof[dof].linear
+        linear += wp.cross(2.0 * angular, axis * joints[rates + dof])
+        if accelerations >= 0:
+            linear += axis * joints[accelerations + dof]
+        return angular, change, linear
+    if mechanism.node[node].joint_type == SPHERICAL:
+        own = vector_at(joints, rates + dof)
+        if accelerations >= 0:
+            change += vector_at(joints, accelerations + dof)
+        return angular + own, change + wp.cross(angular, own), linear
+    joint_omega = Vector3(0.0, 0.0, 0.0)
+    joint_velocity = Vector3(0.0, 0.0, 0.0)
+    for other in range(dof, dof + mechanism.node[node].dof_count):
+        rate = joints[rates + other]
+        joint_omega += mechanism.dof[other].angular * rate
+        joint_velocity += mechanism.dof[other].linear * rate
+        if accelerations >= 0:
+            change += mechanism.dof[other].angular * joints[accelerations + other]
+            linear += mechanism.dof[other].linear * joints[accelerations + other]
+    return (
+        angular + joint_omega,
+        change + wp.cross(angular, joint_omega),
+        linear + wp.cross(2.0 * angular + joint_omega, joint_velocity),
+    )
+
+
+@func
+def swing_matrix(omega: Vector3, alpha: Vector3) -> Matrix3:
+    """What takes a place in a turning frame to its acceleration against the origin of the frame."""
+    xx, yy, zz = omega[0] * omega[0], omega[1] * omega[1], omega[2] * omega[2]
+    xy, xz, yz = omega[0] * omega[1], omega[0] * omega[2], omega[1] * omega[2]
+    return Matrix3(
+        -(yy + zz), xy - alpha[2], xz + alpha[1],
+        xy + alpha[2], -(xx + zz), yz - alpha[0],
+        xz - alpha[1], yz + alpha[0], -(xx + yy),
+    )  # fmt: skip
+
+
+@func
+def keep_motion(
+    mechanism: MechanismTable, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3
+):
+    """Keep the motion of a node, for the nodes that hang on it."""
+    mechanism.motion[node].omega = omega
+    mechanism.motion[node].alpha = alpha
+    mechanism.motion[node].acceleration = acceleration
+
+
+@func
+def keep_forces(
+    mechanism: MechanismTable,
+    node: Int32,
+    omega: Vector3,
+    alpha: Vector3,
+    acceleration: Vector3,
+    swing: Matrix3,
+):
+    """Keep the force and the torque about its origin that the motion of a node takes."""
+    moment = mechanism.node[node].moment
+    inertia = mechanism.node[node].inertia
+    mechanism.motion[node].force = mechanism.node[node].mass * acceleration + swing * moment
+    mechanism.motion[node].torque = (
+        inertia * alpha + wp.cross(omega, inertia * omega) + wp.cross(moment, acceleration)
+    )
+
+
+@func
+def gather_forces(sizes: MechanismSizes, mechanism: MechanismTable):
+    """Pass the forces of the nodes on to their parents, and leave what the dofs have of them in `output`.
+
+    The first of them is NaN if not everything is finite: so a look at one number is enough.
+    """
+    for behind in range(sizes.nodes):
+        node = sizes.nodes - 1 - behind
+        force = mechanism.motion[node].force
+        torque = mechanism.motion[node].torque
+        dof = mechanism.node[node].first_dof
+        if mechanism.node[node].joint_type == REVOLUTE:
+            mechanism.output[dof] = mechanism.dof[dof].angular[2] * torque[2]
+        elif mechanism.node[node].joint_type == PRISMATIC:
+            mechanism.output[dof] = wp.dot(mechanism.dof[dof].linear, force)
+        elif mechanism.node[node].joint_type == SPHERICAL:
+            for k in range(3):
+                mechanism.output[dof + k] = torque[k]
+        else:
+            for other in range(dof, dof + mechanism.node[node].dof_count):
+                mechanism.output[other] = wp.dot(mechanism.dof[other].angular, torque) + wp.dot(
+                    mechanism.dof[other].linear, force
+                )
+        if node > 0:
+            parent = mechanism.node[node].parent
+            turn = mechanism.motion[node].turn
+            force = turn * force
+            mechanism.motion[parent].force += force
+            mechanism.motion[parent].torque += turn * torque + wp.cross(mechanism.motion[node].origin, force)
+        else:
+            # Everything arrives at the base.
+            zero = 0.0 * (force[0] + force[1] + force[2] + torque[0] + torque[1] + torque[2])
+            mechanism.output[0] += zero
+
+
+@func
+def place_in_base(mechanism: MechanismTable, node: Int32):
+    """Find where a node is in the frame of the base, and what its dofs do there.
+
+    The node is placed, and its parent has been here. Linear velocities are those at the origin of the base.
+    """
+    rotation = wp.identity(3, dtype=real)
+    position = Vector3(0.0, 0.0, 0.0)
+    if node > 0:
+        parent = mechanism.node[node].parent
+        rotation = mechanism.motion[parent].rotation * mechanism.motion[node].turn
+        position = (
+            mechanism.motion[parent].position
+            + mechanism.motion[parent].rotation * mechanism.motion[node].origin
+        )
+    mechanism.motion[node].rotation = rotation
+    mechanism.motion[node].position = position
+    first = mechanism.node[node].first_dof
+    for dof in range(first, first + mechanism.node[node].dof_count):
+        angular = rotation * mechanism.dof[dof].angular
+        mechanism.axis[dof].angular = angular
+        mechanism.axis[dof].linear = rotation * mechanism.dof[dof].linear + wp.cross(position, angular)
+
+
+@func
+def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
+    """Leave the mass matrix in `matrix`, row after row; the nodes are placed in the base.
+
+    Entries of dofs of which neither moves the other are left alone: they are 0 from the beginning.
+    """
+    for node in range(sizes.nodes):
+        rotation = mechanism.motion[node].rotation
+        c = mechanism.motion[node].position
+        mass = mechanism.node[node].mass
+        moment = rotation * mechanism.node[node].moment
+        mechanism.motion[node].mass = mass
+        mechanism.motion[node].moment = moment + mass * c
+        mechanism.motion[node].inertia = (
+            rotation * mechanism.node[node].inertia * wp.transpose(rotation)
+            + shift(c, moment)
+            + shift(c, 0.5 * mass * c)
+        )
+    for behind in range(sizes.nodes):
+        node = sizes.nodes - 1 - behind
+        mass = mechanism.motion[node].mass
+        moment = mechanism.motion[node].moment
+        inertia = mechanism.motion[node].inertia
+        first = mechanism.node[node].first_dof
+        for dof in range(first, first + mechanism.node[node].dof_count):
+            angular = mechanism.axis[dof].angular
+            linear = mechanism.axis[dof].linear
+            torque = inertia * angular + wp.cross(moment, linear)
+            force = mass * linear + wp.cross(angular, moment)
+            carrier = node + 0
+            while carrier >= 0:
+                first_other = mechanism.node[carrier].first_dof
+                for other in range(first_other, first_other + mechanism.node[carrier].dof_count):
+                    value = wp.dot(mechanism.axis[other].angular, torque) + wp.dot(
+                        mechanism.axis[other].linear, force
+                    )
+                    mechanism.matrix[dof * sizes.dofs + other] = value
+                    mechanism.matrix[other * sizes.dofs + dof] = value
+                carrier = mechanism.node[carrier].parent
+        if node > 0:
+            parent = mechanism.node[node].parent
+            mechanism.motion[parent].mass += mass
+            mechanism.motion[parent].moment += moment
+            mechanism.motion[parent].inertia += inertia
+
+
+@func
+def shift(c: Vector3, moment: Vector3) -> Matrix3:
+    """What a body's inertia gains when its moment lies at c: 2 (c · moment) 1 - c momentᵀ - moment cᵀ."""
+    xx, yy, zz = 2.0 * c[0] * moment[0], 2.0 * c[1] * moment[1], 2.0 * c[2] * moment[2]
+    xy = c[0] * moment[1] + c[1] * moment[0]
+    xz = c[0] * moment[2] + c[2] * moment[0]
+    yz = c[1] * moment[2] + c[2] * moment[1]
+    return Matrix3(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy)
+
+
+@kernel
+def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
+    """Leave in `output` the forces that cause the motion in `input`."""
+    rates = first_rate(sizes)
+    motion = mechanism.input
+    newton_euler(
+        sizes,
+        mechanism,
+        vector_at(motion, 0),
+        vector_at(motion, 3),
+        vector_at(motion, 6),
+        motion,
+        rates,
+        rates + sizes.dofs - sizes.base_dofs,
+    )
+
+
+@kernel
+def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
+    """Leave the mass matrix at the positions in `input` in `matrix`."""
+    place_nodes(mechanism, sizes.nodes)
+    for node in range(sizes.nodes):
+        place_in_base(mechanism, node)
+    composite_inertia(sizes, mechanism)
+
+
+@kernel
+def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32):
+    """Leave the Jacobian of a point in `output`: three rows of velocity, three of angular velocity."""
+    last = mechanism.end[end].node
+    place_nodes(mechanism, last + 1)
+    for node in range(last + 1):
+        place_in_base(mechanism, node)
+    on_node = mechanism.end[end].origin + mechanism.end[end].turn * vector_at(mechanism.input, 0)
+    point = mechanism.motion[last].position + mechanism.motion[last].rotation * on_node
+    for entry in range(6 * sizes.dofs):
+        mechanism.output[entry] = 0.0
+    node = last + 0
+    while node >= 0:
+        first = mechanism.node[node].first_dof
+        for dof in range(first, first + mechanism.node[node].dof_count):
+            angular = mechanism.axis[dof].angular
+            linear = mechanism.axis[dof].linear + wp.cross(angular, point)
+            for row in range(3):
+                mechanism.output[row * sizes.dofs + dof] = linear[row]
+                mechanism.output[(3 + row) * sizes.dofs + dof] = angular[row]
+        node = mechanism.node[node].parent
