@@ -132,7 +132,7 @@ check: lint types test
 # Physics, contacts and solver against closed forms; every scenario against real PyBullet; the drop-in's surface;
 # rooms, and what the pages for developers say.
 QUICK := tests/physics tests/collision tests/geometry tests/model tests/kernels tests/native/test_tables.py \
-	tests/conformance/test_golden.py tests/pybullet/test_surface.py tests/pybullet/test_bad_input.py \
+	tests/conformance/test_golden.py tests/pybullet/test_surface.py tests/pybullet/calls/test_bad_input.py \
 	tests/test_world.py tests/test_body.py tests/formats/test_urdf_reader.py \
 	tests/test_layers.py tests/docs/test_named_places.py tests/docs/test_statements.py
 

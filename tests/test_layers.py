@@ -190,3 +190,13 @@ def test_imports_by_name_and_in_functions_are_seen() -> None:
 )
 def test_no_folder_has_more_files_than_one_takes_in(folder: Path) -> None:
     assert len(list((SOURCE / folder).glob("*.py"))) <= MOST_FILES_IN_A_FOLDER
+
+
+TESTS = Path(__file__).parent
+
+
+@pytest.mark.parametrize(
+    "folder", sorted({path.relative_to(TESTS).parent for path in TESTS.rglob("*.py")}), ids=str
+)
+def test_no_folder_of_tests_has_more_files_than_one_takes_in(folder: Path) -> None:
+    assert len(list((TESTS / folder).glob("*.py"))) <= MOST_FILES_IN_A_FOLDER

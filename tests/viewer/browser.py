@@ -21,7 +21,7 @@ BROWSER = next(
     None,
 )
 needs_browser = pytest.mark.skipif(
-    BROWSER is None, reason="no Chromium here; tests/viewer/test_server.py does what needs no browser"
+    BROWSER is None, reason="no Chromium here; tests/viewer/server/test_server.py does what needs no browser"
 )
 # Drawn by the processor: small, so that it is quick.
 WIDTH, HEIGHT = 480, 360

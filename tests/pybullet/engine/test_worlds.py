@@ -8,7 +8,7 @@ import pytest
 
 import pybullet as p
 
-ROBOTS = Path(__file__).parent / "robots"
+ROBOTS = Path(__file__).parents[1] / "robots"
 
 
 @pytest.mark.parametrize(

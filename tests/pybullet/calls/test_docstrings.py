@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-GENERATOR = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "docs" / "drop_in.py"))
+GENERATOR = runpy.run_path(str(Path(__file__).parents[3] / "tools" / "docs" / "drop_in.py"))
 FUNCTIONS: dict[str, Any] = GENERATOR["functions"]()
 # They answer whatever happens.
 NEVER_RAISE = {"getAPIVersion", "getConnectionInfo", "isConnected", "isNumpyEnabled"}

@@ -2,7 +2,7 @@
 
 Run it with a Python that has PyBullet, not Carom:
 
-    .oracle/bin/python tests/pybullet/record_shapes.py
+    .oracle/bin/python tests/pybullet/shapes/record_shapes.py
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 import pytest
-from tests.pybullet.test_drops import GROUNDS, turned
+from tests.pybullet.drops.test_drops import GROUNDS, turned
 
 import pybullet as p
 

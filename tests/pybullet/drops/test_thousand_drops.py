@@ -6,7 +6,7 @@ from itertools import combinations_with_replacement, product
 
 import numpy as np
 import pytest
-from tests.pybullet.test_drops import BODIES, SITE, turned
+from tests.pybullet.drops.test_drops import BODIES, SITE, turned
 
 import pybullet as p
 

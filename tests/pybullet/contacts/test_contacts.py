@@ -4,7 +4,7 @@ from math import pi
 from typing import Any
 
 import pytest
-from tests.pybullet.touching import BALL, FLOOR, PAIR, RADIUS, WEIGHT, add_pair, balls
+from tests.pybullet.contacts.touching import BALL, FLOOR, PAIR, RADIUS, WEIGHT, add_pair, balls
 
 import pybullet as p
 

@@ -7,7 +7,7 @@ from math import cos, sin
 from pathlib import Path
 from typing import Any
 
-FORMATS = Path(__file__).resolve().parents[1] / "formats" / "data"
+FORMATS = Path(__file__).resolve().parents[2] / "formats" / "data"
 MESHES = FORMATS / "meshes"
 
 TURNED = [0.0, 0.0, 0.6, 0.8]

@@ -18,7 +18,7 @@ import pybullet as p
 import pybullet_data
 from carom.viewer.viewer import Viewer
 
-PAGE = Path(__file__).parents[2] / "src" / "carom" / "viewer" / "page"
+PAGE = Path(__file__).parents[3] / "src" / "carom" / "viewer" / "page"
 
 
 def panda() -> int:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.pybullet.touching import add_pair
+from tests.pybullet.contacts.touching import add_pair
 
 import pybullet as p
 import pybullet_data

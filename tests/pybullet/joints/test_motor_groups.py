@@ -11,7 +11,7 @@ import pytest
 import pybullet as p
 from pybullet._clients.clients import clients
 
-DATA = Path(__file__).parents[2] / "src" / "pybullet_data"
+DATA = Path(__file__).parents[3] / "src" / "pybullet_data"
 LISTS = {
     "targetPositions": ("targetPosition", (0.3, -9.0, 0.1)),
     "targetVelocities": ("targetVelocity", (-0.5, 2.0, 0.0)),

@@ -19,7 +19,7 @@ import pybullet as p
 from pybullet._clients.clients import clients
 from pybullet_utils.bullet_client import BulletClient
 
-ROBOTS = Path(__file__).parent / "robots"
+ROBOTS = Path(__file__).parents[1] / "robots"
 ARM = str(ROBOTS / "arm.urdf")
 
 # Joins a server and does as it is told; expressions, one a line.

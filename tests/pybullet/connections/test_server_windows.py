@@ -3,7 +3,7 @@
 from threading import Thread
 
 import pytest
-from tests.pybullet.test_servers import ARM, another, until
+from tests.pybullet.connections.test_servers import ARM, another, until
 
 import pybullet as p
 from pybullet._clients.clients import clients

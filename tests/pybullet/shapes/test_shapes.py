@@ -16,7 +16,7 @@ from pybullet._clients.clients import clients
 # Checked at run time: what is tested here is calls that are wrong, too.
 p: Any = import_module("pybullet")
 
-MESHES = Path(__file__).parents[1] / "formats" / "data" / "meshes"
+MESHES = Path(__file__).parents[2] / "formats" / "data" / "meshes"
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 GRID = {"numHeightfieldRows": 2, "numHeightfieldColumns": 2}
 

@@ -20,7 +20,7 @@ from pybullet._calls.detours import functions
 from pybullet._clients.clients import clients
 from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
 
-ARM = str(Path(__file__).parent / "robots" / "arm.urdf")
+ARM = str(Path(__file__).parents[1] / "robots" / "arm.urdf")
 
 # What they do depends on the machine they run on, or takes its time.
 NOT_AT_RANDOM = {"setRealTimeSimulation", "stepSimulation", "setPhysicsEngineParameter", "loadPlugin"}

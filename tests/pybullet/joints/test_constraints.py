@@ -5,7 +5,7 @@ from math import inf, nan
 from typing import Any
 
 import pytest
-from tests.pybullet.touching import BALL, FLOOR, PAIR, balls
+from tests.pybullet.contacts.touching import BALL, FLOOR, PAIR, balls
 
 import pybullet as p
 

@@ -1,14 +1,14 @@
 """A scene whose logs are compared with those that PyBullet writes.
 
-`.oracle/bin/python tests/pybullet/log_scene.py` records them anew. Real PyBullet loads the
+`.oracle/bin/python tests/pybullet/logs/log_scene.py` records them anew. Real PyBullet loads the
 same files, those of the folder `src/pybullet_data`.
 """
 
 from pathlib import Path
 from typing import Any
 
-LOGS = Path(__file__).parent / "logs"
-DATA = Path(__file__).parents[2] / "src" / "pybullet_data"
+LOGS = Path(__file__).parents[1] / "logs"
+DATA = Path(__file__).parents[3] / "src" / "pybullet_data"
 NAMES = ("all", "torques", "too_many_joints", "controllers", "contacts", "minitaur", "substeps")
 
 

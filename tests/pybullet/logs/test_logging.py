@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.pybullet.log_scene import LOGS, NAMES, write_logs
+from tests.pybullet.logs.log_scene import LOGS, NAMES, write_logs
 
 import pybullet as p
 import pybullet_data

@@ -10,7 +10,7 @@ import pytest
 import pybullet as p
 from pybullet_utils.bullet_client import BulletClient
 
-ARM = str(Path(__file__).parent / "robots" / "arm.urdf")
+ARM = str(Path(__file__).parents[1] / "robots" / "arm.urdf")
 
 
 def test_ids_count_from_zero_and_gaps_are_filled() -> None:
