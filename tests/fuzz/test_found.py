@@ -81,14 +81,14 @@ def test_a_motor_is_left_alone_by_arguments_that_are_refused(arm: int) -> None:
     p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, targetPosition=0.3)
     motors = _motors(arm)
     with pytest.raises(TypeError, match="targetPosition"):
-        p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, targetPosition=np.array([1.0]))  # type: ignore[arg-type]
+        p.setJointMotorControl2(arm, 0, p.POSITION_CONTROL, targetPosition=np.array([1.0, 2.0]))  # type: ignore[arg-type]
     assert _motors(arm) == motors
 
 
 def test_a_joint_stays_where_it_is_if_its_velocity_is_refused(arm: int) -> None:
     before = p.getJointState(arm, 0)
     with pytest.raises(TypeError, match="targetVelocity"):
-        p.resetJointState(arm, 0, 0.7, targetVelocity=np.array([1.0]))  # type: ignore[arg-type]
+        p.resetJointState(arm, 0, 0.7, targetVelocity=np.array([1.0, 2.0]))  # type: ignore[arg-type]
     assert p.getJointState(arm, 0) == before
 
 
