@@ -263,9 +263,9 @@ def saved_bytes(tmp_path: Path) -> bytes:
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda data: b"", "no world saved"),
-        (lambda data: b"hello" * 100, "no world saved"),
-        (lambda data: data[:40], "no world saved"),
+        (lambda data: b"", "not a world saved"),
+        (lambda data: b"hello" * 100, "not a world saved"),
+        (lambda data: data[:40], "not a world saved"),
         (lambda data: data[:-1], "damaged"),
         (lambda data: data + b"x", "damaged"),
         (lambda data: data[:500] + bytes([data[500] ^ 1]) + data[501:], "checksum"),

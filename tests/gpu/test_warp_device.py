@@ -132,7 +132,7 @@ def test_a_world_that_is_not_finite_halts_alone(device: str, balls: tuple[World,
     start = worlds.save()
     worlds[ball].base_poses[:, 0] = 0.25
     worlds._engine.arrays.state.numpy["dof_velocity"][1, ball.first_velocity + 3] = np.nan
-    with pytest.warns(SimulationWarning, match=f"world 1 is halted: its body '{ball.name}' came to"):
+    with pytest.warns(SimulationWarning, match=f"world 1 is halted: its body '{ball.name}' has a velocity"):
         worlds.step(4)
     assert worlds.halted.tolist() == [False, True, False, False]
     worlds.step(3)

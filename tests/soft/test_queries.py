@@ -150,9 +150,9 @@ def test_rigid_contacts_are_there_as_well() -> None:
     where.step(24)
     found, columns = where.queries().contacts(-1, -2, -1, -2, where.parameters.time_step)
     rows = list(zip(*columns, strict=False))
-    assert len(rows) == found == 4 + 9
-    assert {row[:2] for row in rows[:4]} <= {(0, 1), (1, 0)}
-    assert {row[:2] for row in rows[4:]} == {(2, 0)}
+    assert len(rows) == found > 9
+    assert {row[:2] for row in rows[:-9]} <= {(0, 1), (1, 0)}
+    assert {row[:2] for row in rows[-9:]} == {(2, 0)}
 
 
 def test_bounds_meet_boxes_where_the_nodes_are() -> None:

@@ -206,7 +206,7 @@ def test_a_joint_without_limits_gets_none_world_by_world() -> None:
     robot = world.load_urdf(f"{pybullet_data.getDataPath()}/r2d2.urdf")
     wheel = next(joint.index for joint in robot.joints if joint.name == "right_front_wheel_joint")
     with pytest.raises(
-        ValueError, match="'right_front_wheel_joint' has no limits: give it some in the world"
+        ValueError, match="'right_front_wheel_joint' has no limits: set them in the original world"
     ):
         Worlds(world, 2)[robot].change_dynamics(wheel, joint_upper_limit=1.0)
 

@@ -161,9 +161,9 @@ def test_a_file_holds_the_scene(scene, tmp_path: Path) -> None:
 def test_files_that_are_none(scene, tmp_path: Path) -> None:
     bad = tmp_path / "bad.bullet"
     bad.write_text("hello" * 100)
-    with pytest.raises(p.error, match=r"^Couldn't load \.bullet file\. .*no world saved by Carom"):
+    with pytest.raises(p.error, match=r"^Couldn't load \.bullet file\. .*not a world saved by Carom"):
         p.loadBullet(str(bad))
-    with pytest.raises(p.error, match=r"^Couldn't restore state\. .*no world saved by Carom"):
+    with pytest.raises(p.error, match=r"^Couldn't restore state\. .*not a world saved by Carom"):
         p.restoreState(fileName=str(bad))
     with pytest.raises(p.error, match=r"^Couldn't load \.bullet file\."):
         p.loadBullet("missing")
