@@ -52,6 +52,8 @@ def record(cls: type | None = None, /, *, frozen: bool = True, eq: bool = True) 
             if name not in own:
                 setattr(cls, name, method)
         cls.__signature__ = _SIGNATURE
+        cls.__compared__ = tuple([known.name for known in fields(cls) if known.compare])
+        cls.__finishes__ = hasattr(cls, "__post_init__")
         return cls
 
     return made if cls is None else made(cls)
@@ -61,12 +63,20 @@ def _init(self: Any, /, *values: Any, **named: Any) -> None:
     """Set the fields, from values in order and by name, or to their defaults."""
     known = self.__dataclass_fields__
     put = object.__setattr__
-    if len(values) > len(known):
-        raise _wrong_arguments(self, f"takes {len(known)} values, not {len(values)}")
-    given = 0
     for value, name in zip(values, known):  # noqa: B905  # the rest of the names comes below
         put(self, name, value)
-        given += 1
+    if named or len(values) != len(known):
+        _fill(self, len(values), named)
+    if self.__finishes__:
+        self.__post_init__()
+
+
+def _fill(self: Any, given: int, named: dict[str, Any]) -> None:
+    """Set the fields behind those that were given in order."""
+    known = self.__dataclass_fields__
+    put = object.__setattr__
+    if given > len(known):
+        raise _wrong_arguments(self, f"takes {len(known)} values, not {given}")
     for name in tuple(known)[given:]:
         if name in named:
             put(self, name, named.pop(name))
@@ -76,13 +86,9 @@ def _init(self: Any, /, *values: Any, **named: Any) -> None:
             put(self, name, factory())
         else:
             raise _wrong_arguments(self, f"needs {name!r}")
-    if named:
-        name = next(iter(named))
-        raise _wrong_arguments(
-            self, f"was given {name!r} twice" if name in known else f"has no field {name!r}"
-        )
-    if (finish := getattr(self, "__post_init__", None)) is not None:
-        finish()
+    for name in named:
+        what = f"was given {name!r} twice" if name in known else f"has no field {name!r}"
+        raise _wrong_arguments(self, what)
 
 
 def _wrong_arguments(self: object, what: str) -> TypeError:
@@ -96,7 +102,7 @@ def _repr(self: Any) -> str:
 
 def _values(self: Any) -> tuple[Any, ...]:
     """What is compared."""
-    return tuple(getattr(self, field.name) for field in fields(self) if field.compare)
+    return tuple([getattr(self, name) for name in self.__compared__])
 
 
 def _eq(self: object, other: object) -> bool:
