@@ -274,7 +274,7 @@ export class App {
       this.panel.showFps((this.frames * 1000) / (now - this.since));
       [this.frames, this.since] = [0, now];
     }
-    if (!this.stale || this.renderer.gl.isContextLost()) return;
+    if (!this.stale || this.renderer.lost) return;
     this.stale = false;
     if (this.options.rendering) this.drawScene();
     if (this.awaited !== null) this.send({ type: "drawn", picture: this.awaited });

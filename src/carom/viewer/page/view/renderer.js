@@ -32,6 +32,9 @@ export class Renderer {
     if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
     this.canvas = canvas;
     this.gl = gl;
+    /** What comes back after a loss has none of the objects made here. */
+    this.lost = false;
+    canvas.addEventListener("webglcontextlost", () => (this.lost = true));
     this.surfaces = new Surfaces(gl);
     this.shadow = new Program(gl, SHADOW);
     this.wire = new Program(gl, WIRE);
