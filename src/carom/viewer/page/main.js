@@ -12,14 +12,14 @@ function say(text) {
 }
 
 /**
- * Browsers take a page's graphics away when the machine sleeps, the driver is restarted, or a notebook has many
+ * Browsers drop the WebGL context of a page when the machine sleeps, the driver is restarted, or a notebook has many
  * views. What comes back is empty, so the page begins again.
  */
 function surviveLostGraphics() {
   const canvas = document.getElementById("view");
   canvas.addEventListener("webglcontextlost", (event) => {
     event.preventDefault();
-    say("The browser has taken the graphics away. Waiting for them…");
+    say("The browser has lost the graphics context. Waiting for it to be restored…");
   });
   canvas.addEventListener("webglcontextrestored", () => location.reload());
 }
