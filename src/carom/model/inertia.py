@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import reduce
 from math import sqrt
+from typing import NamedTuple
 
 from carom.description import (
     Box,
@@ -81,8 +81,7 @@ def inertia_from_shapes(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class MassTerm:
+class MassTerm(NamedTuple):
     """A moment of inertia by mass: the mass over a divisor times each factor, in this order.
 
     What is divided and what is multiplied decides the last digit.
