@@ -8,22 +8,6 @@ namespace {
 
 enum { POSE = 7 };
 
-// The matrix of a quaternion that need not be of unit length, and the order of operations of
-// `carom.description.transform.rotation_matrix`.
-struct Matrix {
-    explicit Matrix(Quaternion q) {
-        const double s = 2.0 / dot(q, q);
-        const double xs = q.x * s, ys = q.y * s, zs = q.z * s;
-        const double wx = q.w * xs, wy = q.w * ys, wz = q.w * zs;
-        const double xx = q.x * xs, xy = q.x * ys, xz = q.x * zs;
-        const double yy = q.y * ys, yz = q.y * zs, zz = q.z * zs;
-        rows[0] = {1.0 - (yy + zz), xy - wz, xz + wy};
-        rows[1] = {xy + wz, 1.0 - (xx + zz), yz - wx};
-        rows[2] = {xz - wy, yz + wx, 1.0 - (xx + yy)};
-    }
-    Vector rows[3];
-};
-
 double along(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 Vector magnitudes(Vector v) { return {__builtin_fabs(v.x), __builtin_fabs(v.y), __builtin_fabs(v.z)}; }
@@ -45,7 +29,7 @@ extern "C" CAROM_EXPORT int carom_link_box(const double* in, double* out, const 
     for (int axis = 0; axis < 3; ++axis)
         center[axis] = box.center[axis], half[axis] = box.half[axis];
     if (box.is_moved) {
-        Matrix turn(q);
+        Matrix turn = matrix_of(q);
         if (!box.is_turned)
             turn.rows[0] = {1.0, 0.0, 0.0}, turn.rows[1] = {0.0, 1.0, 0.0}, turn.rows[2] = {0.0, 0.0, 1.0};
         for (int axis = 0; axis < 3; ++axis) {

@@ -25,23 +25,6 @@ const double NO_AXIS = 10.0 * 1.1920928955078125e-07;
 // How far the squared length of a unit quaternion in single precision may be from 1.
 const double UNIT = 1e-6;
 
-struct Matrix {
-    double m[3][3];
-};
-
-Matrix matrix_of(Quaternion q) {
-    const double s = 2.0 / dot(q, q);
-    const double xs = q.x * s, ys = q.y * s, zs = q.z * s;
-    const double wx = q.w * xs, wy = q.w * ys, wz = q.w * zs;
-    const double xx = q.x * xs, xy = q.x * ys, xz = q.x * zs;
-    const double yy = q.y * ys, yz = q.y * zs, zz = q.z * zs;
-    return {{
-        {1.0 - (yy + zz), xy - wz, xz + wy},
-        {xy + wz, 1.0 - (xx + zz), yz - wx},
-        {xz - wy, yz + wx, 1.0 - (xx + yy)},
-    }};
-}
-
 double length_of(Vector v) { return hypot(hypot(v.x, v.y), v.z); }
 double to_cosine(double x) { return x > 1.0 ? 1.0 : x < -1.0 ? -1.0 : x; }
 
@@ -84,8 +67,8 @@ CAROM_TURNS(euler_from_quaternion) {
 
 CAROM_TURNS(matrix_from_quaternion) {
     const Matrix matrix = matrix_of(quaternion_at(in));
-    for (int i = 0; i < 9; ++i)
-        out[i] = matrix.m[i / 3][i % 3];
+    for (const Vector& row : matrix.rows)
+        out = put(out, row);
     return 1;
 }
 
@@ -161,14 +144,14 @@ CAROM_TURNS(difference_quaternion) {
 
 CAROM_TURNS(axis_difference_quaternion) {
     const Matrix turn = matrix_of(conjugate(quaternion_at(in)) * quaternion_at(in + 4));
-    const double (*m)[3] = turn.m;
-    const double sine = m[2][0];
+    const Vector &x = turn.rows[0], &y = turn.rows[1], &z = turn.rows[2];
+    const double sine = z.x;
     if (sine >= 1.0)
-        put(out, Vector{atan2(m[0][1], m[1][1]), HALF_PI, 0.0});
+        put(out, Vector{atan2(x.y, y.y), HALF_PI, 0.0});
     else if (sine <= -1.0)
-        put(out, Vector{-atan2(m[0][1], m[1][1]), -HALF_PI, 0.0});
+        put(out, Vector{-atan2(x.y, y.y), -HALF_PI, 0.0});
     else
-        put(out, Vector{atan2(-m[2][1], m[2][2]), asin(sine), atan2(-m[1][0], m[0][0])});
+        put(out, Vector{atan2(-z.y, z.z), asin(sine), atan2(-y.x, x.x)});
     return 1;
 }
 

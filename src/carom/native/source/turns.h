@@ -49,6 +49,25 @@ inline Quaternion unit(Quaternion q) {
     return {q.x / length, q.y / length, q.z / length, q.w / length};
 }
 
+struct Matrix {
+    Vector rows[3];
+};
+
+// The matrix of a quaternion that need not be of unit length, in the order of operations of
+// `carom.description.transform.rotation_matrix`.
+inline Matrix matrix_of(Quaternion q) {
+    const double s = 2.0 / dot(q, q);
+    const double xs = q.x * s, ys = q.y * s, zs = q.z * s;
+    const double wx = q.w * xs, wy = q.w * ys, wz = q.w * zs;
+    const double xx = q.x * xs, xy = q.x * ys, xz = q.x * zs;
+    const double yy = q.y * ys, yz = q.y * zs, zz = q.z * zs;
+    return {{
+        {1.0 - (yy + zz), xy - wz, xz + wy},
+        {xy + wz, 1.0 - (xx + zz), yz - wx},
+        {xz - wy, yz + wx, 1.0 - (xx + yy)},
+    }};
+}
+
 // A vector turned by a quaternion of unit length.
 inline Vector turned(Quaternion q, Vector v) {
     const double tx = 2.0 * (q.y * v.z - q.z * v.y);
