@@ -5,6 +5,7 @@ from carom.layouts.types import Ints, Reals, struct
 # What the numbers are for: a velocity, a torque beside the motor, a position, an explicit PD drive, which the
 # kernel does not set. The values are PyBullet's.
 VELOCITY, TORQUE, POSITION, PD = 0, 1, 2, 3
+MODES = (VELOCITY, TORQUE, POSITION, PD)
 # Bits that say which numbers are given.
 POSITIONS, VELOCITIES, FORCES, KPS, KDS = 1, 2, 4, 8, 16
 

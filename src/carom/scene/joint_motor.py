@@ -37,14 +37,13 @@ from carom.layouts.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
-from carom.layouts.motor_commands import PD, POSITION, TORQUE, VELOCITY
+from carom.layouts.motor_commands import MODES, PD, POSITION, TORQUE, VELOCITY
 
 if TYPE_CHECKING:
     from carom.world.world import World
 
 Dofs = slice | np.ndarray
 
-MODES = (VELOCITY, TORQUE, POSITION, PD)
 _DOUBLE = 8
 _COLUMNS = 8
 # A PD drive weaker than this is taken away.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from struct import error as StructError
 from typing import Any, overload
 
+from carom.layouts.motor_commands import MODES
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
     Indices,
@@ -135,8 +136,6 @@ def setJointMotorControl2(
             return
     except (KeyError, TypeError, ValueError, StructError):
         pass
-    from carom.scene.joint_motor import MODES
-
     body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
     required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
     joint = joint_access(body, jointIndex, physicsClientId)
@@ -244,8 +243,6 @@ def _set_array_carefully(
     body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
 ) -> None:
     """Sets the motors after checking, and where needed converting, every argument."""
-    from carom.scene.joint_motor import MODES
-
     required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
     client_of(physics_client_id)
     mode = integer(control_mode, "controlMode")
