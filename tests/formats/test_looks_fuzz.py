@@ -11,8 +11,8 @@ from load_cases import DATA
 from test_urdf_fuzz import MUTATIONS, PATIENT, mutated
 
 from carom.errors import DescriptionError
-from carom.render.mesh_visuals import read_mesh_visual
-from carom.render.mtl import read_materials
+from carom.formats.visuals.mtl import read_materials
+from carom.formats.visuals.reader import read_mesh_visual
 
 MATERIALS = b"newmtl red\nKd 1 0 0\nd 0.5\nmap_Kd -s 1 1 1 red.png\nnewmtl blue\nKd 0 0 1\nTr 0.25\n"
 TEXTURED = b"""mtllib m.mtl

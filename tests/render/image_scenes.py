@@ -81,6 +81,28 @@ def painted(p: Any) -> None:
         p.stepSimulation()
 
 
+def soft(p: Any) -> None:
+    """A solid and a cloth as they are loaded, and two with another texture and another colour.
+
+    The squares of solids begin at the origin of the world, and here at that of the body.
+    """
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+    elastic = {"mass": 1.0, "useNeoHookean": 1, "NeoHookeanMu": 400, "NeoHookeanLambda": 600}
+    springs = {"mass": 1.0, "useMassSpring": 1, "springElasticStiffness": 40}
+    solid, cloth = str(ASSETS / "torus.vtk"), str(ASSETS / "cloth_z_up.obj")
+    p.loadSoftBody(solid, basePosition=[0, 0, 0.2], scale=0.5, **elastic)
+    p.loadSoftBody(cloth, basePosition=[1, 0, 0.3], scale=0.6, **springs)
+    others = [
+        p.loadSoftBody(solid, basePosition=[0, 0, 1], scale=0.5, **elastic),
+        p.loadSoftBody(cloth, basePosition=[1, 1.5, 0.3], scale=0.6, **springs),
+    ]
+    texture = p.loadTexture(str(ASSETS / "checker_blue.png"))
+    for body in others:
+        p.changeVisualShape(body, -1, textureUniqueId=texture, rgbaColor=[1, 0.8, 0.5, 1])
+    # Before the first step PyBullet shows them as they are in the file.
+    p.stepSimulation()
+
+
 SCENES = (
     Scene("panda", panda, (1.2, -0.8, 1.0), (0.2, 0.0, 0.4), 50),
     Scene("r2d2", r2d2, (2.0, -2.0, 1.5), (0.0, 0.0, 0.4), 50),
@@ -88,6 +110,7 @@ SCENES = (
     Scene("kuka", kuka, (1.2, 0.8, 0.9), (0.2, 0.0, 0.4), 60),
     Scene("close_by", close_by, (0.0, 0.0, 0.3), (0.0, 1.0, 0.2), 80),
     Scene("painted", painted, (1.5, -2.5, 1.8), (-0.3, 0.0, 0.4), 60),
+    Scene("soft", soft, (0.4, -2.4, 2.0), (0.4, 0.2, 0.5), 50),
 )
 
 

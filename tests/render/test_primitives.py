@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
+from carom.formats.visuals.render_mesh import face_normals
 from carom.render.primitives import PLANE_HALF_SIZE, primitive_mesh
-from carom.render.render_mesh import face_normals
 
 SIZES = st.floats(0.01, 10.0)
 SOLIDS = st.one_of(

@@ -83,8 +83,13 @@ def ellipsoids(middles_and_halves: Sequence[tuple[Corner, Corner]]) -> ObjParts:
     )
 
 
-def sheet(half: float, cells: int, *, upright: bool = False) -> ObjMesh:
-    """A square around the origin, cut into cells of two triangles; its normal is z, or y if it is upright."""
+def sheet(
+    half: float, cells: int, *, upright: bool = False, material: tuple[str, str] | None = None
+) -> ObjMesh:
+    """A square around the origin, cut into cells of two triangles; its normal is z, or y if it is upright.
+
+    With a material its texture lies as on PyBullet's cloth.
+    """
     along = np.linspace(-half, half, cells + 1)
     y, x = np.meshgrid(along, along, indexing="ij")
     row = cells + 1
@@ -93,7 +98,10 @@ def sheet(half: float, cells: int, *, upright: bool = False) -> ObjMesh:
         faces += [(corner, corner + 1, corner + row + 1), (corner, corner + row + 1, corner + row)]
     flat = np.zeros(x.size)
     places = (x.ravel(), flat, -y.ravel()) if upright else (x.ravel(), y.ravel(), flat)
-    return ObjMesh(np.column_stack(places) + 0.0, faces)
+    texture = None
+    if material is not None:
+        texture = 0.5 + np.column_stack((0.476 * x.ravel(), -1.17 * y.ravel())) / half
+    return ObjMesh(np.column_stack(places) + 0.0, faces, texture=texture, material=material)
 
 
 def ring(radius: float, thickness: float, segments: int, sides: int) -> ObjMesh:

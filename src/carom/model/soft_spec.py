@@ -52,6 +52,7 @@ class SoftSpec:
         self_collision: Its nodes collide with its own faces.
         gravity_factor: Share of the world's gravity that pulls it.
         skin: The mesh that is seen in place of the faces, if there is one.
+        checkered: Its texture is that of floors until another is set.
     """
 
     nodes: NDArray[np.float64]
@@ -68,6 +69,7 @@ class SoftSpec:
     self_collision: bool = False
     gravity_factor: float = 1.0
     skin: Skin | None = None
+    checkered: bool = False
 
     def edge_matrices(self) -> NDArray[np.float64]:
         """(t, 3, 3): the edges of each tetrahedron from its first node, as columns [m]."""

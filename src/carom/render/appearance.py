@@ -8,21 +8,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
 from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
+from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.body_spec import BASE, LinkSpec
 from carom.record import record
-from carom.render.images import read_image
+from carom.render.images import Texels, read_image
 from carom.render.lights import Light
 from carom.render.meshes import shape_mesh
-from carom.render.render_mesh import RenderMesh
-from carom.render.textures import NO_TEXTURE, Textures
+from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -137,10 +138,20 @@ class Appearance:
                 self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
             ]
             if body.spec.soft is not None:
-                # Cloth is visible from both sides.
-                looks[0] = [replace(look, two_sided=True) for look in looks[0]]
+                looks[0] = self._soft_looks(body.spec.base, looks[0], body.spec.soft.checkered)
             self._looks[body] = looks
         return looks
+
+    def _soft_looks(self, base: LinkSpec, looks: list[ShapeLook], checkered: bool) -> list[ShapeLook]:
+        """Those of a soft body: visible from both sides, as cloth is, and with a texture if it has one."""
+        files = [None if visual.material is None else visual.material.texture for visual in base.visuals]
+        images = [CHECKER if checkered else _image_of(file) for file in files]
+        # In PyBullet the textures of soft bodies have no number.
+        textures = [NO_TEXTURE if image is None else self.textures.add_hidden(image) for image in images]
+        return [
+            replace(look, two_sided=True, texture=texture)
+            for look, texture in zip(looks, textures, strict=True)
+        ]
 
     def _first_looks(self, spec: LinkSpec, link: int, flags: LoadFlags) -> list[ShapeLook]:
         # A link without visual shapes shows its collision shapes.
@@ -160,23 +171,25 @@ class Appearance:
         mesh = shape_mesh(geometry)
         look = ShapeLook(geometry, frame, mesh, rgba)
         if isinstance(geometry, (Plane, Heightfield)):
-            look.texture = self.textures.add_checker()
+            look.texture = self.textures.add(CHECKER)
         elif isinstance(geometry, Mesh):
             if LoadFlags.USE_MATERIAL_COLORS_FROM_MTL in flags and mesh.material_rgba is not None:
                 opaque = LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL not in flags
                 look.rgba = (*mesh.material_rgba[:3], 1.0) if opaque else mesh.material_rgba
-            look.texture = self._mesh_texture(mesh)
+            image = _image_of(mesh.texture_file)
+            look.texture = NO_TEXTURE if image is None else self.textures.add(image)
         return look
 
-    def _mesh_texture(self, mesh: RenderMesh) -> int:
-        if mesh.texture_file is None:
-            return NO_TEXTURE
-        try:
-            return self.textures.add(read_image(mesh.texture_file))
-        except DescriptionError as error:
-            # An error in a visual shape does not stop loading.
-            _log.warning("%s; the mesh goes without texture", error)
-            return NO_TEXTURE
+
+def _image_of(file: Path | None) -> Texels | None:
+    """The image of a material; an error in it does not stop loading."""
+    if file is None:
+        return None
+    try:
+        return read_image(file)
+    except DescriptionError as error:
+        _log.warning("%s; the mesh goes without texture", error)
+        return None
 
 
 def _colour(material: Material | None, link: int, flags: LoadFlags) -> Rgba:

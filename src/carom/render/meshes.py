@@ -18,13 +18,13 @@ from carom.description import (
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import cut_into_fans
+from carom.formats.visuals.reader import read_mesh_visual
+from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
 from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
 from carom.logger import Logger
-from carom.render.mesh_visuals import read_mesh_visual
 from carom.render.primitives import primitive_mesh
-from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
 
 _log = Logger("carom")
 

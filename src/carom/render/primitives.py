@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
 from carom.description.pose import Vector3
+from carom.formats.visuals.render_mesh import RenderMesh, mesh_of
 from carom.native.trigonometry import cos, sin
-from carom.render.render_mesh import RenderMesh, mesh_of
 
 SEGMENTS = 48
 """Sides of the polygon that stands for a circle: its edges are within 0.2 % of the radius."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.transform import compose, inverse, rotation_matrix
+from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
 from carom.native.products import product
@@ -18,7 +19,6 @@ from carom.native.tables import put_array
 from carom.record import record
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
-from carom.render.render_mesh import RenderMesh
 from carom.render.soft_surfaces import SoftSurface
 from carom.render.textures import NO_TEXTURE, Textures
 from carom.scene.soft_body import SoftBody

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.transform import rotation_matrix
+from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
 from carom.record import record
-from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
 
 if TYPE_CHECKING:
     from carom.scene.soft_body import SoftBody
@@ -34,12 +34,20 @@ def nodes_at_base(body: SoftBody) -> tuple[NDArray[np.float64], NDArray[np.int32
     return (vertices - world.position[first : first + 3]) @ turn, triangles
 
 
-def surface_mesh(body: SoftBody) -> RenderMesh:
-    """The present surface of a soft body, in the link frame of its base."""
+def surface_mesh(body: SoftBody, first: RenderMesh) -> RenderMesh:
+    """The present surface of a soft body, in the link frame of its base.
+
+    Args:
+        body: The body.
+        first: Its surface when it was loaded, each triangle with vertices of its own.
+    """
     vertices, triangles = nodes_at_base(body)
-    uvs = np.full((len(vertices), 2), NO_TEXTURE_UV)
+    normals = node_normals(vertices, triangles)
     places = vertices + np.asarray(body.spec.base.inertial_frame.position)
-    return mesh_of(places, node_normals(vertices, triangles), uvs, triangles)
+    if not first.uvs.size or not np.ptp(first.uvs, axis=0).any():
+        return mesh_of(places, normals, np.full((len(vertices), 2), NO_TEXTURE_UV), triangles)
+    corners = triangles.reshape(-1)
+    return mesh_of(places[corners], normals[corners], first.uvs, first.triangles)
 
 
 @record(frozen=False, eq=False)

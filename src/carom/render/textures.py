@@ -8,8 +8,8 @@ from carom.render.images import Texels
 
 NO_TEXTURE = -1
 
-# Blue and white squares: the pattern of a plane without a mesh.
-_CHECKER = np.array([[(173, 199, 255), (255, 255, 255)], [(255, 255, 255), (173, 199, 255)]], dtype=np.uint8)
+# Blue and white squares: the pattern of planes without a mesh and of soft solids.
+CHECKER = np.array([[(173, 199, 255), (255, 255, 255)], [(255, 255, 255), (173, 199, 255)]], dtype=np.uint8)
 
 
 class Textures:
@@ -23,6 +23,7 @@ class Textures:
         self.changes: int = 0
         self._images: dict[int, Texels] = {}
         self._next = 0
+        self._next_hidden = NO_TEXTURE - 1
 
     def __contains__(self, number: object) -> bool:
         return number in self._images
@@ -34,9 +35,12 @@ class Textures:
         self._images[number] = image
         return number
 
-    def add_checker(self) -> int:
-        """Enters the pattern of planes and returns its number."""
-        return self.add(_CHECKER)
+    def add_hidden(self, image: Texels) -> int:
+        """Enters an image that no script can name; its number is less than `NO_TEXTURE`."""
+        number = self._next_hidden
+        self._next_hidden -= 1
+        self._images[number] = image
+        return number
 
     def replace(self, number: int, image: Texels) -> None:
         """Replaces an image by another of any size."""

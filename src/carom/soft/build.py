@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import ContactParameters, TriangleMesh, Visual
+from carom.description import ContactParameters, Material, TriangleMesh, Visual
 from carom.description.pose import Pose
 from carom.errors import DescriptionError
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.soft_spec import SHORT, Skin, SoftSpec
 from carom.native.products import determinants
 from carom.soft.materials import NeoHookean, Springs
+from carom.soft.paint import Paint, squares
 from carom.soft.shapes import oriented
 from carom.soft.skin import bind
 from carom.soft.topology import bending_pairs, edges_of, surface_of
@@ -26,6 +27,7 @@ FARTHEST = 1.0e6
 """Largest coordinate of a node [m]."""
 # Tetrahedra of less than this share of the cube of their longest edge are flat.
 _FLAT = 1.0e-9
+_WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
 def soft_body(
@@ -40,6 +42,7 @@ def soft_body(
     friction: float = 0.0,
     self_collision: bool = False,
     seen: tuple[NDArray[np.float64], NDArray[np.int32]] | None = None,
+    paint: Paint | None = None,
     source: Path | None = None,
 ) -> BodySpec:
     """A soft body of nodes of equal mass.
@@ -55,6 +58,7 @@ def soft_body(
         friction: Coulomb coefficient, multiplied by that of what it touches.
         self_collision: Its nodes collide with its own faces.
         seen: (v, 3) vertices and (t, 3) triangles that are drawn instead of its surface.
+        paint: Texture coordinates of what is drawn. The surface of a solid is checkered without.
         source: The file it comes from, for errors.
 
     Raises:
@@ -92,14 +96,27 @@ def soft_body(
     vertices, triangles = (nodes, soft.faces) if seen is None else seen
     if seen is not None:
         soft.skin = Skin(*bind(vertices, nodes, cells), triangles)
+    elif paint is None and cells.shape[1] == 4:
+        paint = squares(vertices, triangles)
+    soft.checkered = paint is not None and paint.checkered
     x, y, z = center.tolist()
     base = LinkSpec(
         name,
         inertial_frame=Pose((x, y, z)),
         contact=ContactParameters(lateral_friction=friction),
-        visuals=(Visual(TriangleMesh(vertices, triangles)),) if len(triangles) else (),
+        visuals=(_visual(vertices, triangles, paint),) if len(triangles) else (),
     )
     return BodySpec(name, base, fixed_base=True, source=source, soft=soft)
+
+
+def _visual(vertices: NDArray[np.float64], triangles: NDArray[np.int32], paint: Paint | None) -> Visual:
+    if paint is None:
+        return Visual(TriangleMesh(vertices, triangles))
+    # A vertex may have another texture coordinate in each of its triangles.
+    corners = vertices[triangles.reshape(-1)]
+    apart = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
+    material = Material(rgba=_WHITE, texture=paint.texture)
+    return Visual(TriangleMesh(corners, apart, uvs=paint.uvs), material=material)
 
 
 def _check_parameters(

@@ -13,6 +13,7 @@ from carom.formats.mesh.vtk import read_vtk
 from carom.model.body_spec import BodySpec
 from carom.soft.build import soft_body
 from carom.soft.materials import NeoHookean, Springs
+from carom.soft.paint import paint_of_file
 
 SOLIDS = (".vtk",)
 SURFACES = (".obj",)
@@ -54,10 +55,13 @@ def soft_body_from_file(
         DescriptionError: The file is missing or broken, of another kind, or its mesh cannot be used.
     """
     nodes, cells = mesh_of(path if simulated is None else simulated)
-    seen = None
+    seen = paint = None
     if simulated is not None:
         part = read_mesh(path)[0]
         seen = part.vertices * scale, part.triangles
+        paint = paint_of_file(path, part.vertices, part.triangles)
+    elif not is_solid(path):
+        paint = paint_of_file(path, nodes, cells)
     return soft_body(
         path.stem,
         nodes * scale,
@@ -69,6 +73,7 @@ def soft_body_from_file(
         friction=friction,
         self_collision=self_collision,
         seen=seen,
+        paint=paint,
         source=path,
     )
 

@@ -9,6 +9,7 @@ from carom.model.body_spec import BodySpec
 from carom.soft.build import soft_body
 from carom.soft.files import is_solid, mesh_of
 from carom.soft.materials import Springs
+from carom.soft.paint import paint_of_file
 
 # Bullet projects the springs of such cloth 20 times in a step, whatever its mass. At this frequency of a
 # spring between two nodes, 1 m of cloth that hangs from an edge stretches by 0.1 mm; PyBullet's by 0.05 mm.
@@ -47,5 +48,6 @@ def older_cloth_from_file(path: Path, *, scale: float, mass: float, margin: floa
         springs=springs,
         margin=margin,
         friction=_FRICTION,
+        paint=paint_of_file(path, nodes, triangles),
         source=path,
     )

@@ -13,12 +13,12 @@ import numpy as np
 from carom.description import Box, Cylinder, Geometry, Plane, Pose, Sphere
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
+from carom.formats.visuals.render_mesh import RenderMesh
 from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
-from carom.render.render_mesh import RenderMesh
 from carom.render.soft_surfaces import surface_mesh
 from carom.render.textures import NO_TEXTURE
 from carom.scene.joint_constraints import moving_links
@@ -151,7 +151,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
-            seen = replace(look, mesh=surface_mesh(body)) if isinstance(body, SoftBody) else look
+            seen = replace(look, mesh=surface_mesh(body, look.mesh)) if isinstance(body, SoftBody) else look
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))

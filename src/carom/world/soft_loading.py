@@ -55,6 +55,7 @@ class SoftLoading(BodyAdding):
         from carom.soft.build import soft_body
         from carom.soft.files import soft_body_from_file
         from carom.soft.materials import Springs
+        from carom.soft.paint import spread
         from carom.soft.shapes import grid
 
         kind = Springs(stiffness, damping, bending)
@@ -65,7 +66,8 @@ class SoftLoading(BodyAdding):
         if mesh is not None:
             return self._soft(soft_body_from_file(Path(mesh), **common), position, orientation)
         nodes, triangles = grid(_lengths(size, 2), _counts(cells, 2))
-        return self._soft(soft_body("cloth", nodes, triangles, **common), position, orientation)
+        paint = spread(nodes, triangles)
+        return self._soft(soft_body("cloth", nodes, triangles, paint=paint, **common), position, orientation)
 
     def load_rope(
         self,

@@ -126,8 +126,9 @@ def getVisualShapeData(
         return ()
 
     from carom.render.appearance import appearance_of
+    from carom.render.textures import NO_TEXTURE
 
-    result = []
+    result: list[tuple[Any, ...]] = []
     with client.lock:
         appearance = appearance_of(client.world)
         appearance.number_textures(client.world)
@@ -138,7 +139,9 @@ def getVisualShapeData(
                     described = (*described[:2], str(body.spec.source or "").encode())
                 frame = look.frame
                 data = (body.id, link, *described, frame.position, frame.orientation, look.rgba)
-                result.append((*data, look.texture) if bits & VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS else data)
+                if bits & VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS:
+                    data = (*data, max(look.texture, NO_TEXTURE))
+                result.append(data)
     return tuple(result)
 
 

@@ -212,7 +212,7 @@ def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) ->
         read_mesh(mesh.path)
         if is_fresh(mesh.path):
             # It may be deleted before it is drawn.
-            from carom.render.mesh_visuals import read_mesh_visual
+            from carom.formats.visuals.reader import read_mesh_visual
 
             read_mesh_visual(mesh.path)
     except (error, DescriptionError) as reason:

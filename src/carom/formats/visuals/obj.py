@@ -14,9 +14,9 @@ from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.mesh.reader import MAX_FILE_BYTES
+from carom.formats.visuals.mtl import ObjMaterial, read_materials
+from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.record import record
-from carom.render.mtl import ObjMaterial, read_materials
-from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Pictures are drawn in single precision.

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from carom.errors import DescriptionError
-from carom.render.mesh_visuals import read_mesh_visual
-from carom.render.mtl import read_materials
-from carom.render.obj_visuals import read_obj_visual
-from carom.render.render_mesh import NO_TEXTURE_UV
+from carom.formats.visuals.mtl import read_materials
+from carom.formats.visuals.obj import read_obj_visual
+from carom.formats.visuals.reader import read_mesh_visual
+from carom.formats.visuals.render_mesh import NO_TEXTURE_UV
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 2 2\nvn 1 0 0\nvn 0 1 0\n"
 

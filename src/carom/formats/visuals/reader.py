@@ -8,9 +8,9 @@ import numpy as np
 
 from carom.formats.files import FileCache, FileStamp
 from carom.formats.mesh import read_mesh
-from carom.render.dae_visuals import read_dae_visual
-from carom.render.obj_visuals import read_obj_visual
-from carom.render.render_mesh import RenderMesh, flat_mesh
+from carom.formats.visuals.dae import read_dae_visual
+from carom.formats.visuals.obj import read_obj_visual
+from carom.formats.visuals.render_mesh import RenderMesh, flat_mesh
 
 
 def read_mesh_visual(path: Path) -> RenderMesh:

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from carom.formats.files import read_bounded
 from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, primitives, referenced
 from carom.formats.mesh.reader import MAX_FILE_BYTES
+from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.formats.xml_element import Element
 from carom.native.products import product
 from carom.record import record
-from carom.render.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 Floats = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from carom.render.mesh_visuals import read_mesh_visual
+from carom.formats.visuals.reader import read_mesh_visual
 
 SOURCES = {
     "p": (3, "0 0 0  1 0 0  1 1 0  0 1 0"),
