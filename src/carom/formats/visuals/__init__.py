@@ -1,0 +1,1 @@
+"""Mesh files for drawing: normals, texture coordinates and materials."""
