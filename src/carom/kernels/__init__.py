@@ -1,1 +1,1 @@
-"""Device code: everything that is compiled, written in Python for the compiler of NVIDIA Warp."""
+"""Device code: the compiled functions, written in Python for the compiler of NVIDIA Warp."""

@@ -1,4 +1,4 @@
-"""The structs of `carom.layouts` as Warp has them: device code takes them from here."""
+"""The structs of `carom.layouts` as Warp structs, for device code to import."""
 
 from typing import TYPE_CHECKING
 

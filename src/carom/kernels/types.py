@@ -1,8 +1,8 @@
-"""The types of the layouts as Warp has them, and the decorators that let kernels read as plain maths.
+"""The types of `carom.layouts` as Warp types, and the decorators for device functions and kernels.
 
-Device code only: whoever imports this imports Warp. `real` is float64. Warp reads a bare `0.5` in a kernel as
-float32, so `func` and `kernel` wrap every float literal as `real(0.5)` before Warp sees it, and put `real`
-in reach.
+Only device code imports this module, because it imports Warp. `real` is float64. Warp compiles a bare `0.5`
+as float32. So the decorators wrap every float literal as `real(0.5)` before Warp sees it, and add `real` to
+the globals of the function.
 """
 
 from __future__ import annotations
@@ -122,16 +122,16 @@ def _warp_function(function: _F, inline_hint: Literal["forceinline", "noinline"]
 def func(function: _F) -> _F:
     """Make `function` callable from kernels, inlined wherever it is called.
 
-    Warp passes structs by value; only inlined calls spare copying all their arrays.
+    Warp passes structs by value, with all their array descriptors; inlining avoids these copies.
     """
     return _warp_function(function, "forceinline")
 
 
 def shared_func(function: _F) -> _F:
-    """Make `function` callable from kernels, compiled once and called.
+    """Make `function` callable from kernels, compiled once and not inlined.
 
-    For long functions with several callers, which inlining would multiply. Their arguments should be
-    numbers, vectors and a few arrays: see `func`.
+    For long functions with several callers, whose code inlining would duplicate. Their arguments should be
+    numbers, vectors and a few arrays, since arguments are copied: see `func`.
     """
     return _warp_function(function, "noinline")
 

@@ -1,4 +1,4 @@
-"""Starting Warp without noise on the user's terminal."""
+"""Starting Warp without its messages on the user's terminal."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import tempfile
 
 import warp as wp
 
-# Written by Warp's native code wherever there is no NVIDIA driver, which is no news to anybody.
+# Warp's native code writes this on every machine without an NVIDIA driver; users need not see it.
 _NO_NEWS = b"Could not find or load the NVIDIA CUDA driver"
 
 
 def start_warp() -> None:
-    """Initialise Warp; its banner and its note on the missing GPU are not shown.
+    """Initialise Warp; its banner and its message about a missing CUDA driver are not shown.
 
-    Native code writes the note to the C stream, so the file descriptor is diverted while Warp starts;
-    everything else that was written there is passed on.
+    Native code writes the message to the C stream `stderr`. So the file descriptor of standard error is
+    redirected to a file while Warp starts. All other lines of that file are then written to standard error.
     """
     wp.config.log_level = wp.LOG_ERROR
     try:

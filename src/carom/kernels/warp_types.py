@@ -1,4 +1,4 @@
-"""Declared types and structs as Warp has them."""
+"""Conversion of declared types and structs to Warp's."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SCALARS: dict[str, Any] = {
 
 @cache
 def warp_type(declared: Any) -> Any:
-    """The type of a kernel's argument or of a struct's field that is declared in `carom.layouts`."""
+    """Warp's type for a type, array or struct that is declared in `carom.layouts`."""
     if isinstance(declared, ArrayType):
         return wp.array(dtype=warp_type(declared.entry), ndim=declared.ndim)
     if isinstance(declared, Type):

@@ -8,13 +8,13 @@ from carom.layouts.types import ArrayType, real
 
 Numbers3 = warp_type(ArrayType(real, 3))
 
-# What `combine_kernel` does with two numbers.
+# Operations of `combine_kernel`.
 ADD, SUBTRACT, MULTIPLY, DIVIDE, LEAST, GREATEST = 0, 1, 2, 3, 4, 5
 
 
 @kernel
 def combine_kernel(result: Numbers3, first: Numbers3, second: Numbers3, operation: Int32):
-    """Combine numbers, one by one."""
+    """Apply an operation, such as `ADD`, to two arrays elementwise."""
     i, j, k = wp.tid()
     a = first[i, j, k]
     b = second[i, j, k]

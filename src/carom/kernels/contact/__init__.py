@@ -1,1 +1,1 @@
-"""Collision detection: bounds, the broad phase, pairs of shapes, contacts that persist."""
+"""Collision detection: bounding boxes, broad phase, narrow phase, contact manifolds."""

@@ -7,7 +7,7 @@ from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
 
-# Half the size of what has no bounds; its square still is an ordinary number.
+# Half extent of a shape without bounds, such as a plane [m]; its square is still finite.
 UNBOUNDED = real(1.0e18)
 
 
@@ -50,9 +50,9 @@ def magnitudes(matrix: Matrix3) -> Matrix3:
 
 @func
 def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape: Int32):
-    """World pose and bounds of one shape: as in Bullet, the box around its rotated local box.
+    """Write the world pose and bounds of one shape; as in Bullet, the box around its rotated local box.
 
-    A shape whose pose is not finite gets empty bounds, so that it meets nothing.
+    A shape whose pose is not finite gets empty bounds, so that it is in no pair.
     """
     pose = state.link_pose[world, shapes.shape_link[shape]] * shapes.shape_pose[shape]
     frame = wp.quat_to_matrix(wp.transform_get_rotation(pose))
@@ -63,7 +63,7 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
     center = Vector3(0.0, 0.0, 0.0)
     kind = shapes.shape_kind[shape]
     if kind == SPHERE:
-        # Exact, whatever rounding has done to the rotation.
+        # Exact, independent of rounding errors in the rotation.
         center = position
         half_extents = local_extents(shapes, shape)
     elif kind != PLANE:
@@ -87,10 +87,11 @@ def look_ahead(
     world: Int32,
     shape: Int32,
 ) -> real:
-    """How far ahead of a shape continuous collision detection looks [m].
+    """Distance that continuous collision detection looks ahead of a shape [m].
 
-    As far as it moved in the last substep, from `Scratch.link_pose` on, or as its base moves in the next
-    one, if that is more than half its swept sphere's radius: slower ones are caught in time without.
+    The shape's motion in the last substep (since `Scratch.link_pose`) or the motion of its base in the
+    next one, whichever is larger. Zero if this is at most half the radius of the shape's swept sphere:
+    contacts of slower shapes are found in time without looking ahead.
     """
     radius = shapes.shape_ccd_radius[shape]
     if radius <= 0.0:
@@ -113,7 +114,7 @@ def look_ahead(
 
 @func
 def place_shapes(shapes: Shapes, state: State, settings: Settings, pairs: Pairs, world: Int32):
-    """World poses and bounds of all shapes."""
+    """Write the world poses and bounds of all shapes."""
     for shape in range(settings.shape_count):
         place_shape(shapes, state, pairs, world, shape)
 

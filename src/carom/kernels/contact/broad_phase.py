@@ -1,8 +1,9 @@
-"""The pairs of shapes whose bounds meet, sorted by their rows.
+"""Broad phase: the pairs of shapes whose bounding boxes (AABBs) meet, sorted by shape rows.
 
-Planes are few and meet almost everything: each is compared with all shapes. All others go through the
-hierarchy: a walk for each shape, over what comes after it in the order of the leaves, finds each pair
-once in about logarithmic time.
+Boxes meet if the gap between them is at most a margin (`bounds_margin`). Planes are few and meet almost all
+shapes: each plane is compared with every shape. Each other shape is compared, by a traversal of the
+hierarchy, with the shapes after it in the order of the leaves. So each pair is found once, and a traversal
+takes about logarithmic time.
 """
 
 import warp as wp
@@ -20,7 +21,7 @@ from carom.layouts.contacts import BOUNDED, LEAVES, PAIRS, PLANES, READINESS, ST
 def add_pair(
     shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, a: Int32, b: Int32
 ):
-    """Note two shapes if they may touch; pairs beyond the capacity are counted only."""
+    """Add the pair of two shapes if they may collide; pairs beyond the capacity are only counted."""
     if may_collide(shapes, model, settings, a, b):
         count = pairs.count_pairs[world, PAIRS]
         if count < pairs.pair_found.shape[1]:
@@ -51,7 +52,7 @@ def compare_in_leaf(
     start: Int32,
     leaf: Int32,
 ):
-    """Pairs of shape `a` with the shapes of a leaf, from place `start` on."""
+    """Add the pairs of shape `a` with the shapes of a leaf, from index `start` in `shape_order` on."""
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
     breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
@@ -79,7 +80,7 @@ def walk_from(
     place: Int32,
     own_leaf: Int32,
 ):
-    """Pairs of the shape at a place in the order with all shapes at later places."""
+    """Add the pairs of the shape at index `place` of `shape_order` with all shapes at later indices."""
     a = pairs.shape_order[world, place]
     leaf_count = pairs.count_pairs[world, LEAVES]
     breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
@@ -97,7 +98,7 @@ def walk_from(
 
 @func
 def plane_pairs(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, plane: Int32):
-    """Pairs of a plane with all shapes that reach below it."""
+    """Add the pairs of a plane with all shapes that reach below it or into the margin above it."""
     normal = pairs.shape_frame[world, plane] * shapes.shape_size[plane]
     along = wp.abs(normal)
     height = wp.dot(normal, pairs.shape_position[world, plane])
@@ -112,7 +113,7 @@ def plane_pairs(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, 
 
 @func
 def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
-    """Sort the pairs found by first, then by second shape, so that they do not depend on the walk."""
+    """Sort the pairs by first, then by second shape: their order must not depend on the traversal."""
     count = wp.min(pairs.count_pairs[world, PAIRS], pairs.pair_shapes.shape[1])
     for shape in range(settings.shape_count):
         pairs.shape_pair_end[world, shape] = 0
@@ -129,7 +130,8 @@ def sort_pairs(settings: Settings, pairs: Pairs, world: Int32):
         place = pairs.shape_pair_end[world, pair[0]]
         pairs.shape_pair_end[world, pair[0]] = place + 1
         pairs.pair_shapes[world, place] = pair
-    # Only now is every row one of this step; those of a first shape are few.
+    # Insertion sort by second shape, as few pairs share a first shape. It cannot be part of the loop above:
+    # until this loop ends, some rows of `pair_shapes` are left over from an earlier step.
     for i in range(1, count):
         pair = pairs.pair_shapes[world, i]
         place = i + 0
@@ -154,7 +156,7 @@ def find_pairs(
     pairs: Pairs,
     world: Int32,
 ):
-    """Sorted pairs of shapes whose bounds meet and that may touch, from the link poses."""
+    """Find and sort the pairs of shapes whose bounds meet and that may collide, from the link poses."""
     for shape in range(settings.shape_count):
         pairs.shape_motion[world, shape] = look_ahead(shapes, model, settings, state, scratch, world, shape)
     place_shapes(shapes, state, settings, pairs, world)
@@ -163,7 +165,7 @@ def find_pairs(
 
 @func
 def find_pairs_of_placed(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
-    """As `find_pairs`, once all shapes have been placed."""
+    """Do what `find_pairs` does, with the poses and bounds of all shapes already written."""
     build_hierarchy(shapes, settings, pairs, world)
     pairs.count_pairs[world, READINESS] = STALE
     pairs.count_pairs[world, PAIRS] = 0

@@ -1,8 +1,8 @@
-"""Contact candidates of one pair of shapes, and the choice of the four that are kept.
+"""Contact candidates of one pair of shapes, and the choice of at most four of them.
 
 A candidate is a row of `Pairs.candidate_terms`: a point on shape b, the normal there towards shape a,
-and the distance along it to shape a, negative where they overlap. The order of points that are equally
-good decides, so results do not depend on rounding more than need be.
+and the distance along the normal to shape a, negative where the shapes overlap. Of candidates that are
+equally good within a tolerance the first is chosen, so that rounding seldom affects the choice.
 """
 
 import warp as wp
@@ -12,10 +12,10 @@ from carom.kernels.types import Int32, Vector3, Vector8, Vector8Rows, func, real
 
 # Points closer together than this count as one [m].
 SAME_POINT = real(1.0e-6)
-# Candidates less deep than the deepest by this count as deep as it [m]: of what lies flat, the same corners
-# should be chosen in every step.
+# Candidates at most this much less deep than the deepest count as equally deep [m]. So the same corners of a
+# face that lies flat are chosen in every step.
 AS_DEEP = real(1.0e-7)
-# Share by which a later candidate must be better to be preferred.
+# Relative amount by which a later candidate must be better to be preferred.
 CLEARLY = real(1.0e-6)
 
 
@@ -23,7 +23,7 @@ CLEARLY = real(1.0e-6)
 def add_candidate(
     candidates: Vector8Rows, world: Int32, count: Int32, point: Vector3, normal: Vector3, distance: real
 ) -> Int32:
-    """Append a candidate to the first `count`; returns their number. What does not fit is left out."""
+    """Append a candidate to the first `count`, if there is room; returns the new number."""
     if count >= candidates.shape[1]:
         return count
     candidates[world, count] = Vector8(
@@ -48,7 +48,7 @@ def candidate_normal(candidates: Vector8Rows, world: Int32, row: Int32) -> Vecto
 
 @func
 def candidate_distance(candidates: Vector8Rows, world: Int32, row: Int32) -> real:
-    """Distance of the two shapes there."""
+    """Distance of the two shapes along the normal [m], negative where they overlap."""
     return candidates[world, row][6]
 
 
@@ -69,7 +69,7 @@ def exchange(candidates: Vector8Rows, world: Int32, i: Int32, j: Int32):
 
 @func
 def flip_candidates(candidates: Vector8Rows, world: Int32, count: Int32):
-    """Make the candidates of (a, b) those of (b, a)."""
+    """Turn the candidates of shapes (a, b) into candidates of shapes (b, a)."""
     for row in range(count):
         normal = candidate_normal(candidates, world, row)
         distance = candidate_distance(candidates, world, row)
@@ -79,7 +79,7 @@ def flip_candidates(candidates: Vector8Rows, world: Int32, count: Int32):
 
 @func
 def deepest_outermost(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
-    """Of the deepest candidates the one farthest from the middle of all."""
+    """Row of the one among the deepest candidates that is farthest from the mean of all points."""
     deepest = candidate_distance(candidates, world, 0)
     middle = Vector3(0.0, 0.0, 0.0)
     for row in range(count):
@@ -97,10 +97,10 @@ def deepest_outermost(candidates: Vector8Rows, world: Int32, count: Int32) -> In
 
 @shared_func
 def keep_four(candidates: Vector8Rows, world: Int32, count: Int32) -> Int32:
-    """Choose at most four candidates that span the contact; returns their number.
+    """Choose at most four candidates that span the contact and put them first; returns their number.
 
-    The deepest (of several the outermost), the one farthest from it, the one farthest from the line through
-    both, and the one farthest outside the triangle of these.
+    The deepest (of several equally deep ones the outermost), the one farthest from it, the one farthest from
+    the line through these two, and the one farthest outside the triangle of these three.
     """
     if count <= 1:
         return count

@@ -1,7 +1,7 @@
-"""Contacts of a world: from pairs of shapes whose bounds meet.
+"""Contacts of a world, computed from the pairs of shapes whose bounds meet.
 
-If pairs or contacts do not fit, `State.status_entry` says so: detection has to be repeated with more room,
-from the contacts that there were, before anything else is done with them.
+If the pairs or contacts exceed the capacity, `State.status_entry` records it. Then detection has to be
+repeated with larger arrays, from the contacts before it, before any contact is used.
 """
 
 import warp as wp
@@ -22,7 +22,7 @@ from carom.layouts.codes import ASLEEP
 from carom.layouts.contacts import PAIRS, THERE
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
 
-# A point that is as near as this to where it was has not been moved [m].
+# A contact point counts as not moved if it is nearer than this to its last position [m].
 UNMOVED = real(1.0e-9)
 
 
@@ -37,7 +37,7 @@ def is_at_rest(shapes: Shapes, model: Model, state: State, world: Int32, shape: 
 
 @func
 def is_where_it_was(state: State, contacts: Contacts, world: Int32, row: Int32) -> bool:
-    """Whether both points of a contact that is still there from the last step are where they were."""
+    """Whether both points of a contact of the last step have kept their world positions."""
     links = contacts.contact_shapes[world, row]
     point_a = wp.transform_point(state.link_pose[world, links[2]], contacts.contact_local_a[world, row])
     point_b = wp.transform_point(state.link_pose[world, links[3]], contacts.contact_local_b[world, row])
@@ -59,10 +59,10 @@ def can_stay(
     first: Int32,
     last: Int32,
 ) -> bool:
-    """Whether the contacts [first, last) of a pair from the last step are still right.
+    """Whether a pair's contacts [first, last) of the last step are still valid and in the right rows.
 
-    They are if both shapes are at rest and nobody has moved them. The next row to write being theirs,
-    they have not been overwritten.
+    They are valid if both shapes are at rest and have not been moved. They are in the right rows, and not
+    overwritten, if `first` is the next row to write.
     """
     if wanted != first:
         return False
@@ -86,9 +86,9 @@ def make_contacts(
     world: Int32,
     kept: Int32,
 ) -> Int32:
-    """Contacts of all pairs; returns how many there are, those beyond the capacity included.
+    """Write the contacts of all pairs; returns their number, including those beyond the capacity.
 
-    The first of the previous contacts is at `kept`.
+    `kept` is the row of the first previous contact.
     """
     end = kept + contacts.count_contacts[world, THERE]
     wanted = Int32(0)
@@ -112,7 +112,7 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, fi
     """Write the candidates of a pair, whose contacts of the last substep are [first, last).
 
     Returns:
-        What `find_new_point` returned; the number of candidates if that is `AT_ONCE`, else 0.
+        The result of `find_new_point`, and the number of candidates if that result is `AT_ONCE`, else 0.
     """
     if last == first and not (
         meets_beside(shapes, pairs, world, pair[0], pair[1])
@@ -143,23 +143,23 @@ def add_manifold(
     last: Int32,
     wanted: Int32,
 ) -> Int32:
-    """Write the contacts that come of the candidates of a pair; those beyond the capacity are counted only.
+    """Write the contacts of a pair from its candidates; contacts beyond the capacity are only counted.
 
     Args:
         shapes: All shapes.
         state: Poses of the links.
-        contacts: Where they go.
+        contacts: Contacts to write.
         pairs: Candidates and previous contacts.
         world: The world.
         pair: The pair.
-        found: What `find_candidates` returned.
-        count: As well.
+        found: First result of `find_candidates`.
+        count: Second result of `find_candidates`.
         first: First previous contact of the pair.
-        last: End of these.
-        wanted: Number of contacts of the pairs before.
+        last: End of its previous contacts.
+        wanted: Number of contacts of the earlier pairs.
 
     Returns:
-        Number of contacts, these included.
+        Number of contacts, including those of this pair.
     """
     sides = in_order_of_sides(shapes, pair)
     far = breaking_distance(shapes, pair[0], pair[1])
@@ -184,7 +184,7 @@ def report_overflow(state: State, world: Int32, pairs_wanted: Int32, contacts_wa
 
 @func
 def find_contacts(shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32):
-    """Contacts of all pairs, if all of them fit; those that persist keep their impulses."""
+    """Find the contacts of all pairs, if all of them fit; contacts that persist keep their impulses."""
     if pairs.count_pairs[world, PAIRS] > pairs.pair_shapes.shape[1]:
         report_overflow(state, world, pairs.count_pairs[world, PAIRS], 0)
         return
@@ -194,7 +194,7 @@ def find_contacts(shapes: Shapes, model: Model, state: State, contacts: Contacts
 
 @func
 def accept_contacts(state: State, contacts: Contacts, world: Int32, wanted: Int32):
-    """Let the contacts that have been written be there, if all of them did fit."""
+    """Set the number of contacts to those written if all of them fit; else report the overflow."""
     if wanted > contacts.contact_shapes.shape[1]:
         report_overflow(state, world, 0, wanted)
         return

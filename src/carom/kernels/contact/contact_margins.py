@@ -1,7 +1,7 @@
 """Contact margins: the maximum distance of two shapes in contact, as in Bullet.
 
-A contact is given up where its points are further apart than the smaller *breaking distance* of the
-two shapes, and most pairs make one as early as that, so that it can slow them in time.
+A contact ends when its points are further apart than the smaller *breaking distance* of the two shapes.
+Most pairs of shapes also begin a contact at this distance, so that it can slow them in time.
 """
 
 import warp as wp
@@ -23,7 +23,7 @@ def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
 
 @func
 def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
-    """Whether Bullet would wrap a shape in a compound: its link has others, or it is not at the origin."""
+    """Whether Bullet puts a shape in a compound: its link has other shapes, or its pose is no identity."""
     if shapes.link_shape_count[shapes.shape_link[shape]] > 1:
         return True
     pose = shapes.shape_pose[shape]
@@ -36,10 +36,10 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 
 @func
 def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
-    """Gap between the bounds of two shapes up to which they can be in contact [m].
+    """Largest gap between the bounds of two shapes that can be in contact [m].
 
-    Bullet widens the bounds of bodies, but not those of the parts of compounds. Those of planes are infinite,
-    so that everything meets them.
+    Bullet widens the bounds of bodies, but not the bounds of the parts of a compound. The bounds of a plane
+    are infinite, so every shape meets them.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     on_plane = shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
@@ -50,10 +50,10 @@ def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
 
 @func
 def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other: Int32) -> bool:
-    """Whether a part of a compound and a shape that is none may begin to touch.
+    """Whether a part of a compound and a shape that is not in a compound may begin a contact.
 
-    Bullet looks for the parts that a shape meets along the axes of their own link. Bounds along the world's
-    have met already.
+    Bullet tests a shape's bounds against those of the parts along the axes of the parts' link. The bounds
+    along the world axes are known to meet already.
     """
     if not is_part_of_compound(shapes, part) or is_part_of_compound(shapes, other):
         return True
@@ -61,7 +61,7 @@ def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other:
         return True
     pose = shapes.shape_pose[part]
     frame = wp.quat_to_matrix(wp.transform_get_rotation(pose))
-    # From the axes of the world to those of the link.
+    # Rotation from world axes to the axes of the link.
     turn = frame * wp.transpose(pairs.shape_frame[world, part])
     other_frame = turn * pairs.shape_frame[world, other]
     apart = turn * (
@@ -85,10 +85,9 @@ def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other:
 
 @func
 def region_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
-    """Distance from the bounds of a shape up to which triangles of a mesh or height field count [m].
+    """Distance from a shape's bounds within which triangles of a mesh or height field are tested [m].
 
-    Bullet looks at those that meet the bounds, and keeps what contacts there are until their sides have
-    parted.
+    Bullet tests the triangles that meet the bounds, and keeps existing contacts up to the breaking distance.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     if in_contact:
@@ -98,10 +97,10 @@ def region_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
 
 @func
 def contact_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
-    """Distance up to which two shapes are in contact [m].
+    """Contact margin: largest distance of two shapes in contact [m].
 
-    Boxes begin to be, and balls are, only where they touch. Fast bodies with continuous detection are
-    as far ahead as they could get in a step.
+    Zero for two spheres and for two boxes without a contact so far; the breaking distance for other pairs.
+    With continuous collision detection it is at least the distance that fast shapes can move in a step.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     kind_a = shapes.shape_kind[a]

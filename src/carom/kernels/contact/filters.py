@@ -1,4 +1,4 @@
-"""Which pairs of shapes may touch at all."""
+"""Collision filters: which pairs of shapes may collide."""
 
 import warp as wp
 
@@ -13,7 +13,7 @@ INCLUDE_PARENT = wp.constant(int(LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT))
 
 @func
 def rigid_root(model: Model, link: Int32) -> Int32:
-    """The first of the links, from `link` towards the base, that moves against its own parent."""
+    """First link, from `link` towards the base, that can move relative to its parent; else the base."""
     root = link
     while model.link[root].parent >= 0 and model.link[root].dof_count == 0:
         root = model.link[root].parent
@@ -22,7 +22,7 @@ def rigid_root(model: Model, link: Int32) -> Int32:
 
 @func
 def is_below(model: Model, link: Int32, ancestor: Int32) -> bool:
-    """Whether `ancestor` is one of the links between `link` and its base, or the base."""
+    """Whether `ancestor` is on the path from `link` (excluded) to its base (included)."""
     above = model.link[link].parent
     while above >= 0 and above != ancestor:
         above = model.link[above].parent
@@ -31,7 +31,7 @@ def is_below(model: Model, link: Int32, ancestor: Int32) -> bool:
 
 @func
 def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
-    """Whether two links of one body may touch; neither is the other, nor rigidly joined to it."""
+    """Whether two links of one body may collide; they are not the same link, nor rigidly joined."""
     flags = shapes.link_self_collision[a]
     if flags & SELF_COLLISION == 0:
         return False
@@ -44,7 +44,7 @@ def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
 
 @func
 def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
-    """A user's setting for two links: 1 collide, 0 do not collide, -1 none."""
+    """The user's filter for two links: 1 collide, 0 do not collide, -1 not set."""
     low = wp.min(a, b)
     high = wp.max(a, b)
     first = Int32(0)
@@ -64,7 +64,7 @@ def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32
 
 @func
 def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
-    """Whether groups and masks let two links touch."""
+    """Whether collision groups and masks let two links collide."""
     a_passes = shapes.link_group[a] & shapes.link_mask[b] != 0
     b_passes = shapes.link_group[b] & shapes.link_mask[a] != 0
     if settings.filter_both == 1:
@@ -74,7 +74,7 @@ def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
 
 @func
 def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, shape_b: Int32) -> bool:
-    """Whether two shapes make contacts when they meet."""
+    """Whether two shapes may collide, by self-collision flags, user filters, groups and masks."""
     a = shapes.shape_link[shape_a]
     b = shapes.shape_link[shape_b]
     if a == b:

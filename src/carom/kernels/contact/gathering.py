@@ -1,11 +1,11 @@
-"""Manifolds of what does not lie on a face: they gather their points over the steps, as Bullet's do.
+"""Contact manifolds that gather their points over several steps, as in Bullet.
 
-Bullet adds one point in a step, the deepest, and keeps those of the steps before until their sides have
-parted. A face that lies flat has all its corners after a few steps, so a manifold made at once is as good and
-steadier, and which of its points is the deepest is up to rounding. But what rolls or tumbles never comes so
-far: new points enter where it rolls to, old ones linger where it rolled from, and both decide how deep it
-rolls and how it scrubs sideways. So hulls, cylinders and capsules get their points by Bullet's rules unless
-they lie on a face, and on infinite planes all shapes do.
+In each step Bullet adds one point, the deepest, and keeps the points of earlier steps until they have
+separated. A face that lies flat has all its corners after a few steps. There a manifold made at once is
+equally good, and steadier, because rounding decides which corner is the deepest. The manifold of a shape that
+rolls or tumbles is never complete: new points come in front, old points remain behind, and both affect the
+penetration depth and the sideways scrubbing. So hulls, cylinders and capsules gather their points by Bullet's
+rules unless they lie on a face. On infinite planes all shapes gather their points.
 """
 
 import math
@@ -36,42 +36,43 @@ from carom.layouts.codes import (
     TRIANGLES,
 )
 
-# Cosine of the angle between axis and normal up to which a shape lies on its side.
+# A hull lies on its side if the cosine of the angle between its axis and the normal is less than this.
 ON_SIDE = real(math.sqrt(0.5))
-# Cosine of the angle between face and contact, 1.8 degrees, beyond which a shape lies on the face.
+# A shape lies on a face if the cosine of the angle between the normals of face and contact exceeds this (an
+# angle of 1.8 degrees).
 ON_FACE = real(0.9995)
-# Stands for the new point among the rows of previous contacts.
+# Marks the slot of the new point, where other slots have the row of a previous contact.
 NEW = wp.constant(-1)
-# There is no new point to add, as the manifold is to be made at once.
+# Result of `find_new_point`: the manifold is made at once instead of gathering points.
 AT_ONCE = wp.constant(-1)
 
 
 @wp.struct
 class Gathered:
-    """The manifold as it grows: its first `count` slots are in use."""
+    """A manifold while it is updated; its first `count` slots are in use."""
 
     count: Int32
     slots: Index4  # rows of previous contacts, or `NEW`
     distances: Vector4
-    predecessor: Int32  # row of the previous contact in whose place the new point is, -1 for none
+    predecessor: Int32  # row of the previous contact whose impulses the new point inherits, -1 for none
 
 
 @func
 def rolls(shapes: Shapes, shape: Int32) -> bool:
-    """Whether a shape is round about an axis, or a hull."""
+    """Whether a shape can roll: it is round about an axis, or a hull."""
     return shapes.shape_rolling[shape] != NO_ROLLING
 
 
 @func
 def is_single_sided(shapes: Shapes, shape: Int32) -> bool:
-    """Whether a shape is one point or many triangles for its partners, so that nothing is gathered."""
+    """Whether a shape is a sphere or consists of triangles, so that its manifolds gather no points."""
     kind = shapes.shape_kind[shape]
     return kind == SPHERE or kind >= TRIANGLES
 
 
 @func
 def lies_on_face(shapes: Shapes, shape: Int32, outward: Vector3) -> bool:
-    """Whether a hull touches with a face on which it can lie; `outward` is a direction in its frame."""
+    """Whether a hull touches with a face on which it can lie; `outward` is the normal in its frame."""
     first = shapes.shape_first_face[shape]
     for face in range(first, first + shapes.shape_flat_faces[shape]):
         plane = shapes.face_plane[face]
@@ -82,7 +83,7 @@ def lies_on_face(shapes: Shapes, shape: Int32, outward: Vector3) -> bool:
 
 @func
 def rolls_on(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, outward: Vector3) -> bool:
-    """Whether a shape, if it rolls, touches with something on which it does, and not with a face.
+    """Whether a shape touches with a surface on which it rolls, not with a face on which it lies.
 
     Args:
         shapes: All shapes.
@@ -108,9 +109,9 @@ def rolls_on(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, outward: 
 def gathers_everywhere(shapes: Shapes, a: Int32, b: Int32) -> bool:
     """Whether one of two shapes is an infinite plane.
 
-    On planes all shapes gather their points, also where they lie on a face: boxes that land flat tip and
-    creep by them. On faces of other shapes the deepest point of what lies exactly flat is in the middle, and
-    would stay alone.
+    On planes all shapes gather their points, even if they lie on a face; therefore boxes that land flat tip
+    and creep, as in Bullet. On a face of another shape, the deepest point of a shape that lies exactly flat
+    is in the middle of the face, and would remain the only point.
     """
     return shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
 
@@ -131,15 +132,16 @@ def find_new_point(
 
     Args:
         shapes: All shapes.
-        pairs: Room for candidates, poses of the shapes, and the previous contacts.
+        pairs: Workspace for candidates, poses of the shapes, and the previous contacts.
         world: The world.
         sides: The two shapes.
         max_distance: Largest distance of a contact [m].
         first: First previous contact of the two shapes.
-        last: End of these.
+        last: End of their previous contacts.
 
     Returns:
-        1, or 0 if they are too far apart; `AT_ONCE` if the manifold does not gather.
+        1 if a candidate was written, 0 if the shapes are too far apart, `AT_ONCE` if the manifold does not
+        gather its points.
     """
     a = sides[0]
     b = sides[1]
@@ -148,7 +150,7 @@ def find_new_point(
     if not (rolls(shapes, a) or rolls(shapes, b) or gathers_everywhere(shapes, a, b)):
         return AT_ONCE
     if pairs.shape_motion[world, a] + pairs.shape_motion[world, b] > 0.0:
-        # What is stopped at one end only would swing through with the other.
+        # A fast shape that is stopped at one point only would swing through the surface with its other end.
         return AT_ONCE
     if last > first:
         if not gathers(shapes, pairs, world, a, b, pairs.previous_normal[world, first]):
@@ -167,7 +169,7 @@ def find_new_point(
 
 @func
 def refresh(state: State, pairs: Pairs, world: Int32, before: Gathered, far: real) -> Gathered:
-    """Drop the points that have parted, along their normal or across it; the last takes a free slot."""
+    """Drop the points that have separated along or across their normal; the last point fills the gap."""
     kept = before
     slot = kept.count - 1
     while slot >= 0:
@@ -189,7 +191,7 @@ def refresh(state: State, pairs: Pairs, world: Int32, before: Gathered, far: rea
 
 @func
 def spread(pairs: Pairs, world: Int32, point: Vector3, i: Int32, j: Int32, k: Int32) -> real:
-    """A measure of the area that a point spans with three previous contacts, all on shape a."""
+    """Measure of the area that a point and three previous contacts span on shape a [m^4]."""
     return wp.length_sq(
         wp.cross(
             point - pairs.previous_local_a[world, i],
@@ -200,7 +202,10 @@ def spread(pairs: Pairs, world: Int32, point: Vector3, i: Int32, j: Int32, k: In
 
 @func
 def least_needed(pairs: Pairs, world: Int32, full: Gathered, point: Vector3, distance: real) -> Int32:
-    """The one of four slots whose point gives way to a new one: the rest spans most, the deepest stays."""
+    """Slot whose point a new point replaces, when all four slots are in use.
+
+    The deepest of the five points is kept, and the other points are chosen to span the largest area.
+    """
     deepest = Int32(-1)
     least = distance
     for slot in range(4):
@@ -225,7 +230,10 @@ def least_needed(pairs: Pairs, world: Int32, full: Gathered, point: Vector3, dis
 def add_point(
     pairs: Pairs, world: Int32, before: Gathered, point: Vector3, distance: real, far: real
 ) -> Gathered:
-    """Put the new point, on shape a in the frame of its link, where one is near, or else where is room."""
+    """Put the new point into the slot of the nearest point within `far`, else into a free or replaced one.
+
+    `point` is on shape a, in the frame of its link.
+    """
     more = before
     slot = more.count
     nearest_sq = far * far
@@ -259,12 +267,14 @@ def gather(
     last: Int32,
     far: real,
 ) -> Int32:
-    """Write a manifold of previous contacts [first, last) and a new point, if one was found.
+    """Write a manifold of the previous contacts [first, last) and a new point, if one was found.
 
-    Parts of compounds drop points before they add one, others after that, as in Bullet.
+    Separated points are dropped before the new point is added if one of the shapes is part of a compound,
+    and after it otherwise, as in Bullet.
 
     Returns:
-        The number of all contacts, which was `wanted` before; those beyond the capacity are not written.
+        Number of contacts: `wanted`, those of earlier pairs, plus the contacts of this manifold. Contacts
+        beyond the capacity are not written.
     """
     manifold = Gathered()
     manifold.count = last - first

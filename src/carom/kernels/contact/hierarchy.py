@@ -1,9 +1,10 @@
-"""A bounding volume hierarchy over the bounded shapes of a world, rebuilt from nothing whenever it is used.
+"""Bounding volume hierarchy over the bounded shapes of a world, built anew whenever it is used.
 
-Shapes are sorted along a space-filling curve; a leaf holds a few neighbours in that order. The nodes
-are those of a complete binary tree: node 1 is the root, 2n and 2n + 1 are below n, and the leaves are
-the last `leaf_count` ones. So nothing but bounds is stored, walks need no stack, and the result
-depends on nothing but the present bounds. Sizes may differ at will: a table only widens its ancestors.
+Shapes are sorted along a space-filling curve (Morton codes); a leaf holds a few neighbours in that order.
+The nodes form a complete binary tree: node 1 is the root, 2n and 2n + 1 are the children of n, and the
+leaves are the last `leaf_count` nodes. So only bounds are stored, a traversal needs no stack, and the result
+depends on the present bounds only. Sizes of shapes may differ freely: a large shape only widens the nodes
+above it.
 """
 
 import warp as wp
@@ -15,22 +16,22 @@ from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import BOUNDED, LEAF_LENGTH, LEAVES, PLANES, RADIX
 
-# Most shapes in a leaf.
+# Maximum number of shapes in a leaf, if there are several leaves.
 LEAF_SIZE = 4
-# As few shapes as this are not worth sorting: they make one leaf.
+# Up to this many shapes form one leaf, because sorting them would not pay.
 ONE_LEAF = 32
 # Cells of the curve along each axis.
 CURVE_CELLS = real(1024.0)
-# The curve covers this many mean deviations on each side of the mean, ...
+# The curve covers a window of this many mean deviations on each side of the mean of the shapes' centres.
 SPREAD = real(4.0)
-# ... taken anew this many times without what was outside, so that bodies that fall for ever or fly
-# away do not coarsen the cells of the others.
+# The window is computed this many times, each time without the shapes outside the previous window. So bodies
+# that fall for ever or fly away do not coarsen the cells of the others.
 TRIMMINGS = 4
 
 
 @func
 def next_node(node: Int32) -> Int32:
-    """The node to visit after a node and everything below it are done; 0 after the last."""
+    """Node to visit after a node and its whole subtree; 0 after the last."""
     following = node + 1
     while following & 1 == 0:
         following = following >> 1
@@ -41,7 +42,7 @@ def next_node(node: Int32) -> Int32:
 
 @func
 def spread_bits(value: Int32) -> Int32:
-    """Ten bits moved three places apart."""
+    """Spread the ten lowest bits of a number to every third bit."""
     x = value & 1023
     x = (x | (x << 16)) & 50331903
     x = (x | (x << 8)) & 50393103
@@ -51,7 +52,7 @@ def spread_bits(value: Int32) -> Int32:
 
 @func
 def gather_shapes(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32):
-    """List the shapes that have finite bounds, and after them the planes."""
+    """List the shapes whose pose is finite: first the bounded shapes, then the planes."""
     count = Int32(0)
     planes = Int32(0)
     for shape in range(settings.shape_count):
@@ -76,7 +77,7 @@ def double_center(pairs: Pairs, world: Int32, shape: Int32) -> Vector3:
 
 @func
 def write_codes(pairs: Pairs, world: Int32, count: Int32):
-    """Each listed shape's place along the curve."""
+    """Write the Morton code of each listed shape, its place along the curve."""
     window_center = Vector3(0.0, 0.0, 0.0)
     window = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
     trimming = Int32(0)
@@ -97,7 +98,7 @@ def write_codes(pairs: Pairs, world: Int32, count: Int32):
         window = deviation * (SPREAD / maximum(inside, 1.0)) + Vector3(1.0e-9, 1.0e-9, 1.0e-9)
         window_center = mean
         trimming += 1
-    # Cells are cubes, lest what is at almost one height is sorted by the rest of it.
+    # Cells are cubes: otherwise shapes at almost the same height would be sorted by tiny height differences.
     scale = 1.0 / greatest_entry(window)
     for i in range(count):
         shape = pairs.shape_order[world, i]
@@ -111,7 +112,7 @@ def write_codes(pairs: Pairs, world: Int32, count: Int32):
 
 @func
 def within(offset: Vector3, window: Vector3) -> bool:
-    """Whether an offset from the middle of a window is inside it."""
+    """Whether an offset from the centre of a window is inside the window."""
     return (
         wp.abs(offset[0]) <= window[0] and wp.abs(offset[1]) <= window[1] and wp.abs(offset[2]) <= window[2]
     )
@@ -119,7 +120,7 @@ def within(offset: Vector3, window: Vector3) -> bool:
 
 @func
 def curve_cell(place: real) -> Int32:
-    """Cell for a place between -1 and 1 along an axis; what is outside goes to the nearest."""
+    """Cell of a coordinate between -1 and 1 along an axis; coordinates outside get the nearest cell."""
     return Int32(wp.clamp((place + 1.0) * 0.5 * CURVE_CELLS, 0.0, CURVE_CELLS - 1.0))
 
 
@@ -151,13 +152,13 @@ def sort_by_code(pairs: Pairs, world: Int32, count: Int32):
 
 @func
 def leaf_start(pairs: Pairs, world: Int32, leaf: Int32) -> Int32:
-    """First place in `shape_order` of a leaf, counted from 0."""
+    """First index in `shape_order` of a leaf; leaves are counted from 0."""
     return wp.min(leaf * pairs.count_pairs[world, LEAF_LENGTH], pairs.count_pairs[world, BOUNDED])
 
 
 @func
 def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32):
-    """Bounds of the leaves."""
+    """Write the bounds of the leaves, widened where continuous collision detection looks ahead."""
     for leaf in range(leaf_count):
         lower = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
         upper = -lower
@@ -173,7 +174,7 @@ def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32):
 
 @func
 def build_hierarchy(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32):
-    """Sort the bounded shapes and bound groups of neighbours, groups of groups, and so on."""
+    """Sort the bounded shapes, then write the bounds of all nodes, from the leaves up to the root."""
     gather_shapes(shapes, settings, pairs, world)
     count = pairs.count_pairs[world, BOUNDED]
     leaf_count = Int32(1)

@@ -1,4 +1,4 @@
-"""Contact matching: contacts take over impulses and friction anchors from those of the last step."""
+"""Contact matching: contacts inherit impulses and friction anchors from contacts of the last substep."""
 
 import math
 
@@ -20,7 +20,7 @@ _HALF_ROOT = real(math.sqrt(0.5))
 
 @func
 def friction_direction(normal: Vector3) -> Vector3:
-    """A unit vector perpendicular to `normal`, a function of it alone."""
+    """Unit vector perpendicular to `normal`, a function of the normal alone."""
     if wp.abs(normal[2]) > _HALF_ROOT:
         scale = 1.0 / wp.sqrt(normal[1] * normal[1] + normal[2] * normal[2])
         return Vector3(0.0, -normal[2] * scale, normal[1] * scale)
@@ -30,12 +30,13 @@ def friction_direction(normal: Vector3) -> Vector3:
 
 @func
 def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
-    """Copy the contacts of the last substep, for new ones to be matched with.
+    """Copy the contacts of the last substep, so that new contacts can be matched with them.
 
-    Those at the start of a step stay there until it ends, to be restored if it is abandoned.
+    The copies made at the start of a step are kept until the step ends. They are restored if the step is
+    abandoned.
 
     Returns:
-        Where the first of them is put.
+        Row of the first copy.
     """
     count = contacts.count_contacts[world, THERE]
     first = Int32(0)
@@ -87,15 +88,15 @@ def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
 
 @func
 def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index4, equal: Int32) -> Int32:
-    """The first of sorted previous contacts [first, end) that comes after what is skipped.
+    """Skip previous contacts, which are sorted by pair, from row `first` on; returns the row reached.
 
     Args:
-        pairs: Holds the previous contacts.
+        pairs: The previous contacts.
         world: The world.
-        first: Where to start.
+        first: Row to start at.
         end: End of the previous contacts.
-        pair: A pair of shapes.
-        equal: 1 to skip the contacts of this pair as well as those of pairs before it, 0 not to.
+        pair: Pair of shapes; contacts of pairs before this one are skipped.
+        equal: 1 to skip the contacts of this pair as well, else 0.
     """
     row = first
     skipping = row < end
@@ -109,7 +110,7 @@ def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: In
 
 @func
 def comes_before(pairs: Pairs, world: Int32, row: Int32, pair: Index4, equal: Int32) -> bool:
-    """Whether a previous contact is one of those that `skip_contacts` skips."""
+    """Whether `skip_contacts` skips a previous contact."""
     shapes = pairs.previous_shapes[world, row]
     lower = wp.min(shapes[0], shapes[1])
     return lower < pair[0] or (lower == pair[0] and wp.max(shapes[0], shapes[1]) < pair[1] + equal)
@@ -119,9 +120,10 @@ def comes_before(pairs: Pairs, world: Int32, row: Int32, pair: Index4, equal: In
 def predecessor(
     pairs: Pairs, world: Int32, first: Int32, last: Int32, local_a: Vector3, local_b: Vector3, far: real
 ) -> Int32:
-    """The nearest previous contact in [first, last) that has no successor yet; -1 if all are far away.
+    """Nearest previous contact in [first, last) without a successor; -1 if none is nearer than `far`.
 
-    A contact that slides keeps its place on one of the two bodies at least.
+    The distance is the smaller of those measured in the two link frames, because the point of a sliding
+    contact stays in place on at least one of the two bodies.
     """
     nearest = Int32(-1)
     least = far * far
@@ -139,7 +141,7 @@ def predecessor(
 
 @func
 def keep_for_matching(contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
-    """Give contact `row` the impulses and friction anchor of the previous contact `before`; -1 for none."""
+    """Copy impulses and friction anchors of the previous contact `before` (-1: none) to contact `row`."""
     if before >= 0:
         contacts.contact_anchor_a[world, row] = pairs.previous_anchor_a[world, before]
         contacts.contact_anchor_b[world, row] = pairs.previous_anchor_b[world, before]
@@ -166,7 +168,7 @@ def write_place(
     normal: Vector3,
     distance: real,
 ):
-    """Write where a contact is, and its friction directions."""
+    """Write a contact's shapes, points, distance, normal and friction directions."""
     contacts.contact_shapes[world, row] = shapes
     contacts.contact_local_a[world, row] = local_a
     contacts.contact_local_b[world, row] = local_b
@@ -190,7 +192,7 @@ def write_contact(
     pair: Index4,
     candidate: Int32,
 ):
-    """Write where a candidate is as contact `row`; impulses come from `keep_for_matching`."""
+    """Write the geometry of a candidate to contact `row`; `keep_for_matching` writes its impulses."""
     link_a = shapes.shape_link[pair[0]]
     link_b = shapes.shape_link[pair[1]]
     point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
@@ -236,13 +238,13 @@ def write_new_contact(
     )
     keep_for_matching(contacts, pairs, world, before, row)
     if before < 0 and last > first:
-        # A new point of a manifold that was there before does not end the warm starting of the others.
+        # A new point of an existing manifold does not end warm starting of the other points.
         contacts.contact_warm_start[world, row] = minimum(pairs.previous_warm_start[world, first], 1.0)
 
 
 @func
 def keep_contact(state: State, contacts: Contacts, pairs: Pairs, world: Int32, before: Int32, row: Int32):
-    """Write the previous contact `before` as contact `row`, its points where they are on their links now."""
+    """Write the previous contact `before` as contact `row`, its points moved along with their links."""
     shapes = pairs.previous_shapes[world, before]
     normal = pairs.previous_normal[world, before]
     local_a = pairs.previous_local_a[world, before]

@@ -1,4 +1,4 @@
-"""Contact candidates of a pair of shapes, by their kinds."""
+"""Narrow phase: contact candidates of a pair of shapes, by the kinds of the two."""
 
 import warp as wp
 
@@ -26,7 +26,7 @@ def collide_boxes(
     core_b: Core,
     max_distance: real,
 ) -> Int32:
-    """Candidates of two boxes, their edges sharp."""
+    """Write the candidates of two boxes with sharp edges."""
     sharp_a = with_sharp_edges(core_a)
     sharp_b = with_sharp_edges(core_b)
     code, normal, _gap = box_axis(
@@ -55,16 +55,19 @@ def collide_boxes(
 def collide_simple(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, max_distance: real
 ) -> Int32:
-    """Candidates of the pairs of shapes that have a closed form for their nearest points; -1 for others.
+    """Write the candidates of a pair whose nearest points have a closed form.
 
     Args:
         shapes: All shapes.
-        pairs: Room for candidates, and the poses of the shapes.
+        pairs: Workspace for candidates, and the poses of the shapes.
         world: The world.
         a: Row of one shape.
-        b: Row of the other, not before a in the order of `in_order`.
+        b: Row of the other shape, not before a in the order of `in_order`.
         core_a: Core of a.
         max_distance: Largest distance of a contact [m].
+
+    Returns:
+        Number of candidates; -1 if the pair has no such closed form.
     """
     kind_a = core_a.kind
     kind_b = shapes.shape_kind[b]
@@ -98,7 +101,7 @@ def collide_simple(
 def collide_in_order(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
 ) -> Int32:
-    """Candidates of two shapes in the order of `in_order`."""
+    """Write the candidates of two shapes that are in the order of `in_order`."""
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
     if kind_a == PLANE or kind_a >= TRIANGLES:
@@ -118,7 +121,7 @@ def collide_in_order(
 
 @func
 def rank(kind: Int32) -> Int32:
-    """Place of a kind in the order in which pairs are treated: as their codes, planes last."""
+    """Rank of a kind of shape in the order of the narrow phase: its code, but planes last."""
     if kind == PLANE:
         return 100
     return kind
@@ -126,7 +129,7 @@ def rank(kind: Int32) -> Int32:
 
 @func
 def in_order(shapes: Shapes, a: Int32, b: Int32) -> Index4:
-    """Two shapes in the order in which the narrow phase wants them."""
+    """Two shapes in the order that the narrow phase expects."""
     if rank(shapes.shape_kind[a]) > rank(shapes.shape_kind[b]):
         return Index4(b, a, 0, 0)
     return Index4(a, b, 0, 0)
@@ -140,12 +143,12 @@ def collide_shapes(
 
     Args:
         shapes: All shapes.
-        pairs: Room for intermediate results, and the poses of the shapes.
+        pairs: Workspace for intermediate results, and the poses of the shapes.
         world: The world.
         a: Row of one shape.
-        b: Row of the other; normals point from it towards a.
+        b: Row of the other shape; normals point from b towards a.
         max_distance: Largest distance of a contact [m].
-        around: Triangles of meshes and height fields within this distance of the other's bounds count [m].
+        around: Distance from the convex shape's bounds within which triangles are tested [m].
     """
     order = in_order(shapes, a, b)
     count = collide_in_order(shapes, pairs, world, order[0], order[1], max_distance, around)

@@ -1,6 +1,6 @@
-"""Which of two shapes in contact is a and which is b, as Bullet has it.
+"""Order of the two shapes of a contact: which one is shape a and which one shape b, as in Bullet.
 
-Normals point from b to a, friction directions follow from normals, and users see all of them.
+Normals point from b to a, and friction directions are computed from normals. Users see both.
 """
 
 import warp as wp
@@ -13,7 +13,7 @@ from carom.layouts.codes import PLANE, TRIANGLES
 
 @func
 def side_rank(shapes: Shapes, shape: Int32) -> Int32:
-    """Lower for what comes first: parts of compounds, then other convex shapes, then planes and surfaces."""
+    """Rank of a shape in this order: 0 part of a compound, 1 other convex shape, 2 plane or surface."""
     kind = shapes.shape_kind[shape]
     if kind == PLANE or kind >= TRIANGLES:
         return Int32(2)
@@ -22,7 +22,7 @@ def side_rank(shapes: Shapes, shape: Int32) -> Int32:
 
 @func
 def in_order_of_sides(shapes: Shapes, pair: Index4) -> Index4:
-    """The shapes of a pair as (a, b, 0, 0); equals stay in their order."""
+    """Shapes of a pair as (a, b, 0, 0); shapes of equal rank keep their order."""
     if side_rank(shapes, pair[0]) > side_rank(shapes, pair[1]):
         return Index4(pair[1], pair[0], 0, 0)
     return pair

@@ -1,4 +1,4 @@
-"""The stages of collision detection, a kernel for each."""
+"""The stages of collision detection, one kernel each."""
 
 import warp as wp
 
@@ -18,7 +18,7 @@ def broad_phase_kernel(
     pairs: Pairs,
     first_world: Int32,
 ):
-    """Pairs of shapes whose bounds meet."""
+    """Find the pairs of shapes whose bounding boxes meet."""
     find_pairs(shapes, model, state, scratch, settings, pairs, first_world + wp.tid())
 
 
@@ -26,5 +26,5 @@ def broad_phase_kernel(
 def narrow_phase_kernel(
     shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, first_world: Int32
 ):
-    """Contacts of these pairs; those that persist keep their impulses."""
+    """Find the contacts of these pairs; contacts that persist keep their impulses."""
     find_contacts(shapes, model, state, contacts, pairs, first_world + wp.tid())

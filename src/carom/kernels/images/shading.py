@@ -1,4 +1,4 @@
-"""The colour of a pixel: texture, Phong's light and shadows."""
+"""Shading: the colour of a pixel from texture, Phong lighting and shadows."""
 
 import warp as wp
 
@@ -7,17 +7,17 @@ from carom.kernels.types import Int32, Vector2, Vector3, Vector4, func, real
 
 _WHITE = wp.constant(wp.uint32(0xFFFFFFFF))
 _OPAQUE = wp.constant(wp.uint32(0xFF000000))
-# Texture coordinates of this size or more are taken for whole numbers.
+# Texture coordinates of at least this magnitude count as whole numbers.
 _WHOLE_NUMBERS = real(1.0e9)
 
 
 @func
 def wrapped(coordinate: real, size: Int32) -> Int32:
     """Column or row of the texel at a texture coordinate; textures repeat."""
-    # Written so that NaN fails as well: it would be no index.
+    # Written so that NaN fails the test as well: NaN cannot become an index.
     if not (wp.abs(coordinate) < _WHOLE_NUMBERS):
         return 0
-    # Cutting off the decimals takes one instruction; rounding down takes a call.
+    # Truncation takes one instruction; rounding down takes a function call.
     fraction = coordinate - real(Int32(coordinate))
     if fraction < 0.0:
         fraction += 1.0
@@ -26,7 +26,7 @@ def wrapped(coordinate: real, size: Int32) -> Int32:
 
 @func
 def surface_colour(scene: Scene, part: Int32, uv: Vector2) -> Vector3:
-    """Red, green and blue, whole numbers of 0..255, before any light."""
+    """Colour of a surface before lighting: red, green and blue, whole numbers of 0..255."""
     colour = Vector3(255.0, 255.0, 255.0)
     texture = scene.part_texture[part]
     if texture >= 0:
@@ -49,7 +49,7 @@ def is_lit(light: View, lighting: Lighting, point: Vector4) -> bool:
         return True
     x = wp.round(point[0] / point[3])
     y = wp.round(point[1] / point[3])
-    # Written so that NaN fails as well.
+    # Written so that NaN fails the test as well.
     if not (x >= 0.0 and y >= 0.0):
         return True
     if not (x < real(light.width) and y < real(light.height)):
@@ -63,12 +63,12 @@ def is_lit(light: View, lighting: Lighting, point: Vector4) -> bool:
 def lit(
     lighting: Lighting, towards: Vector3, up: Vector3, colour: Vector3, normal: Vector3, shadow: real
 ) -> wp.uint32:
-    """A surface's colour under the light, packed.
+    """Packed RGBA colour of a surface under the light.
 
-    `towards` points to the light and `up` upwards, both in the frame of the normal.
+    `towards` is the direction to the light and `up` the vertical, both in the frame of the normal.
     """
     facing = wp.dot(normal, towards)
-    # The highlight is where the light would be mirrored straight up, wherever the eye is: as in PyBullet.
+    # As in PyBullet, the highlight is where the light is reflected straight up, regardless of the camera.
     shine = wp.max(2.0 * facing * wp.dot(normal, up) - wp.dot(towards, up), 0.0)
     directed = shadow * (lighting.diffuse * wp.max(facing, 0.0) + lighting.specular * shine * shine)
     result = _OPAQUE
@@ -81,7 +81,7 @@ def lit(
 
 @func
 def shade_background(picture: Picture, first: Int32, end: Int32):
-    """Fills pixels that show nothing."""
+    """Fill pixels that show no triangle."""
     for pixel in range(first, end):
         picture.rgba[pixel] = _WHITE
         picture.depth[pixel] = wp.float32(1.0)
@@ -100,7 +100,7 @@ def shade_span(
     first_column: Int32,
     end_column: Int32,
 ):
-    """Writes colour, depth, distance and label of neighbouring pixels that show the same facet."""
+    """Write colour, depth, distance and label of neighbouring pixels that show the same facet."""
     line = row * view.width
     facet = view.pixel_facet[line + first_column]
     if facet < 0:
@@ -111,7 +111,7 @@ def shade_span(
     part = scene.triangle_part[triangle]
     link = scene.part_link[part]
     label = scene.part_label[part]
-    # Turning the light into the frame of the link spares turning every normal out of it.
+    # Rotating the light's direction into the link frame saves rotating every normal into world axes.
     to_link = wp.transpose(picture.link_rotation[link])
     towards = to_link * lighting.direction
     up = to_link * Vector3(0.0, 0.0, 1.0)
@@ -134,7 +134,7 @@ def shade_span(
         u = first[0] * x + first_start
         v = second[0] * x + second_start
         w = third[0] * x + third_start
-        # Perspective-correct: the weights of the corners in space, not on the screen.
+        # Perspective-correct interpolation: the corners' weights in space, not on the screen.
         distance = 1.0 / (u + v + w)
         u = u * distance
         v = v * distance
@@ -163,7 +163,7 @@ def shade_span(
 
 @func
 def shade_row(scene: Scene, view: View, light: View, picture: Picture, lighting: Lighting, row: Int32):
-    """Writes the pixels of a row whose facets are known, one facet after the other."""
+    """Write the pixels of a row whose facets are known, one span of equal facets after the other."""
     line = row * view.width
     first = Int32(0)
     for column in range(1, view.width + 1):

@@ -1,8 +1,9 @@
-"""Which triangle is seen in which pixel.
+"""Visibility: which triangle is seen in which pixel.
 
-A triangle is filled without being clipped: with its corners in homogeneous pixel coordinates (x w, y w, w),
-the weights that express (column, row, 1) by the three corners are affine in column and row, all three are
-positive inside and only there, and so is the depth. What lies behind the eye has a negative weight.
+Triangles are rasterised without clipping, in homogeneous pixel coordinates (x w, y w, w) of their corners.
+The weights with which the three corners sum to (column, row, 1) are affine functions of column and row, and
+so is the depth. All three weights are positive inside the triangle and only there. A point behind the camera
+has a negative weight.
 """
 
 import warp as wp
@@ -10,14 +11,14 @@ import warp as wp
 from carom.kernels.structs import Scene, View
 from carom.kernels.types import Index4, Int32, Matrix4, Vector2, Vector3, Vector4, func, real
 
-# Share of a pixel by which one may lie outside an edge and still be on it.
+# A pixel that is this far outside an edge still counts as on the edge [pixels].
 _ON_EDGE = real(1.0e-7)
 _HUGE = real(1.0e9)
 
 
 @func
 def is_beyond(matrix: Matrix4, plane: Vector4, centre: Vector3, radius: real) -> bool:
-    """A ball lies wholly where a linear function of the homogeneous pixel coordinates is negative."""
+    """Whether a linear function of the homogeneous pixel coordinates is negative in a whole sphere."""
     f = plane * matrix
     across = wp.length(Vector3(f[0], f[1], f[2]))
     return f[0] * centre[0] + f[1] * centre[1] + f[2] * centre[2] + f[3] + radius * across < 0.0
@@ -25,7 +26,7 @@ def is_beyond(matrix: Matrix4, plane: Vector4, centre: Vector3, radius: real) ->
 
 @func
 def is_out_of_sight(scene: Scene, view: View, part: Int32, matrix: Matrix4) -> bool:
-    """No pixel of the view can show a part."""
+    """Whether the bounding sphere of a part is outside the view, so that no pixel can show the part."""
     centre = scene.part_centre[part]
     radius = scene.part_radius[part]
     right = real(view.width - 1)
@@ -42,7 +43,7 @@ def is_out_of_sight(scene: Scene, view: View, part: Int32, matrix: Matrix4) -> b
 
 @func
 def widened(bounds: Vector4, p: Vector4) -> Vector4:
-    """Bounds that take in a point in front of the eye as well."""
+    """Bounds extended to include a point; unlimited if the point is not in front of the camera."""
     if p[3] <= 0.0:
         return Vector4(-_HUGE, -_HUGE, _HUGE, _HUGE)
     x = p[0] / p[3]
@@ -52,7 +53,10 @@ def widened(bounds: Vector4, p: Vector4) -> Vector4:
 
 @func
 def widened_by_edge(bounds: Vector4, a: Vector4, b: Vector4) -> Vector4:
-    """Bounds that take in the first corner of an edge and where it meets the near plane."""
+    """Bounds extended to include an edge's first corner and the edge's intersection with the near plane.
+
+    The corner is left out if it is before the near plane.
+    """
     above_a = a[2] + a[3]
     above_b = b[2] + b[3]
     result = bounds
@@ -65,7 +69,7 @@ def widened_by_edge(bounds: Vector4, a: Vector4, b: Vector4) -> Vector4:
 
 @func
 def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_sided: Int32) -> bool:
-    """Prepares a triangle to be filled; false if it cannot be seen."""
+    """Prepare a triangle to be filled; returns false if it cannot be visible."""
     a = view.vertex_pixel[corners[0]]
     b = view.vertex_pixel[corners[1]]
     c = view.vertex_pixel[corners[2]]
@@ -83,7 +87,7 @@ def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_
     top = wp.max(wp.ceil(bounds[1] - _ON_EDGE), 0.0)
     right = wp.min(wp.floor(bounds[2] + _ON_EDGE), real(view.width - 1))
     bottom = wp.min(wp.floor(bounds[3] + _ON_EDGE), real(view.height - 1))
-    # Written so that NaN fails as well.
+    # Written so that NaN fails the test as well.
     if not (left <= right and top <= bottom):
         return False
     scale = 1.0 / volume
@@ -101,7 +105,7 @@ def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_
 
 @func
 def project_chunk(scene: Scene, view: View, chunk: Int32):
-    """Fills the facets of a chunk: they begin at the index of its first triangle."""
+    """Write the facets of a chunk, from the index of its first triangle on."""
     first_part = scene.chunk_first_part[chunk]
     first_facet = scene.part_first_triangle[first_part]
     facet = Int32(first_facet)
@@ -133,7 +137,7 @@ def where_positive(span: Vector2, slope: real, start: real) -> Vector2:
 
 @func
 def fill_facet(view: View, facet: Int32, first_row: Int32, end_row: Int32):
-    """Enters a facet in the rows first_row <= row < end_row where nothing nearer has been entered."""
+    """Write a facet to the pixels of rows first_row <= row < end_row that show no nearer facet so far."""
     box = view.facet_box[facet]
     top = wp.max(box[1], first_row)
     bottom = wp.min(box[3], end_row - 1)
@@ -163,7 +167,7 @@ def fill_facet(view: View, facet: Int32, first_row: Int32, end_row: Int32):
 
 @func
 def fill_rows(scene: Scene, view: View, first_row: Int32, end_row: Int32):
-    """Finds the nearest facet of every pixel in some rows; of equally near ones the last."""
+    """Find the nearest facet of every pixel in a range of rows; the last one of equally near facets."""
     for pixel in range(first_row * view.width, end_row * view.width):
         view.pixel_depth[pixel] = 1.0
         view.pixel_facet[pixel] = -1

@@ -1,9 +1,9 @@
-"""Runs of four-wide blocks: products and sums that the solver spends its time on.
+"""Products and sums over runs of blocks of four numbers, where the solver spends most of its time.
 
-Kernels see one element of an array at a time, and finding it costs more than the arithmetic. These
-functions find a run once; they are written in what Warp compiles kernels to, on CPU and GPU alike.
-Blocks are as wide as vector instructions: compilers are asked not to look for others across blocks,
-which they would have to shuffle together.
+In a kernel every access to an array element computes its address, which costs more than the arithmetic.
+These functions compute the address of a run once. They are written in C++, the language to which Warp
+translates kernels, for CPU and GPU alike. A block is as wide as a vector instruction. So compilers are told
+not to vectorise across blocks, which would need shuffles.
 """
 
 import warp as wp
@@ -62,7 +62,7 @@ def add_multiple(
 def write_multiple(
     b: Vector4Rows, start_b: Int32, factor: real, a: Vector4Rows, start_a: Int32, world: Int32, count: Int32
 ):
-    """Set `count` blocks of `b` to `factor` times those of `a`, which may be the same."""
+    """Set `count` blocks of `b` to `factor` times those of `a`, which may be the same blocks."""
     ...
 
 
@@ -97,7 +97,7 @@ def fill_zero(a: Vector4Rows, start: Int32, world: Int32, count: Int32):
 def combine4(
     a: Vector4Rows, start_a: Int32, b: Vector4Rows, start_b: Int32, world: Int32, count: Int32
 ) -> Vector4:
-    """Sum of the vectors of `a`, each times an entry of the `count` blocks, at least one, of `b`."""
+    """Linear combination of vectors of `a`, with the entries of `count` blocks (at least 1) of `b`."""
     ...
 
 
@@ -131,7 +131,7 @@ def combine4(
 def combine8(
     a: Vector4Rows, start_a: Int32, b: Vector4Rows, start_b: Int32, world: Int32, count: Int32
 ) -> Vector8:
-    """As `combine4`, of vectors of eight, two in a row of `a`."""
+    """As `combine4`, for vectors of eight numbers, each in two consecutive blocks of `a`."""
     ...
 
 

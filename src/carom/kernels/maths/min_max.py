@@ -1,6 +1,6 @@
 """Minimum, maximum and clamp without a test for NaN.
 
-`wp.min`, `wp.max` and `wp.clamp` test for NaN first; these are one instruction for each number.
+`wp.min`, `wp.max` and `wp.clamp` test for NaN first; these functions take one instruction per comparison.
 """
 
 import warp as wp
@@ -28,13 +28,13 @@ def within_bounds(value: real, lower: real, upper: real) -> real:
 
 @func
 def lower_corner(a: Vector3, b: Vector3) -> Vector3:
-    """Minimum of two points, axis by axis."""
+    """Minimum of two points, component by component."""
     return Vector3(minimum(a[0], b[0]), minimum(a[1], b[1]), minimum(a[2], b[2]))
 
 
 @func
 def upper_corner(a: Vector3, b: Vector3) -> Vector3:
-    """Maximum of two points, axis by axis."""
+    """Maximum of two points, component by component."""
     return Vector3(maximum(a[0], b[0]), maximum(a[1], b[1]), maximum(a[2], b[2]))
 
 

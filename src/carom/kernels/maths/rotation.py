@@ -1,4 +1,4 @@
-"""Quaternions and rotation matrices, as kernels use them. Quaternions are (x, y, z, w)."""
+"""Quaternions, in the order (x, y, z, w), and rotation matrices."""
 
 import math
 
@@ -7,7 +7,7 @@ import warp as wp
 from carom.kernels.maths.min_max import maximum
 from carom.kernels.types import Int32, Matrix3, Quaternion, Vector3, func, real
 
-# An orientation is not meant to turn by more than this in one step (as in Bullet).
+# Bound on the rotation in one step [rad], as in Bullet.
 MAX_ANGLE_PER_STEP = real(0.25 * math.pi)
 _SMALL_RATE = real(0.001)
 
@@ -28,7 +28,7 @@ def axis_rotation(axis: Vector3, angle: real) -> Quaternion:
 
 @func
 def rotation_matrix(q: Quaternion) -> Matrix3:
-    """The rotation matrix of the unit quaternion `q`."""
+    """Rotation matrix of the unit quaternion `q`."""
     xs, ys, zs = q[0] + q[0], q[1] + q[1], q[2] + q[2]
     wx, wy, wz = q[3] * xs, q[3] * ys, q[3] * zs
     xx, xy, xz = q[0] * xs, q[0] * ys, q[0] * zs
@@ -42,7 +42,7 @@ def rotation_matrix(q: Quaternion) -> Matrix3:
 
 @func
 def canonical(q: Quaternion) -> Quaternion:
-    """Of `q` and `-q`, which are the same rotation, the one a rotation matrix converts back to."""
+    """Return `q` or `-q`, the same rotation: the one that conversion from the rotation matrix gives."""
     lead = q[3]
     if q[3] * q[3] <= 0.25:
         lead = q[0]
@@ -57,10 +57,10 @@ def canonical(q: Quaternion) -> Quaternion:
 
 @func
 def rotation_step(rate: Vector3, dt: real) -> Quaternion:
-    """Rotation after turning for `dt` at the angular velocity `rate`, by the exponential map.
+    """Rotation during the time `dt` at the angular velocity `rate`, by the exponential map.
 
-    Beyond the bound per step, which is Bullet's, the rotation falls short of the angle; the result is
-    then not of unit length.
+    If the angle exceeds Bullet's bound per step, the rotation is smaller than the angle, and the quaternion
+    is not of unit length.
     """
     speed = wp.length(rate)
     if speed * dt > MAX_ANGLE_PER_STEP:

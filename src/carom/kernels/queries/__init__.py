@@ -1,1 +1,1 @@
-"""Rays, nearest points, lists of contacts."""
+"""Queries: ray tests, nearest points, lists and sums of contacts."""

@@ -1,4 +1,4 @@
-"""The nearest points of two shapes at any distance, or the deepest ones."""
+"""Nearest points of two shapes at any distance, or deepest points if the shapes overlap."""
 
 import warp as wp
 
@@ -19,19 +19,19 @@ from carom.layouts.contacts import PLACED, READINESS
 def nearest_convex(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, max_distance: real
 ) -> Int32:
-    """The nearest candidate of two shapes, as `nearest_in_order`, if neither is a surface.
+    """Write the nearest candidate, as `nearest_in_order`, if neither shape is a mesh or height field.
 
     Args:
         shapes: All shapes.
-        pairs: Room for intermediate results, and the poses of the shapes.
+        pairs: Workspace for intermediate results, and the poses of the shapes.
         world: The world.
         a: Row of one shape.
-        b: Row of the other.
+        b: Row of the other shape.
         core_a: Core of a.
         max_distance: Largest distance of interest [m].
     """
     if core_a.kind == BOX and shapes.shape_kind[b] == PLANE:
-        # Of the corners of a face that is flat on the plane Bullet takes a certain one.
+        # If a face is flat on the plane, Bullet takes a particular one of its corners.
         return collide_plane_deepest(
             with_sharp_edges(core_a), shapes.vertex_position, pairs.shape_position[world, b],
             pairs.shape_frame[world, b] * shapes.shape_size[b], max_distance, pairs.candidate_terms, world,
@@ -59,7 +59,7 @@ def nearest_convex(
 def nearest_in_order(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real
 ) -> Int32:
-    """The nearest candidate of two shapes in the order of `narrow_phase.in_order`: 1, or 0 if too far."""
+    """Write the nearest candidate, as `nearest`, of two shapes in the order of `narrow_phase.in_order`."""
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
     if kind_a == PLANE or kind_a >= TRIANGLES:
@@ -76,14 +76,14 @@ def nearest_in_order(
 
 @func
 def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real) -> Int32:
-    """Write the nearest candidate of two shapes as the first; returns 1, or 0 if they are too far apart.
+    """Write the nearest candidate of two shapes to row 0; returns 1, or 0 if they are too far apart.
 
     Args:
         shapes: All shapes.
-        pairs: Room for intermediate results, and the poses of the shapes.
+        pairs: Workspace for intermediate results, and the poses of the shapes.
         world: The world.
         a: Row of one shape.
-        b: Row of the other; the normal points from it towards a.
+        b: Row of the other shape; the normal points from b towards a.
         max_distance: Largest distance of interest [m].
     """
     order = in_order(shapes, a, b)
@@ -95,13 +95,13 @@ def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_
 
 @kernel
 def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, count: Int32, max_distance: real):
-    """Nearest points of given pairs of shapes, one pair after the other.
+    """Find the nearest points of given pairs of shapes, one pair after the other.
 
     Args:
         shapes: All shapes.
-        pairs: Room for intermediate results, and the poses of the shapes, from `place_shapes_kernel`.
-        searches: The pairs, and room for what is found.
-        count: Number of them.
+        pairs: Workspace for intermediate results, and the shapes' poses, from `place_shapes_kernel`.
+        searches: The pairs of shapes, and the output.
+        count: Number of pairs.
         max_distance: Largest distance of interest [m].
     """
     world = wp.tid()
@@ -125,7 +125,7 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
 
 @kernel
 def place_shapes_kernel(settings: Settings, shapes: Shapes, state: State, pairs: Pairs):
-    """World poses and bounds of all shapes, for queries between steps."""
+    """Write the world poses and bounds of all shapes, for queries between steps."""
     world = wp.tid()
     place_shapes(shapes, state, settings, pairs, world)
     pairs.count_pairs[world, READINESS] = PLACED

@@ -1,4 +1,4 @@
-"""Contacts as users read them: those of chosen bodies, with forces instead of impulses."""
+"""Lists of contacts for users: contacts of selected bodies, with forces instead of impulses."""
 
 from carom.kernels.structs import ContactReport, Contacts, Places
 from carom.kernels.types import Int32, func, kernel, real
@@ -7,7 +7,7 @@ from carom.layouts.queries import ANY_LINK
 
 @func
 def fits(places: Places, row: Int32, body: Int32, link: Int32) -> bool:
-    """Whether a row is that of a link of a body; negative bodies and links from `ANY_LINK` down are any."""
+    """Whether a link row is a link of a body; `body` < 0 and `link` <= `ANY_LINK` match any."""
     return (body < 0 or places.place_body[row] == body) and (
         link <= ANY_LINK or places.place_link[row] == link
     )
@@ -26,19 +26,19 @@ def report_contacts_kernel(
     link_b: Int32,
     time_step: real,
 ):
-    """List the contacts of two links, bodies or any bodies.
+    """List the contacts between two bodies or two of their links; either side may be any body.
 
     Args:
         contacts: All contacts.
-        places: What their links are.
-        report: Room for as many as there are.
+        places: Body and link index of each link row.
+        report: Output, with room for all contacts.
         world: The world.
-        count: Number of them.
-        body_a: One body, which comes first in the report; negative for any, which then changes no places.
-        link_a: Its link; see `fits`.
+        count: Number of contacts.
+        body_a: Body a of every listed contact; negative for any body, and then no sides are exchanged.
+        link_a: Link of this body; see `fits`.
         body_b: The other body.
-        link_b: Its link.
-        time_step: Of a step [s].
+        link_b: Link of the other body.
+        time_step: Duration of a step, to convert impulses to forces [s].
     """
     listed = Int32(0)
     for row in range(count):

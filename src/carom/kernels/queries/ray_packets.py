@@ -1,7 +1,7 @@
-"""Four neighbouring rays against boxes at once.
+"""Ray packets: four consecutive rays are tested against a box at once.
 
-What is done to four numbers alike takes one instruction, and rays that are cast together mostly meet the
-same boxes.
+The same operation on four numbers takes one instruction (SIMD), and rays that are cast together mostly meet
+the same boxes.
 """
 
 import warp as wp
@@ -11,35 +11,35 @@ from carom.kernels.structs import Rays
 from carom.kernels.types import Int32, Vector3, Vector4, func, real
 
 LANES = 4
-# Limit of a ray that is no ray.
+# Limit of a lane without a valid ray.
 NOWHERE = real(-1.0)
 
 
 @wp.struct
 class Packet:
-    """Four rays, which are lanes here."""
+    """Four rays, one in each lane."""
 
     first: Int32  # ray in the first lane
-    end: Int32  # after that in the last one
+    end: Int32  # ray after the one in the last lane
     start_x: Vector4
     start_y: Vector4
     start_z: Vector4
-    inverse_x: Vector4  # one over how far it goes along the axis
+    inverse_x: Vector4  # reciprocal of the ray's extent along the axis
     inverse_y: Vector4
     inverse_z: Vector4
 
 
 @func
 def way_of(rays: Rays, ray: Int32) -> Vector3:
-    """From the start of a ray to its end."""
+    """Vector from the start of a ray to its end."""
     return rays.ray_end[ray] - rays.ray_start[ray]
 
 
 @func
 def packet_of(rays: Rays, first: Int32, count: Int32):
-    """The rays from `first` on, and their limits: fractions after which nothing matters to them.
+    """Packet of the rays from `first` on, and their limits: fractions after which hits are ignored.
 
-    Nothing at all matters to those that are missing or not finite.
+    Rays that are missing or not finite get the limit `NOWHERE`, so they hit nothing.
     """
     packet = Packet()
     limit = Vector4(NOWHERE, NOWHERE, NOWHERE, NOWHERE)
@@ -64,7 +64,7 @@ def packet_of(rays: Rays, first: Int32, count: Int32):
 
 @func
 def splat(number: real) -> Vector4:
-    """A number for each lane."""
+    """Vector with the same number in each lane."""
     return Vector4(number, number, number, number)
 
 
@@ -92,7 +92,7 @@ def maximum(a: Vector4, b: Vector4) -> Vector4:
 
 @func
 def length_within(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> Vector4:
-    """Fraction of each ray, as far as it matters, that is in a box; negative if it does not meet it."""
+    """Fraction of each ray, up to its limit, that is inside a box; negative if the ray misses the box."""
     one_x = wp.cw_mul(splat(lower[0]) - packet.start_x, packet.inverse_x)
     one_y = wp.cw_mul(splat(lower[1]) - packet.start_y, packet.inverse_y)
     one_z = wp.cw_mul(splat(lower[2]) - packet.start_z, packet.inverse_z)
@@ -108,7 +108,7 @@ def length_within(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3
 
 @func
 def any_within(lengths: Vector4) -> bool:
-    """Whether any of the lengths of `length_within` is that of a ray that meets the box."""
+    """Whether any ray meets the box, by the lengths that `length_within` returned."""
     return lengths[0] >= 0.0 or lengths[1] >= 0.0 or lengths[2] >= 0.0 or lengths[3] >= 0.0
 
 
@@ -120,7 +120,7 @@ def meets(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> boo
 
 @func
 def lane_of(numbers: Vector4, lane: Int32) -> real:
-    """The number of a lane; by comparisons, as an index would move the vector out of its register."""
+    """Number in a lane, selected by comparisons: an index would move the vector out of its register."""
     return wp.where(
         lane < 2, wp.where(lane == 0, numbers[0], numbers[1]), wp.where(lane == 2, numbers[2], numbers[3])
     )
@@ -128,7 +128,7 @@ def lane_of(numbers: Vector4, lane: Int32) -> real:
 
 @func
 def with_lane(numbers: Vector4, lane: Int32, number: real) -> Vector4:
-    """The numbers with another one in a lane."""
+    """Vector with the number in one lane replaced."""
     return Vector4(
         wp.where(lane == 0, number, numbers[0]),
         wp.where(lane == 1, number, numbers[1]),

@@ -1,10 +1,10 @@
-"""Where a ray enters a convex shape, in the frame of the shape.
+"""Ray tests with convex shapes, in the frame of the shape.
 
-Rays go from `start` to `start + way`; places on them are fractions of `way`. A ray that starts inside
-does not enter, unless it starts in the margin around the core of a shape, towards the core: then it hits at
-once, as in PyBullet. The core of a ball is its middle, that of a capsule its axis; boxes, cylinders and
-hulls have thin margins. A ray without length hits nothing. Each function returns the fraction, which is
-`MISS` where there is no hit, and the outward normal.
+A ray goes from `start` to `start + way`; positions on it are fractions of `way`. A ray that starts inside a
+shape does not hit it, with one exception, as in PyBullet: a ray that starts in the margin around the core of
+a shape and goes towards the core hits at fraction 0. The core of a sphere is its centre, that of a capsule
+its axis; boxes, cylinders and hulls have thin margins. A ray of length zero hits nothing. Each function
+returns the fraction, which is `MISS` if there is no hit, and the outward normal.
 """
 
 import warp as wp
@@ -15,12 +15,12 @@ from carom.layouts.contacts import MARGIN
 MISS = real(2.0)
 TINY = real(1.0e-30)
 THICKNESS = real(MARGIN)
-"""Of what surrounds the core of boxes and cylinders [m]."""
+"""Thickness of the margin around the core of boxes and cylinders [m]."""
 
 
 @func
 def ray_from_margin(from_core: Vector3, way: Vector3):
-    """From a place in the margin, given relative to the nearest place of the core."""
+    """Ray that starts in the margin; `from_core` is its start relative to the core's nearest point."""
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
     if wp.dot(from_core, way) < 0.0:
@@ -31,14 +31,14 @@ def ray_from_margin(from_core: Vector3, way: Vector3):
 
 @func
 def beyond(x: real, core: real) -> real:
-    """How far a coordinate is beyond a core that reaches as far on both sides, if it reaches anywhere."""
+    """Signed distance of a coordinate from the interval [-core, core]; `core` < 0 counts as 0."""
     max_distance = wp.max(core, real(0.0))
     return x - wp.clamp(x, -max_distance, max_distance)
 
 
 @func
 def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
-    """A ball."""
+    """Ray against a sphere."""
     offset = start - center
     a = wp.length_sq(way)
     b = wp.dot(offset, way)
@@ -58,7 +58,7 @@ def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
 
 @func
 def ray_box(start: Vector3, way: Vector3, size: Vector3):
-    """A box around the origin with half extents `size`."""
+    """Ray against a box around the origin with half extents `size`."""
     enter = real(-1.0)
     leave = real(1.0)
     normal = Vector3(0.0, 0.0, 0.0)
@@ -94,7 +94,7 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
 
 @func
 def ray_tube(start: Vector3, way: Vector3, radius: real, half_length: real):
-    """The side of a cylinder along z, from outside."""
+    """Ray from outside against the lateral surface of a cylinder along z."""
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
     a = way[0] * way[0] + way[1] * way[1]
@@ -112,7 +112,7 @@ def ray_tube(start: Vector3, way: Vector3, radius: real, half_length: real):
 
 @func
 def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
-    """A cylinder along z; the side first, then the caps."""
+    """Ray against a cylinder along z: the lateral surface first, then the caps."""
     fraction, normal = ray_tube(start, way, radius, half_length)
     aside = wp.sqrt(start[0] * start[0] + start[1] * start[1])
     if aside <= radius and wp.abs(start[2]) <= half_length:
@@ -130,7 +130,7 @@ def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
 
 @func
 def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
-    """A capsule along z: the first of its side and its two balls."""
+    """Ray against a capsule along z: the first hit of its lateral surface and its two spheres."""
     nearest = start - Vector3(0.0, 0.0, wp.clamp(start[2], -half_length, half_length))
     fraction = real(MISS)
     normal = Vector3(0.0, 0.0, 0.0)
@@ -149,7 +149,7 @@ def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
 
 @func
 def nearest_face(face_plane: Vectors4, first_face: Int32, face_count: Int32, place: Vector3) -> Vector3:
-    """The outward normal of the face of a hull that a place within is nearest to."""
+    """Outward normal of the face of a hull that is nearest to a point inside the hull."""
     highest = real(-1.0e30)
     nearest = Vector3(0.0, 0.0, 0.0)
     for face in range(first_face, first_face + face_count):
@@ -166,7 +166,7 @@ def nearest_face(face_plane: Vectors4, first_face: Int32, face_count: Int32, pla
 def ray_hull(
     start: Vector3, way: Vector3, face_plane: Vectors4, first_face: Int32, face_count: Int32, margin: real
 ):
-    """A convex polyhedron whose faces are moved out by `margin`."""
+    """Ray against a convex polyhedron whose faces are moved outwards by `margin`."""
     enter = real(-1.0)
     leave = real(1.0)
     normal = Vector3(0.0, 0.0, 0.0)
@@ -197,7 +197,7 @@ def ray_hull(
 
 @func
 def ray_plane(start: Vector3, way: Vector3, normal: Vector3):
-    """A plane through the origin, from either side; the normal is that of the side hit."""
+    """Ray against a plane through the origin, from either side; the normal is that of the side hit."""
     height = wp.dot(start, normal)
     slope = wp.dot(way, normal)
     fraction = real(MISS)

@@ -1,6 +1,6 @@
-"""Where a ray meets a triangle mesh or a height field; see `ray_solids` for the conventions.
+"""Ray tests with triangle meshes and height fields; see `ray_solids` for the conventions.
 
-Triangles have two sides: the normal is that of the side hit.
+Rays hit triangles from both sides; the normal is that of the side hit.
 """
 
 import warp as wp
@@ -11,15 +11,15 @@ from carom.kernels.shapes.triangles import Region, cell_at, triangle_corners
 from carom.kernels.structs import Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 
-# Stands for one over zero.
+# Used as the reciprocal of zero.
 HUGE = real(1.0e30)
-# Triangles are larger by this share for rays, so that no ray passes between two.
+# Triangles are enlarged by this share for rays, so that no ray passes between two neighbours.
 EDGE_TOLERANCE = real(1.0e-9)
 
 
 @func
 def inverse_way(way: Vector3) -> Vector3:
-    """One over each component of a ray's way; a huge number for zero."""
+    """Reciprocals of the components of a ray's vector `way`; `HUGE` for zero."""
     result = Vector3(HUGE, HUGE, HUGE)
     for axis in range(3):
         if wp.abs(way[axis]) * HUGE > 1.0:
@@ -29,7 +29,7 @@ def inverse_way(way: Vector3) -> Vector3:
 
 @func
 def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, last: real) -> real:
-    """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if not until `last`."""
+    """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if there is none up to `last`."""
     one = wp.cw_mul(lower - start, inverse)
     other = wp.cw_mul(upper - start, inverse)
     enter = wp.max(wp.max(wp.min(one, other)), 0.0)
@@ -42,13 +42,13 @@ def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, 
 
 @func
 def comes_after(fraction: real, after: real, inclusive: bool) -> bool:
-    """Whether a hit comes after a fraction, or is at it if that counts."""
+    """Whether the fraction of a hit is greater than `after`, or equal to it if `inclusive`."""
     return fraction > after or (inclusive and fraction == after)
 
 
 @func
 def ray_triangle(start: Vector3, way: Vector3, corners: Matrix3):
-    """A triangle, its corners in columns."""
+    """Ray against a triangle whose corners are columns."""
     a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
     b = Vector3(corners[0, 1], corners[1, 1], corners[2, 1])
     c = Vector3(corners[0, 2], corners[1, 2], corners[2, 2])
@@ -79,7 +79,7 @@ def ray_mesh(
     inclusive: bool,
     last: real,
 ):
-    """The first triangle of a mesh that is hit after one fraction and not after another."""
+    """Ray against a triangle mesh: first hit that comes after `after` (see `comes_after`), up to `last`."""
     region = Region()
     leaf_count = shapes.shape_leaf_count[surface]
     best = real(MISS)
@@ -104,7 +104,7 @@ def ray_mesh(
 
 @func
 def time_to_leave(place: real, speed: real, cell: Int32) -> real:
-    """When a point that moves along an axis leaves a unit cell."""
+    """Time at which a point that moves along an axis leaves a unit cell."""
     if speed > 0.0:
         return (real(cell) + 1.0 - place) / speed
     if speed < 0.0:
@@ -122,7 +122,7 @@ def ray_field(
     inclusive: bool,
     last: real,
 ):
-    """As `ray_mesh` for a height field: walks from cell to cell under the ray."""
+    """Ray against a height field, as `ray_mesh`; goes from cell to cell under the ray."""
     center = shapes.shape_center[surface]
     size = shapes.shape_size[surface]
     best = real(MISS)
@@ -130,7 +130,7 @@ def ray_field(
     now = box_entry(start, inverse_way(way), center - size, center + size, last)
     columns = shapes.shape_columns[surface] - 1
     rows = shapes.shape_vertex_count[surface] // shapes.shape_columns[surface] - 1
-    # Places and speeds in cells.
+    # Position and velocity in units of cells.
     x = (start[0] - center[0] + size[0]) * 0.5 * real(columns) / size[0]
     y = (start[1] - center[1] + size[1]) * 0.5 * real(rows) / size[1]
     vx = way[0] * 0.5 * real(columns) / size[0]

@@ -1,4 +1,4 @@
-"""Rays against all shapes of a world."""
+"""Ray tests against all shapes of a world."""
 
 import warp as wp
 
@@ -31,7 +31,7 @@ from carom.kernels.types import Int32, Vector3, Vector4, func, kernel, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.contacts import BOUNDED, IN_HIERARCHY, LEAVES, PLANES, READINESS
 
-# The group that rays belong to: shapes whose mask leaves it out are not hit.
+# Collision group of rays: links whose mask excludes this group are not hit.
 RAY_GROUP = 1
 
 
@@ -49,7 +49,7 @@ def ray_shape(
 ):
     """Fraction at which a ray hits a shape, and the normal in world axes.
 
-    The hit comes after `after`, or is there if `inclusive`, and not after `last`.
+    Only hits at a fraction greater than `after` (or equal to it, if `inclusive`) and up to `last` count.
     """
     position = pairs.shape_position[world, shape]
     kind = shapes.shape_kind[shape]
@@ -92,7 +92,7 @@ def ray_shape(
 
 @func
 def is_visible(shapes: Shapes, shape: Int32, mask: Int32) -> bool:
-    """Whether rays with a mask hit a shape."""
+    """Whether rays with a mask can hit a shape."""
     link = shapes.shape_link[shape]
     return shapes.link_group[link] & mask != 0 and shapes.link_mask[link] & RAY_GROUP != 0
 
@@ -109,12 +109,12 @@ def hit_shape(
     lengths: Vector4,
     separation: real,
 ) -> Vector4:
-    """Keep the hits of those rays that meet the bounds of a shape, if they are better than the best so far.
+    """Test the rays that meet the bounds of a shape, and keep each hit that is nearer than the best so far.
 
-    Hits on one link that are at most `separation` apart count once.
+    Hits on one link that are at most `separation` apart (a fraction of the ray) count once.
 
     Returns:
-        Where the rays end now.
+        New limits of the rays: the fractions of the best hits.
     """
     limit = given_limit
     for ray in range(packet.first, packet.end):
@@ -125,7 +125,7 @@ def hit_shape(
             if last >= 0:
                 if shapes.shape_link[shape] == shapes.shape_link[last]:
                     after += wp.max(separation, 0.0)
-            # Hits at the same place come in the order of the shapes.
+            # Hits at the same fraction are in the order of the shapes.
             inclusive = shape > last and after == rays.ray_last_fraction[ray]
             start = rays.ray_start[ray]
             way = way_of(rays, ray)
@@ -143,7 +143,7 @@ def hit_shape(
 def next_leaf(
     pairs: Pairs, world: Int32, packet: Packet, limit: Vector4, leaf_count: Int32, node: Int32
 ) -> Int32:
-    """The first leaf that any of the rays meets, from a node on; 0 if there is none."""
+    """First leaf, from `node` on, that any of the rays meets; 0 if there is none."""
     result = node
     while result > 0:
         if meets(packet, limit, pairs.node_lower[world, result], pairs.node_upper[world, result]):
@@ -166,11 +166,11 @@ def first_hits(
     mask: Int32,
     separation: real,
 ) -> Vector4:
-    """Leave the first hits of four rays in `rays`: shape and normal; returns the fractions."""
+    """Write shape and normal of the first hits of four rays to `rays`; returns the fractions."""
     limit = given_limit
     leaf_count = pairs.count_pairs[world, LEAVES]
     count = pairs.count_pairs[world, BOUNDED]
-    # The planes come first, for most rays that hit nothing else hit the ground.
+    # Planes are tested first, because most rays that hit nothing else hit the ground.
     first = count
     end = count + pairs.count_pairs[world, PLANES]
     node = Int32(1)
@@ -205,7 +205,7 @@ def cast_packet(
     hit_number: Int32,
     separation: real,
 ):
-    """Leave the hits of four rays that come after `hit_number` others: shape, normal and fraction."""
+    """Write shape, normal and fraction of hit number `hit_number`, counted from 0, of four rays."""
     for ray in range(packet.first, packet.end):
         rays.ray_shape[ray] = -1
         rays.ray_fraction[ray] = NOWHERE
@@ -226,13 +226,13 @@ def cast_packet(
                 looking = with_lane(looking, lane, NOWHERE)
             else:
                 found = Int32(1)
-        # After the last hit there are no others, for any number asked for.
+        # If no ray has a hit in this pass, no ray has any further hits.
         remaining = wp.where(found == 1, remaining - 1, Int32(-1))
 
 
 @func
 def tell_hit(shapes: Shapes, places: Places, rays: Rays, ray: Int32):
-    """Write the hit of a ray for users, from its shape, normal and fraction."""
+    """Write body, link and position of a ray's hit for users, from its shape and fraction."""
     shape = rays.ray_shape[ray]
     if shape >= 0:
         row = shapes.shape_link[shape]
@@ -249,7 +249,7 @@ def tell_hit(shapes: Shapes, places: Places, rays: Rays, ray: Int32):
 
 @kernel
 def prepare_rays_kernel(settings: Settings, shapes: Shapes, state: State, pairs: Pairs, first_world: Int32):
-    """Poses, bounds and hierarchy of all shapes, for rays and other queries between steps."""
+    """Write poses, bounds and hierarchy of all shapes, for rays and other queries between steps."""
     world = first_world + wp.tid()
     place_shapes(shapes, state, settings, pairs, world)
     build_hierarchy(shapes, settings, pairs, world)
@@ -269,21 +269,21 @@ def rays_kernel(
     hit_number: Int32,
     separation: real,
 ):
-    """Cast the rays of some worlds; those of a world come after those of the worlds before it.
+    """Cast the rays of several worlds; rays are in the order of the worlds.
 
-    It runs `threads` times for each world, and `prepare_rays_kernel` must have run for them.
+    The kernel has `threads` threads for each world. `prepare_rays_kernel` must have run for these worlds.
 
     Args:
         shapes: All shapes.
         pairs: Poses and hierarchy.
-        places: What links are reported as.
-        rays: The rays, and room for what they hit.
-        first_world: The first of the worlds.
-        count: How many there are in each world.
-        threads: How many threads share the rays of a world.
-        mask: Groups of links that are hit.
+        places: Body and link index of each link row.
+        rays: The rays, and their hits as output.
+        first_world: Row of the first world.
+        count: Number of rays in each world.
+        threads: Number of threads that share the rays of a world.
+        mask: Collision groups of the links that rays can hit.
         hit_number: 0 for the first hit, n for the n-th after it, in the order along the ray.
-        separation: Later hits on the same link less than this fraction after one are passed over.
+        separation: After a hit, further hits on the same link within this fraction of the ray are skipped.
     """
     world = first_world + wp.tid() // threads
     start = world * count

@@ -1,4 +1,4 @@
-"""How some links touch some others, in each of many worlds."""
+"""Sums of the contacts between selected links and other links, in each of many worlds."""
 
 import warp as wp
 
@@ -10,7 +10,7 @@ from carom.layouts.contacts import THERE
 
 @func
 def is_between(touching: Touching, link: Int32, other: Int32, anything: Int32) -> bool:
-    """Whether a link is asked for, and what it touches is one of the others, or `anything` will do."""
+    """Whether a link is selected, and the link it touches is one of the others or `anything` is set."""
     return touching.link_place[link] >= 0 and (anything != 0 or touching.link_other[other] != 0)
 
 
@@ -22,10 +22,10 @@ def touching_kernel(
 
     Args:
         contacts: All contacts.
-        touching: Which links are asked for, and room for what is found.
-        links: How many are asked for.
-        anything: 1: what they touch does not matter.
-        first_world: The first of the worlds.
+        touching: The selected links, the other links, and the output.
+        links: Number of selected links.
+        anything: 1 to include contacts with any link, 0 to include contacts with the other links only.
+        first_world: Row of the first world.
     """
     world = first_world + wp.tid()
     touching.world_number[world] = 0
@@ -49,8 +49,8 @@ def touching_kernel(
             touching.world_number[world] += 1
             if contacts.contact_impulse[world, contact][0] > 0.0:
                 touching.world_touching[world] = wp.uint8(1)
-            # Normals point from b to a and the impulses along them push a away. Within a body a contact has
-            # its first link on side a.
+            # Normals point from b to a, so the impulses along them push a away from b. If both links of a
+            # contact are selected, as within a body, impulse and deepest point are those of link a.
             push = impulse_on_a(contacts, world, contact)
             nearer = contacts.contact_distance[world, contact] < touching.world_distance[world]
             if nearer:

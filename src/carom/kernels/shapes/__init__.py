@@ -1,1 +1,1 @@
-"""Narrow phase: contacts of two shapes, by their kinds."""
+"""Narrow phase: algorithms for contacts of two shapes, depending on their kinds."""

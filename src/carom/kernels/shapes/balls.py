@@ -1,4 +1,4 @@
-"""A ball against a box or a cylinder: the nearest point of the other core."""
+"""Contact candidate of a sphere on a box or cylinder: the nearest point of the core of box or cylinder."""
 
 import warp as wp
 
@@ -12,9 +12,9 @@ TINY = real(1.0e-15)
 
 @func
 def nearest_in_box(point: Vector3, size: Vector3):
-    """Nearest point of a box's surface, normal and distance there; all in its frame.
+    """Nearest point of a box's surface to a point, and normal and distance there; all in the box's frame.
 
-    Inside, the nearest face counts and the distance is negative.
+    For a point inside the box, the nearest face is used and the distance is negative.
     """
     nearest = wp.max(-size, wp.min(point, size))
     offset = point - nearest
@@ -36,7 +36,7 @@ def nearest_in_box(point: Vector3, size: Vector3):
 
 @func
 def nearest_in_cylinder(point: Vector3, radius: real, half_length: real):
-    """Nearest point of a cylinder's surface, normal and distance there; as `nearest_in_box`."""
+    """Nearest point of a cylinder's surface to a point, and normal and distance, as `nearest_in_box`."""
     radial = wp.sqrt(point[0] * point[0] + point[1] * point[1])
     outward = Vector3(1.0, 0.0, 0.0)
     if radial > TINY:
@@ -62,7 +62,11 @@ def nearest_in_cylinder(point: Vector3, radius: real, half_length: real):
 def collide_ball(
     center: Vector3, radius: real, core: Core, max_distance: real, candidates: Vector8Rows, world: Int32
 ) -> Int32:
-    """Candidate of shape a, a ball, on shape b, the core of a box or of a cylinder; returns their number."""
+    """Write the candidate of a sphere, shape a, on the core of a box or cylinder, shape b.
+
+    Returns:
+        Number of candidates: 1, or 0 if the shapes are too far apart.
+    """
     local = wp.transpose(core.frame) * (center - core.position)
     if core.kind == BOX:
         nearest, normal, distance = nearest_in_box(local, core.size)

@@ -1,4 +1,4 @@
-"""Two boxes with sharp edges: separating axis test, for the axis along which they overlap least."""
+"""Separating axis test of two boxes with sharp edges: finds the axis along which they overlap least."""
 
 import warp as wp
 
@@ -8,23 +8,25 @@ from carom.kernels.shapes.cores import toward
 from carom.kernels.shapes.segments import nearest_places
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
 
-# What `box_axis` found: a face of a, a face of b, no axis within reach, or 3 + 3 i + j for the edges
+# Result of `box_axis`: the normal of a face of a, or of b; boxes too far apart; or 3 + 3 i + j for the edges
 # along axis i of a and axis j of b.
 FACE_A, FACE_B, APART, EDGES = 0, 1, 2, 3
-# Edges, and faces of b, must be this share better than faces of a, lest contacts alternate; ...
+# The gap of an edge axis must exceed that of a face axis by this share, so that contacts do not alternate.
 EDGE_SHARE = real(0.05)
-# ... edges also by this share of the thinnest box, as all are alike where boxes just touch.
+# It must be larger by this share of the smallest half extent as well: where boxes just touch, all gaps are
+# equal.
 EDGE_SIZE_SHARE = real(1.0e-4)
+# The gap of a face axis of b must exceed that of a face axis of a by this share.
 FACE_SHARE = real(1.0e-6)
-# Faces this share of the boxes apart touch: where they just do, rounding must not decide.
+# Tolerance on the largest gap, as a share of the boxes' size: rounding must not decide whether boxes touch.
 TOUCHING_SHARE = real(1.0e-12)
-# Squared sine of the angle below which edges are parallel: faces tell all.
+# Squared sine of the angle below which edges are parallel; the face axes are then sufficient.
 PARALLEL = real(1.0e-8)
 
 
 @func
 def main_axis(direction: Vector3) -> Int32:
-    """The axis along which a vector is longest."""
+    """Axis of the component of a vector with the largest magnitude."""
     size = wp.abs(direction)
     axis = Int32(0)
     if size[1] > size[axis]:
@@ -45,13 +47,13 @@ def box_axis(
         half_a: Half extents of a.
         frame_b: Rotation matrix of b.
         half_b: Half extents of b.
-        offset: From the centre of a to that of b, in world axes.
-        max_distance: The test ends at an axis along which they are further apart than this.
+        offset: Vector from the centre of a to that of b, in world axes.
+        max_distance: The test ends at an axis along which the boxes are further apart than this.
 
     Returns:
-        What it is (see `FACE_A`), the unit axis from b towards a in world axes, and the distance
-        along it, negative where they overlap. Where the centres coincide along the axis, it is the
-        negative one.
+        The kind of axis (see `FACE_A`), its unit vector from b towards a in world axes, and the distance of
+        the boxes along it, negative where they overlap. If the centres coincide along the axis, the unit
+        vector has the negative direction of the axis.
     """
     turn = wp.transpose(frame_a) * frame_b
     t = wp.transpose(frame_a) * offset
@@ -94,7 +96,7 @@ def box_axis(
         i2 = (i + 2) % 3
         length_sq = 1.0 - turn[i, j] * turn[i, j]
         if length_sq > PARALLEL:
-            # The cross product of unit vector i with column j, and what both boxes reach along it.
+            # Offset and extents of the boxes along the cross product of axis i of a with axis j of b.
             along = t[i2] * turn[i1, j] - t[i1] * turn[i2, j]
             max_distance_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
             max_distance_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
@@ -122,7 +124,7 @@ def box_edge_points(
     code: Int32,
     normal: Vector3,
 ):
-    """Nearest points of the edges that `box_axis` found: on a, on b."""
+    """Nearest points, on a and on b, of the edges that `box_axis` found."""
     i = (code - EDGES) // 3
     j = (code - EDGES) % 3
     middle_a = center_a

@@ -1,4 +1,4 @@
-"""Contact points of two touching faces: one is clipped by the sides of the other."""
+"""Contact points of two touching faces: one face is clipped at the sides of the other."""
 
 import warp as wp
 
@@ -14,7 +14,7 @@ from carom.layouts.codes import BOX
 def clip_by_side(
     polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32, point: Vector3, outward: Vector3
 ) -> Int32:
-    """Cut off what is outside a plane from a polygon, or a line of two corners; returns the corners left."""
+    """Clip a polygon, or a line of two corners, at a plane; returns the number of corners left."""
     kept = Int32(0)
     edges = count
     if count == 2:
@@ -49,9 +49,9 @@ def clip_by_side(
 def clip_by_box(
     core: Core, axis: Int32, polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32
 ) -> Int32:
-    """Cut off what is not over a face of a box, across one of its axes; returns the corners left.
+    """Clip a polygon at the sides of a box's faces across an axis; returns the number of corners left.
 
-    The sides come in Bullet's order, which decides with which corner the polygon begins.
+    The sides are taken in Bullet's order, which determines the corner with which the polygon begins.
     """
     left = count
     for side in range(3):
@@ -84,27 +84,27 @@ def clip_faces(
     world: Int32,
     found: Int32,
 ) -> Int32:
-    """Candidates where the incident face lies over the reference face and near it.
+    """Add candidates where the incident face lies over the reference face and near it.
 
     Args:
-        core: Whose face the reference face is.
+        core: Core that the reference face belongs to.
         reference: Corners of the reference face, counter-clockwise as seen from outside.
-        reference_count: Their number, at least three.
+        reference_count: Number of these corners, at least three.
         outward: Outward normal of the reference face.
-        incident: Corners of the other face; they are clipped.
-        incident_count: Their number, at least one.
-        clipped: Room for corners.
+        incident: Corners of the incident face; they are clipped in place.
+        incident_count: Number of these corners, at least one.
+        clipped: Workspace for corners.
         normal: Contact normal on b towards a.
-        reference_is_a: 1 if the reference face is that of a.
-        radius_a: Rounding of a.
-        radius_b: Rounding of b.
-        max_distance: Largest distance of a contact.
-        candidates: Where candidates go.
+        reference_is_a: 1 if the reference face belongs to a.
+        radius_a: Radius by which the core of a is rounded [m].
+        radius_b: Radius by which the core of b is rounded [m].
+        max_distance: Largest distance of a contact [m].
+        candidates: Candidates to add to.
         world: The world.
         found: Number of candidates already there.
 
     Returns:
-        Number of candidates.
+        Number of candidates, including those already there.
     """
     count = incident_count
     p = reference[world, reference_count - 1]

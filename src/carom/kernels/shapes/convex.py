@@ -1,4 +1,4 @@
-"""Any two convex shapes: the normal from their nearest or deepest points, then all of the contact."""
+"""Contacts of any two convex shapes: the normal from their nearest or deepest points, then all points."""
 
 import warp as wp
 
@@ -13,18 +13,19 @@ from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, real
 from carom.layouts.codes import BOX
 
-# Cosine of the angle between a face and the contact beyond which the face does not lie on the other.
+# A face lies on the other shape if the cosine of the angle between its normal and the contact's exceeds this.
 FLAT_ON = real(0.999)
-# A nearest point this much deeper than all others belongs to the contact [m].
+# The nearest point is added as a candidate if it is this much deeper than all others [m].
 DEEPER = real(1.0e-6)
 
 
 @func
 def over_face(box: Core, other: Core, vertex_position: Vectors3):
-    """Height of a core over the face of a box that looks at it, the face's normal, and the lowest point.
+    """Height of a core over the box face turned towards it, the face's normal, and the core's lowest point.
 
-    The point where the core is lowest and its foot on the face are the nearest points of the two if the
-    foot lies on the face: no search is needed for what rests on a table. Otherwise the height is 0.
+    If the projection of the lowest point onto the plane of the face lies in the face, these two points are
+    the nearest points of core and box, and GJK is not needed: the usual case for a shape that rests on a
+    table. Otherwise the height is 0.
     """
     offset = wp.transpose(box.frame) * (other.position - box.position)
     axis = Int32(0)
@@ -53,7 +54,7 @@ def nearest_or_deepest(
 ):
     """Distance of two cores (negative: overlap), normal on b towards a, nearest points on a and on b.
 
-    If the distance is more than `max_distance` it is a lower bound, and the rest means nothing.
+    If the distance exceeds `max_distance`, it is a lower bound and the other results are meaningless.
     """
     if core_a.kind == BOX:
         height, outward, lowest = over_face(core_a, core_b, shapes.vertex_position)
@@ -90,7 +91,7 @@ def nearest_or_deepest(
 def face_towards(
     shapes: Shapes, core: Core, shape: Int32, direction: Vector3, polygon: Vector3Rows, world: Int32
 ):
-    """The face of a shape's core that looks most along `direction`: normal and number of corners."""
+    """Write the face of a core most aligned with `direction`; returns its normal and number of corners."""
     normal, count = supporting_face(
         core,
         shapes.shape_first_face[shape],
@@ -120,7 +121,7 @@ def collide_faces(
     max_distance: real,
     found: Int32,
 ) -> Int32:
-    """Add the candidates of two faces that lie on each other; none if neither face is flat on the normal."""
+    """Add the candidates of two faces lying on each other; none if neither is perpendicular to the normal."""
     normal_a, count_a = face_towards(shapes, core_a, a, -normal, pairs.polygon_a, world)
     normal_b, count_b = face_towards(shapes, core_b, b, normal, pairs.polygon_b, world)
     flat_a = -wp.dot(normal_a, normal)
@@ -159,7 +160,7 @@ def collide_convex(
     max_distance: real,
     found: Int32,
 ) -> Int32:
-    """Add the candidates of two cores at most `max_distance` apart to those found; returns their number."""
+    """Add candidates of two cores at most `max_distance` apart to the first `found`; returns the number."""
     rounding = core_a.radius + core_b.radius
     core_distance, normal, _point_a, point_b = nearest_or_deepest(
         shapes, pairs, world, core_a, core_b, max_distance + rounding

@@ -1,8 +1,9 @@
 """Convex shapes in the narrow phase: a core, and a radius by which it is rounded.
 
-Bullet's margins decide the core. A ball is a point and a capsule a segment. The margin of a box or a
-cylinder lies inside: the core is that much smaller, and edges are round. That of a hull or a triangle
-lies outside. Only between boxes, and against planes, boxes have sharp edges.
+The core follows from Bullet's collision margin. The core of a sphere is a point, and that of a capsule is a
+segment. The margin of a box or cylinder lies inside the shape: the core is smaller by the margin, and edges
+are round. The margin of a hull or triangle lies outside. Boxes have sharp edges only against other boxes and
+planes.
 """
 
 import warp as wp
@@ -15,14 +16,14 @@ from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
 
 @wp.struct
 class Core:
-    """A convex set without its rounding.
+    """Core of a convex shape, the shape without its rounding.
 
-    Its kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER` and `HULL`, and
-    `TRIANGLES` for one triangle, whose corners are the columns of `frame`, counted from `position`.
+    The kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER` and `HULL`, and
+    `TRIANGLES` for one triangle, whose corners are the columns of `frame`, relative to `position`.
     """
 
     kind: Int32
-    size: Vector3  # as `Shapes.shape_size`, less what is rounded off
+    size: Vector3  # as `Shapes.shape_size`, less the rounding
     radius: real
     position: Vector3
     frame: Matrix3
@@ -32,7 +33,7 @@ class Core:
 
 @func
 def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
-    """The core of a convex shape."""
+    """Core of a convex shape."""
     core = Core()
     core.kind = shapes.shape_kind[shape]
     core.size = shapes.shape_size[shape]
@@ -56,7 +57,7 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
 
 @func
 def segment_half(core: Core) -> Vector3:
-    """From the middle of a capsule's segment to one end; zero for a ball."""
+    """Vector from the middle of a capsule's segment to one end; zero for a sphere."""
     if core.kind == CAPSULE:
         return core.frame * Vector3(0.0, 0.0, core.size[1])
     return Vector3(0.0, 0.0, 0.0)
@@ -72,7 +73,7 @@ def toward(value: real, size: real) -> real:
 
 @func
 def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> Vector3:
-    """Farthest point of a core along a direction, both in the frame of the shape."""
+    """Support mapping: farthest point of a core along a direction, both in the frame of the shape."""
     size = core.size
     if core.kind == BOX:
         return Vector3(
@@ -96,7 +97,7 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
     if core.kind == CAPSULE:
         return Vector3(0.0, 0.0, toward(direction[2], size[1]))
     if core.kind == TRIANGLES:
-        # The direction came as the three corners' heights along it.
+        # `frame` has the corners as columns, so `direction` holds the corners' heights along the direction.
         if direction[0] >= direction[1] and direction[0] >= direction[2]:
             return Vector3(1.0, 0.0, 0.0)
         if direction[1] >= direction[2]:
@@ -107,6 +108,6 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
 
 @func
 def support(core: Core, vertex_position: Vectors3, direction: Vector3) -> Vector3:
-    """Farthest point of a core along a direction, in world axes."""
+    """Support mapping: farthest point of a core along a direction, both in world axes."""
     local = wp.transpose(core.frame) * direction
     return core.position + core.frame * local_support(core, vertex_position, local)

@@ -8,21 +8,21 @@ from carom.kernels.shapes.cores import Core, toward
 from carom.kernels.types import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, TRIANGLES
 
-# Corners that stand for the rim of a cylinder.
+# Number of corners that approximate the rim of a cylinder.
 RIM = 8
 COS_45 = real(0.7071067811865476)
 
 
 @func
 def box_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32) -> Vector3:
-    """Corners of the face of a box that looks most along `direction`; returns its outward normal."""
+    """Write the corners of a box's face most aligned with `direction`; returns its outward normal."""
     local = wp.transpose(core.frame) * direction
     axis = main_axis(local)
     u = (axis + 1) % 3
     v = (axis + 2) % 3
     sign = toward(local[axis], 1.0)
     normal = column(core.frame, axis) * sign
-    # Turning the second edge with the sign keeps the corners counter-clockwise from outside.
+    # With this sign of the second edge the corners are counter-clockwise as seen from outside.
     edge_u = column(core.frame, u) * core.size[u]
     edge_v = column(core.frame, v) * (core.size[v] * sign)
     center = core.position + normal * core.size[axis]
@@ -35,9 +35,10 @@ def box_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32)
 
 @func
 def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, world: Int32):
-    """Corners of the face of a box with a normal, in Bullet's order, which may be clockwise.
+    """Write the corners of a box's face with a given normal in Bullet's order, which may be clockwise.
 
-    Where the forces of several points are not determined, those that come first bear more.
+    The order matters: if the distribution of the load over several contacts is not unique, the first contacts
+    carry more of it.
     """
     axis = main_axis(wp.transpose(core.frame) * outward)
     u = Int32(0)
@@ -57,7 +58,11 @@ def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, worl
 
 @func
 def cylinder_feature(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32):
-    """A cylinder's cap, its rim as a polygon with a corner at its farthest point, or a line of its side."""
+    """Write a cylinder's cap, as a polygon with a corner at its farthest point, or a line of its side.
+
+    Returns:
+        The outward normal and the number of corners.
+    """
     axis = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
     along = wp.dot(axis, direction)
     radial = direction - axis * along
@@ -98,9 +103,9 @@ def hull_face(
     polygon: Vector3Rows,
     world: Int32,
 ):
-    """Corners of the face of a hull that looks most along `direction`, its normal and their number.
+    """Write the corners of a hull's face most aligned with `direction`; returns its normal and their number.
 
-    Of faces with more corners than fit, corners are left out evenly.
+    If a face has more corners than fit, corners are left out at even intervals.
     """
     local = wp.transpose(core.frame) * direction
     best = first_face
@@ -123,7 +128,11 @@ def hull_face(
 
 @func
 def triangle_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32) -> Vector3:
-    """Corners of a triangle, counter-clockwise from where `direction` points; returns its normal."""
+    """Write a triangle's corners, counter-clockwise as seen from the side to which `direction` points.
+
+    Returns:
+        The unit normal on this side.
+    """
     a = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
     b = Vector3(core.frame[0, 1], core.frame[1, 1], core.frame[2, 1])
     c = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
@@ -152,10 +161,10 @@ def supporting_face(
     polygon: Vector3Rows,
     world: Int32,
 ):
-    """Write the corners of the face (two for a line, one for a point) that looks most along `direction`.
+    """Write the corners of the face (two for a line, one for a point) most aligned with `direction`.
 
     Returns:
-        Its outward normal, and the number of corners.
+        The face's outward normal, and the number of corners.
     """
     if core.kind == BOX:
         normal = box_face(core, direction, polygon, world)

@@ -1,7 +1,7 @@
-"""Nearest points of two cores (Gilbert, Johnson and Keerthi's algorithm).
+"""Nearest points of two cores, by the algorithm of Gilbert, Johnson and Keerthi (GJK).
 
-It looks for the point nearest to the origin in the set of all differences a - b of points of the two
-cores, by a simplex of at most four differences that moves towards it.
+The algorithm searches the Minkowski difference of the cores, the set of all differences a - b of their
+points, for the point nearest to the origin. A simplex of at most four differences moves towards this point.
 """
 
 import warp as wp
@@ -11,19 +11,20 @@ from carom.kernels.shapes.cores import Core, support
 from carom.kernels.types import Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
 
 MOST_STEPS = 64
-# Cores nearer than this overlap [m].
+# Cores nearer than this count as overlapping [m].
 TOUCHING = real(1.0e-10)
-# The distance is known to this [m], ...
+# Absolute tolerance of the distance [m].
 PRECISION = real(1.0e-13)
-# ... or to this share of it, whichever is more.
+# Relative tolerance of the distance; the larger one of the two is used.
 RELATIVE_PRECISION = real(1.0e-14)
-# Volume of a simplex over the cube of its size below which it is flat.
+# Sine of the angle between a face of a tetrahedron and an edge to the opposite corner, up to which the
+# tetrahedron is flat.
 FLAT = real(1.0e-14)
 
 
 @func
 def corner(simplex: Matrix43, i: Int32) -> Vector3:
-    """Corner of a simplex."""
+    """Corner `i` of a simplex."""
     return Vector3(simplex[i, 0], simplex[i, 1], simplex[i, 2])
 
 
@@ -54,7 +55,7 @@ def triangle_weights(a: Vector3, b: Vector3, c: Vector3) -> Vector3:
     """Weights of the corners in the point of a triangle nearest to the origin."""
     normal = wp.cross(b - a, c - a)
     area = wp.length_sq(normal)
-    # Areas of the triangles that the foot of the origin makes with each side.
+    # Areas of the triangles between each side and the projection of the origin, with a common factor.
     of_a = wp.dot(normal, wp.cross(b, c))
     of_b = wp.dot(normal, wp.cross(c, a))
     of_c = wp.dot(normal, wp.cross(a, b))
@@ -80,13 +81,13 @@ def face_hides_origin(a: Vector3, b: Vector3, c: Vector3, opposite: Vector3) -> 
     normal = wp.cross(b - a, c - a)
     inside = wp.dot(normal, opposite - a)
     size = wp.length(normal) * wp.length(opposite - a)
-    # A flat tetrahedron contains nothing.
+    # A flat tetrahedron has no inside.
     return wp.abs(inside) <= FLAT * size or wp.dot(normal, -a) * inside < 0.0
 
 
 @func
 def tetrahedron_weights(simplex: Matrix43) -> Vector4:
-    """Weights of the corners in the nearest point of a tetrahedron; all above zero if it holds the origin."""
+    """Weights of the corners in a tetrahedron's nearest point; all positive if it contains the origin."""
     result = Vector4(0.25, 0.25, 0.25, 0.25)
     least = real(-1.0)
     face = Int32(0)
@@ -130,15 +131,15 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
 
     Args:
         core_a: One core.
-        core_b: The other.
+        core_b: The other core.
         vertex_position: Vertices of hulls.
-        start: About the direction from b to a.
-        max_distance: The search ends where the distance is found to be more than this.
+        start: Approximate direction from b to a.
+        max_distance: The search ends as soon as the distance is known to exceed this [m].
 
     Returns:
-        The distance, and the point on each. Where they overlap the distance is 0 and the points are one
-        of a's. If the distance is more than `max_distance` it
-        is a lower bound and the points mean nothing.
+        The distance [m] and the nearest points on a and on b. If the cores overlap, the distance is 0 and
+        both points are the same point of a. If the distance exceeds `max_distance`, it is a lower bound and
+        the points are meaningless.
     """
     differences = Matrix43()
     points = Matrix43()
@@ -175,7 +176,7 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
             nearest = weighted(differences, weights)
             distance = wp.length(nearest)
             if least >= 0.0 and distance >= least:
-                # Only rounding makes progress from here on: the simplex before is the result.
+                # Further progress would be rounding error only: the previous simplex is the result.
                 searching = Int32(0)
             else:
                 least = distance

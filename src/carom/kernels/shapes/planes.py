@@ -1,4 +1,4 @@
-"""Convex shapes on infinite planes."""
+"""Contact candidates of convex shapes on infinite planes."""
 
 import warp as wp
 
@@ -10,7 +10,7 @@ from carom.layouts.codes import BOX, HULL
 
 @func
 def with_sharp_edges(core: Core) -> Core:
-    """A box without its rounding; other cores as they are."""
+    """Core of a box with sharp edges instead of rounding; other cores are returned unchanged."""
     sharp = core
     if core.kind == BOX:
         sharp.size = core.size + Vector3(core.radius, core.radius, core.radius)
@@ -29,7 +29,7 @@ def add_on_plane(
     normal: Vector3,
     max_distance: real,
 ) -> Int32:
-    """Candidate of a point with a radius near a plane."""
+    """Add the candidate of a sphere on a plane, if they are near enough; returns the new number."""
     height = wp.dot(point - origin, normal)
     if height - radius > max_distance:
         return count
@@ -46,7 +46,7 @@ def collide_plane_deepest(
     candidates: Vector8Rows,
     world: Int32,
 ) -> Int32:
-    """As `collide_plane`, the deepest point alone."""
+    """As `collide_plane`, but with the deepest point only."""
     deepest = support(core, vertex_position, -normal)
     return add_on_plane(candidates, world, 0, deepest, core.radius, origin, normal, max_distance)
 
@@ -63,17 +63,17 @@ def collide_plane(
     candidates: Vector8Rows,
     world: Int32,
 ) -> Int32:
-    """Candidates of shape a, a core, on shape b, a plane.
+    """Write the candidates of shape a, a core, on shape b, a plane.
 
     Args:
         core: The core; boxes with sharp edges.
-        polygon: Corners of its face towards the plane; not used for hulls, where all vertices count.
-        corners: Their number.
+        polygon: Corners of its face towards the plane; not used for hulls, whose vertices are all tested.
+        corners: Number of these corners.
         vertex_position: Vertices of hulls.
         origin: A point of the plane.
-        normal: Its unit normal.
-        max_distance: Largest distance of a contact.
-        candidates: Where candidates go.
+        normal: Unit normal of the plane.
+        max_distance: Largest distance of a contact [m].
+        candidates: Candidates to write.
         world: The world.
 
     Returns:
@@ -86,7 +86,7 @@ def collide_plane(
                 candidates, world, count, polygon[world, i], core.radius, origin, normal, max_distance
             )
         return count
-    # The deepest point first: it must be there even if there are more points than fit.
+    # The deepest point comes first, so that it is included even if not all points fit.
     count = collide_plane_deepest(core, vertex_position, origin, normal, max_distance, candidates, world)
     if count > 0:
         for vertex in range(core.first_vertex, core.first_vertex + core.vertex_count):

@@ -1,8 +1,9 @@
 """Penetration depth of two overlapping cores: the expanding polytope algorithm (EPA).
 
-The set of all differences a - b of points of two overlapping cores contains the origin. A polytope
-inside that set grows, always at the face nearest to the origin, until that face is on the boundary:
-its distance is the least translation that parts the cores, and its normal the direction.
+The Minkowski difference of two overlapping cores, the set of all differences a - b of their points, contains
+the origin. A polytope inside this set is expanded at its face nearest to the origin until this face is on the
+boundary of the set. Then the distance of the face is the smallest translation that separates the cores, and
+the normal of the face is its direction.
 """
 
 import warp as wp
@@ -25,15 +26,15 @@ from carom.kernels.types import (
 )
 from carom.layouts.contacts import MOST_CORNERS
 
-# A face this near to the boundary is on it [m].
+# A face is on the boundary if the boundary is at most this far beyond it [m].
 PRECISION = real(1.0e-7)
-# A face whose plane a new corner is this much above cannot stay [m]; less than the above.
+# A face is removed if a new corner is more than this above its plane [m]; less than `PRECISION`.
 VISIBLE = real(1.0e-8)
-# A point as near as this to a face is in it [m].
+# A point is in a face if it is at most this far from the face [m].
 ON_FACE = real(1.0e-9)
-# A set of differences thinner than this has no inside [m].
+# A Minkowski difference at most this thick has no inside [m].
 THIN = real(1.0e-10)
-# Distance of faces without area, which are never the nearest.
+# Distance assigned to faces without area, so that they are never the nearest.
 NEVER = real(1.0e30)
 
 
@@ -48,7 +49,7 @@ def add_corner(
     row: Int32,
     direction: Vector3,
 ) -> Vector3:
-    """Make the farthest difference along `direction` a corner."""
+    """Add the farthest point of the Minkowski difference along `direction` as a corner."""
     on_a = support(core_a, vertex_position, direction)
     w = on_a - support(core_b, vertex_position, -direction)
     points[world, row] = w
@@ -58,7 +59,7 @@ def add_corner(
 
 @func
 def axis_direction(side: Int32, x: Vector3, y: Vector3, z: Vector3) -> Vector3:
-    """The directions x, -x, y, -y, z, -z by their number."""
+    """Direction number `side` of x, -x, y, -y, z, -z, counted from 0."""
     direction = x
     if side // 2 == 1:
         direction = y
@@ -80,7 +81,7 @@ def add_face(
     j: Int32,
     k: Int32,
 ):
-    """Write a face with its plane; the corners are counter-clockwise from outside."""
+    """Write a face and its plane; the corners are counter-clockwise as seen from outside."""
     a = points[world, i]
     normal = wp.cross(points[world, j] - a, points[world, k] - a)
     length = wp.length(normal)
@@ -100,7 +101,10 @@ def plane_height(plane: Vector4, point: Vector3) -> real:
 
 @func
 def add_hole_edge(edges: Index4Rows, world: Int32, count: Int32, i: Int32, j: Int32) -> Int32:
-    """Note an edge of a face that was taken away, or forget it if both its faces were; returns how many."""
+    """Update the edges of the hole with an edge of a removed face; returns the number of edges.
+
+    An edge between two removed faces is not an edge of the hole.
+    """
     for row in range(count):
         edge = edges[world, row]
         if edge[0] == j and edge[1] == i:
@@ -125,8 +129,8 @@ def first_tetrahedron(
     """Find four corners that span a volume.
 
     Returns:
-        Their number, less than four if the set of differences is flat, and then a direction in which it
-        has no extent.
+        Number of corners, and a direction. If there are less than four, the Minkowski difference is flat and
+        has no extent in this direction.
     """
     x = Vector3(1.0, 0.0, 0.0)
     y = Vector3(0.0, 1.0, 0.0)
@@ -184,7 +188,7 @@ def first_tetrahedron(
 
 @func
 def nearest_face(planes: Vector4Rows, world: Int32, face_count: Int32) -> Int32:
-    """The face whose plane is nearest to the origin."""
+    """Face whose plane is nearest to the origin."""
     nearest = Int32(0)
     least = planes[world, 0][3]
     for face in range(1, face_count):
@@ -197,7 +201,7 @@ def nearest_face(planes: Vector4Rows, world: Int32, face_count: Int32) -> Int32:
 
 @func
 def point_in_face(points: Vector3Rows, points_a: Vector3Rows, world: Int32, corners: Index4, foot: Vector3):
-    """The point of a that belongs to the difference in a face nearest to `foot`; its squared distance."""
+    """Point of core a for the point of a face nearest to `foot`, and the squared distance from `foot`."""
     p = points[world, corners[0]] - foot
     q = points[world, corners[1]] - foot
     r = points[world, corners[2]] - foot
@@ -220,9 +224,9 @@ def deepest_point(
     face_count: Int32,
     foot: Vector3,
 ) -> Vector3:
-    """The point of a that belongs to `foot`, the difference on the boundary nearest to the origin.
+    """Point of core a for `foot`, the boundary point of the Minkowski difference nearest to the origin.
 
-    It is in the face of these corners, or in one that lies in the same plane.
+    `foot` is in the face with these corners, or in another face in the same plane.
     """
     on_a, miss = point_in_face(points, points_a, world, corners, foot)
     if miss > ON_FACE * ON_FACE:
@@ -248,23 +252,23 @@ def overlap(
     start: Vector3,
     common: Vector3,
 ):
-    """Least translation that parts two overlapping cores.
+    """Penetration depth: the smallest translation that separates two overlapping cores.
 
     Args:
         core_a: One core.
-        core_b: The other.
+        core_b: The other core.
         vertex_position: Vertices of hulls.
-        points: Room for the polytope: see `Pairs`.
+        points: Workspace for the polytope (see `Pairs`).
         points_a: Likewise.
         planes: Likewise.
         faces: Likewise.
         edges: Likewise.
         world: The world.
-        start: About the direction from b to a.
-        common: A point that both have in common.
+        start: Approximate direction from b to a.
+        common: A point that is in both cores.
 
     Returns:
-        The depth, the unit normal from b towards a, and the deepest points of a and of b.
+        The depth [m], the unit normal from b towards a, and the deepest points of a and of b.
     """
     direction = start
     if wp.length_sq(start) == 0.0:
@@ -277,7 +281,7 @@ def overlap(
         return real(0.0), normal, common, common
     w0 = points[world, 0]
     if wp.dot(wp.cross(points[world, 1] - w0, points[world, 2] - w0), points[world, 3] - w0) > 0.0:
-        # The corners 0 1 2 must be counter-clockwise from outside, where corner 3 is not.
+        # Corners 0, 1, 2 must be counter-clockwise as seen from outside, the side away from corner 3.
         w = points[world, 1]
         points[world, 1] = points[world, 2]
         points[world, 2] = w
@@ -290,8 +294,8 @@ def overlap(
     add_face(points, planes, faces, world, 3, 2, 3, 0)
     face_count = Int32(4)
     nearest = nearest_face(planes, world, face_count)
-    # Any direction parts the cores if they move far enough; the one with the shortest way counts, so that
-    # the result is right even where rounding or a lack of room spoils the polytope.
+    # A translation in any direction separates the cores if it is long enough. The shortest one found is kept,
+    # so that the result is valid even if rounding or a lack of space spoils the polytope.
     depth = real(NEVER)
     outward = Vector3(0.0, 0.0, 1.0)
     corners = faces[world, nearest]

@@ -1,4 +1,4 @@
-"""Balls and capsules among themselves: segments (a ball's has no length) with a radius."""
+"""Contact candidates of spheres and capsules: segments with a radius, of length zero for spheres."""
 
 import warp as wp
 
@@ -12,7 +12,7 @@ TINY = real(1.0e-30)
 
 @func
 def any_perpendicular(direction: Vector3) -> Vector3:
-    """A unit vector perpendicular to `direction`, which may have any length; (1, 0, 0) for length 0."""
+    """Unit vector perpendicular to `direction`, which may have any length; (1, 0, 0) for length 0."""
     if wp.length_sq(direction) < TINY:
         return Vector3(1.0, 0.0, 0.0)
     size = wp.abs(direction)
@@ -26,12 +26,12 @@ def any_perpendicular(direction: Vector3) -> Vector3:
 
 @func
 def nearest_places(offset: Vector3, half_a: Vector3, half_b: Vector3):
-    """Nearest points of two segments, as places between -1 and 1 along their half vectors.
+    """Nearest points of two segments, as coordinates between -1 and 1 along their half vectors.
 
     Args:
-        offset: From the middle of b to the middle of a.
-        half_a: From the middle of a to one of its ends; may be zero.
-        half_b: Likewise.
+        offset: Vector from the middle of b to the middle of a.
+        half_a: Vector from the middle of a to one of its ends; may be zero.
+        half_b: The same for b.
     """
     aa = wp.length_sq(half_a)
     bb = wp.length_sq(half_b)
@@ -64,7 +64,7 @@ def add_round_contact(
     fallback: Vector3,
     max_distance: real,
 ) -> Int32:
-    """Candidate of two balls; `fallback` is the normal where their centres coincide."""
+    """Add the candidate of two spheres; `fallback` is the normal if their centres coincide."""
     offset = point_a - point_b
     length = wp.length(offset)
     distance = length - radius_a - radius_b
@@ -88,7 +88,7 @@ def collide_segments(
     candidates: Vector8Rows,
     world: Int32,
 ) -> Int32:
-    """Candidates of two round segments at most `max_distance` apart: one, or two if they lie side by side."""
+    """Write the candidates of two segments with radii: one, or two if they are parallel side by side."""
     offset = middle_a - middle_b
     across = wp.cross(half_a, half_b)
     lengths = wp.length_sq(half_a) * wp.length_sq(half_b)
@@ -96,7 +96,7 @@ def collide_segments(
     if lengths > TINY and wp.length_sq(across) > PARALLEL * lengths:
         fallback = wp.normalize(across)
     if lengths > TINY and wp.length_sq(across) <= PARALLEL * lengths:
-        # Ends of the stretch of a that has b beside it.
+        # Ends of the part of a that has b beside it.
         unit = half_a / wp.length_sq(half_a)
         middle = wp.dot(-offset, unit)
         along = wp.abs(wp.dot(half_b, unit))

@@ -1,4 +1,4 @@
-"""Convex shapes on triangle meshes and height fields."""
+"""Contact candidates of convex shapes on triangle meshes and height fields."""
 
 import warp as wp
 
@@ -25,19 +25,19 @@ from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Vector3, Vector8Rows, func, real, shared_func
 from carom.layouts.codes import SPHERE, TRIANGLES
 
-# Column of a candidate's row that tells whether it is on the face of its triangle.
+# Column of a candidate: 1 if the candidate is on the face of its triangle, 0 if it is at an edge.
 FLAT = 7
-# Cosine of the angle between a contact and a face beyond which it is at an edge.
+# A candidate is on a face if the cosine of the angle between the normals of both is at least this.
 ON_FACE = real(0.999999)
-# Height above a face up to which an edge belongs to it, beside the margin [m].
+# Height above a face up to which an edge belongs to the face, in addition to the margin [m].
 SAME_PLANE = real(1.0e-4)
-# Room that one triangle may need among the candidates.
+# Number of candidates that one triangle may need.
 ROOM = 16
 
 
 @func
 def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
-    """Rounding of a surface's triangles: its margin, but as in Bullet none against balls."""
+    """Radius by which a surface's triangles are rounded [m]: its margin; 0 against spheres, as in Bullet."""
     if core.kind == SPHERE:
         return 0.0
     return shapes.shape_margin[surface]
@@ -47,7 +47,7 @@ def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
 def region_around(
     shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, surface: Int32, max_distance: real
 ) -> Region:
-    """The region of a surface that is within reach of the bounds of a shape."""
+    """Region of a surface within `max_distance`, plus the surface's margin, of the bounds of a shape."""
     to_surface = wp.transpose(pairs.shape_frame[world, surface])
     turn = to_surface * pairs.shape_frame[world, shape]
     center = turn * local_center(shapes, shape) + to_surface * (
@@ -65,8 +65,8 @@ def region_around(
 def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vector3) -> Int32:
     """Mark which candidates of a triangle are on its face, and drop those at its edges that do not touch yet.
 
-    They would stop what slides from one triangle of a flat surface to the next. Returns the number of
-    all candidates that are left.
+    The dropped candidates would stop a shape that slides from one triangle of a flat surface to the next.
+    Returns the number of all candidates left.
     """
     count = first
     for row in range(first, last):
@@ -81,10 +81,10 @@ def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vec
 
 @shared_func
 def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickness: real) -> Int32:
-    """Drop candidates at edges that lie in a face that is touched as well; returns how many are left.
+    """Drop candidates at edges that lie in the plane of a touched face; returns the number left.
 
-    The face bears the contact; the edge, seen from a neighbour in the same plane or beyond the end of
-    the face, would only push sideways.
+    The face carries the contact. The edge, as a candidate of a triangle in the same plane or beyond the end
+    of the face, would only push sideways.
     """
     kept = Int32(0)
     for row in range(count):
@@ -98,7 +98,7 @@ def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickn
                     if wp.abs(height) <= thickness:
                         needed = Int32(0)
         if needed == 1:
-            # Exchanged, not copied: the faces after this row must see all others.
+            # Exchanged, not overwritten, because later rows are compared with all candidates.
             exchange(candidates, world, kept, row)
             kept += 1
     return kept
@@ -124,17 +124,17 @@ def collide_surface(
     max_distance: real,
     around: real,
 ) -> Int32:
-    """Candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
+    """Write the candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
 
     Args:
         shapes: All shapes.
-        pairs: Room for candidates, and the poses of the shapes.
+        pairs: Workspace for candidates, and the poses of the shapes.
         world: The world.
         a: Row of the convex shape.
         b: Row of the surface.
         core: Core of a.
         max_distance: Largest distance of a contact [m].
-        around: Triangles within this distance of the bounds of a are looked at [m].
+        around: Distance from the bounds of a within which triangles are tested [m].
     """
     region = region_around(shapes, pairs, world, a, b, around)
     radius = surface_radius(shapes, core, b)
@@ -159,7 +159,7 @@ def nearest_on_surface(
 ):
     """Distance of shape a, convex, from shape b, a mesh or height field; normal on b and point on b.
 
-    If the distance is more than `max_distance` the rest means nothing.
+    If the distance exceeds `max_distance`, the other results are meaningless.
     """
     region = region_around(shapes, pairs, world, a, b, max_distance)
     radius = surface_radius(shapes, core, b)
@@ -178,7 +178,7 @@ def nearest_on_surface(
             best_normal = normal
             best_point = on_b + normal * radius
             if least > 0.0 and shapes.shape_kind[b] == TRIANGLES:
-                # Cursors of a mesh do not depend on the region, which may shrink.
+                # Cursors of a mesh do not depend on the region, so the region may shrink.
                 region = region_around(shapes, pairs, world, a, b, least)
         cursor = triangle_from(shapes, region, b, following_cursor(shapes, b, cursor))
     return least, best_normal, best_point

@@ -1,7 +1,8 @@
-"""Which triangles of a mesh or a height field are in a region.
+"""Traversal of the triangles of a mesh or height field that are in a region.
 
-A *cursor* goes from one triangle of the region to the next: for a mesh it is a leaf of the mesh's
-hierarchy, for a height field it counts the triangles of the cells under the region.
+A *cursor* is the position of a traversal, which goes from one triangle of the region to the next. For a mesh
+it is a leaf of the mesh's hierarchy. For a height field it is the number of a triangle, counted over the
+cells under the region.
 """
 
 import warp as wp
@@ -17,7 +18,7 @@ from carom.layouts.codes import TRIANGLES
 
 @wp.struct
 class Region:
-    """A box in the frame of a surface; for height fields the columns and rows of cells under it as well."""
+    """Box in the frame of a surface; for height fields also the columns and rows of cells under the box."""
 
     lower: Vector3
     upper: Vector3
@@ -29,7 +30,7 @@ class Region:
 
 @func
 def region_of(shapes: Shapes, surface: Int32, lower: Vector3, upper: Vector3) -> Region:
-    """The region of a surface inside a box in the frame of the surface."""
+    """Region of a surface inside a box that is given in the frame of the surface."""
     region = Region()
     region.lower = lower
     region.upper = upper
@@ -52,7 +53,7 @@ def region_of(shapes: Shapes, surface: Int32, lower: Vector3, upper: Vector3) ->
 
 @func
 def cell_at(place: real, points: Int32) -> Int32:
-    """The cell between grid points that holds a place, or the nearest cell."""
+    """Cell between grid points that contains a coordinate [cells], or the nearest cell."""
     return Int32(wp.clamp(wp.floor(place), 0.0, real(points - 2)))
 
 
@@ -65,7 +66,7 @@ def region_box(shapes: Shapes, region: Region, surface: Int32, node: Int32) -> b
 
 @func
 def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int32) -> Matrix3:
-    """The corners of a triangle as columns, in the frame of the surface, counter-clockwise from outside."""
+    """Corners of a triangle as columns, counter-clockwise from outside, in the frame of the surface."""
     a = Int32(0)
     b = Int32(0)
     c = Int32(0)
@@ -110,9 +111,9 @@ def corners_meet(region: Region, corners: Matrix3) -> bool:
 
 @func
 def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) -> Int32:
-    """The first cursor at or after `start` whose triangle's bounds meet the region; -1 after the last.
+    """First cursor at or after `start` whose triangle's bounds meet the region; -1 if there is none.
 
-    The first of all starts is what `first_cursor` says.
+    A traversal begins with `first_cursor` as `start`.
     """
     if shapes.shape_kind[surface] != TRIANGLES:
         cursor = start + 0
@@ -135,7 +136,7 @@ def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) 
 
 @func
 def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
-    """Where a walk over the triangles of a surface starts."""
+    """Cursor at which a traversal of the triangles of a surface starts."""
     if shapes.shape_kind[surface] == TRIANGLES:
         return 1
     return 0
@@ -143,7 +144,7 @@ def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
 
 @func
 def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
-    """Where a walk goes on after a triangle."""
+    """Cursor at which a traversal continues after a triangle."""
     if shapes.shape_kind[surface] == TRIANGLES:
         return next_node(cursor)
     return cursor + 1
@@ -151,7 +152,7 @@ def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
 
 @func
 def triangle_core(pairs: Pairs, world: Int32, surface: Int32, corners: Matrix3, radius: real) -> Core:
-    """A triangle of a surface as a core."""
+    """Core of a triangle of a surface."""
     core = Core()
     core.kind = TRIANGLES
     core.radius = radius
