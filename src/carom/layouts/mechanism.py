@@ -77,7 +77,7 @@ class NodeMotion:
     acceleration: Vector3  # of its origin, minus gravity
     torque: Vector3
     force: Vector3
-    mass: real  # composite, as below: the node and all its descendants, in the base's frame
+    mass: real  # of the node and all its descendants, in the base's frame; like the next two
     moment: Vector3
     inertia: Matrix3
 

@@ -2,8 +2,8 @@
 
 from carom.layouts.types import Ints, Reals, struct
 
-# Control modes: velocity, torque beside the motor, position, and explicit PD control, which the kernel does
-# not implement. The values are PyBullet's.
+# Control modes: velocity, torque in addition to the motor, position, and explicit PD control, which the
+# kernel does not implement. The values are PyBullet's.
 VELOCITY, TORQUE, POSITION, PD = 0, 1, 2, 3
 MODES = (VELOCITY, TORQUE, POSITION, PD)
 # Bits of the quantities that are given.
@@ -22,4 +22,4 @@ class MotorCommands:
     joint_force: Reals
     joint_kp: Reals
     joint_kd: Reals
-    joint_refused: Ints  # first entry: 1: a number was not finite, and no motor has been set
+    joint_refused: Ints  # first entry: 1 if a number was not finite; then no motor has been set

@@ -72,7 +72,7 @@ class RunWork:
     """Worlds that take part in a run of steps, and whether it succeeded."""
 
     world_part: Ints  # `BEGIN`, `RESUME`, `STAY` or `GO_ON`
-    trouble: Ints  # first entry: 1: in some world a velocity was not finite or rows did not fit
+    trouble: Ints  # first entry: 1 if in some world a velocity was not finite or something did not fit
 
 
 @struct

@@ -56,7 +56,7 @@ class Touching:
     """Contacts between chosen links and some other links, summarised for each world."""
 
     link_place: Ints  # by link row: its index among the chosen links, or -1
-    link_other: Ints  # by link row: 1: one of the other links
+    link_other: Ints  # by link row: 1 for one of the other links, else 0
     world_number: Ints  # number of contact points
     world_touching: Truths  # whether one of them has a normal impulse
     world_impulse: Vectors3  # total impulse on the chosen links, in world axes

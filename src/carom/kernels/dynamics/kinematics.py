@@ -140,7 +140,7 @@ def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vect
 
 @func
 def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Velocities of all links of a tree, at its reference point, from the rates of the dofs."""
+    """Compute the velocities of all links of a tree at its reference point, from the rates of the dofs."""
     base = model.tree[tree].first_link
     scratch.link[world, base].omega = base_omega(model, state, world, tree)
     scratch.link[world, base].velocity = base_velocity(model, state, world, tree)
@@ -185,7 +185,7 @@ def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: S
 
 @kernel
 def link_twist_kernel(model: Model, state: State, scratch: Scratch, tree: Int32, first_world: Int32):
-    """Velocities of the links of one tree, in world axes, for its present coordinates.
+    """Compute the velocities of the links of one tree, in world axes, for its present coordinates.
 
     As in Bullet they are rotated to world axes by the orientations of `State.link_pose`, which after a step
     are those at the start of its last substep.

@@ -48,6 +48,6 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
 
 @func
 def report_fault(state: State, world: Int32, tree: Int32, sum_of_velocities: real):
-    """Record in the status the first tree whose velocities, added up, are not finite."""
+    """Record a tree in the status if the sum of its velocities is not finite; the first fault stays."""
     if not wp.isfinite(sum_of_velocities) and state.status_entry[world, STATUS] == WELL:
         state.status_entry[world, STATUS] = tree + 1

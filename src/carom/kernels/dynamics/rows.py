@@ -84,7 +84,7 @@ def dof_effective_mass(model: Model, scratch: Scratch, world: Int32, tree: Int32
 def angular_inverse_mass(
     model: Model, scratch: Scratch, world: Int32, tree: Int32, last_dof: Int32, direction: Vector3
 ) -> real:
-    """Inverse inertia about `direction` of the link moved by `last_dof`, in the whole tree."""
+    """Angular velocity of the link of `last_dof` along `direction`, by a unit angular impulse along it."""
     total = real(0.0)
     first = model.tree[tree].first_dof
     i = last_dof

@@ -202,7 +202,7 @@ def moved_on(
 
 @func
 def swing_matrix(omega: Vector3, alpha: Vector3) -> Matrix3:
-    """Matrix that times a point fixed in a rotating frame is its acceleration relative to the origin."""
+    """The matrix [α]× + [ω]×[ω]×: times a point of a rotating frame, its acceleration about the origin."""
     xx, yy, zz = omega[0] * omega[0], omega[1] * omega[1], omega[2] * omega[2]
     xy, xz, yz = omega[0] * omega[1], omega[0] * omega[2], omega[1] * omega[2]
     return Matrix3(

@@ -192,7 +192,7 @@ def add_gear_row(
     row: Int32,
     block: Int32,
 ):
-    """Add the row of a gear: the rate of joint a is minus the gear ratio times that of joint b."""
+    """Add a gear's row: rate of joint a + ratio * rate of joint b = rate of the auxiliary joint, or 0."""
     link_a = users.user_link_a[user]
     link_b = users.user_link_b[user]
     auxiliary = users.user_gear_auxiliary[user]
