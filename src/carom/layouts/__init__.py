@@ -1,1 +1,1 @@
-"""What kernels and Python share: structs, their types, and the numbers that stand for kinds and columns."""
+"""Declarations shared by kernels and Python: structs, field types, and integer codes of kinds and columns."""

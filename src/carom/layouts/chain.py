@@ -1,14 +1,14 @@
-"""Data of the kernels of inverse kinematics: the moving part of a body, and a search for a pose.
+"""Data of the kernels of inverse kinematics: a kinematic chain, and the search for a pose.
 
-A *chain* holds the joints between the base and the ends that are to reach their targets; what is fixed
-together is folded into constant frames, so that placing the ends costs as little as possible. It may
-branch. Frames have their origins at the joints; those of hinges and sliders have their z axis along that of
-the joint, others have the axes of the inertial frame. Everything is measured in the inertial frame of the
-base.
+A *chain* holds the joints between the base and the *ends*, the points on links that are to reach targets; it
+may branch. Links that are fixed to each other are merged into constant frames, so that computing the poses of
+the ends costs as little as possible. Frames have their origins at the joints; those of revolute and prismatic
+joints have their z axis along the joint's, others have the axes of the inertial frame. All quantities are
+measured in the inertial frame of the base.
 
-A *column* is a freedom of a joint of the chain, and a column of the Jacobian. A *dof* is any freedom of
-the body's joints, a *coordinate* any of their positions; the two differ for spherical joints, which have
-three dofs and a quaternion. A field's axis is the first word of its name.
+A *dof* is a degree of freedom of any joint of the body, a *column* one of a joint of the chain: it has a
+column of the Jacobian. A *coordinate* is a number of a joint's position; spherical joints have three dofs and
+four coordinates, a quaternion. A field's axis is the first word of its name.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 else:
     Matrices3 = ArrayType(Matrix3)
 
-# What follows PyBullet's iteration: `step_kind` of the kernel.
+# Methods of a step of PyBullet's iteration: `step_kind` of the kernel.
 DAMPED, NULL_SPACE, SELECTIVE = 0, 1, 2
 
 
 @struct
 class ChainSizes:
-    """The numbers of links, joints and so on."""
+    """Sizes of a chain."""
 
     joints: Int32
     ends: Int32
@@ -56,10 +56,10 @@ class JointModel:
     first_coordinate: Int32
     first_dof: Int32
     first_column: Int32
-    origin: Vector3  # of the joint frame in that of the parent, at position 0
+    origin: Vector3  # of the joint frame in the parent joint's, at position 0
     turn: Quaternion
-    slide: real  # motion of a prismatic joint per unit of its position
-    axis: Vector3  # of a planar joint's turn; those of hinges and sliders are the z axes
+    slide: real  # translation along z per unit of a prismatic joint's position
+    axis: Vector3  # rotation axis of a planar joint; revolute and prismatic joints have z
     planar_axis1: Vector3
     planar_axis2: Vector3
 
@@ -69,13 +69,13 @@ class ColumnModel:
     """A degree of freedom of a joint of the chain."""
 
     dof: Int32
-    low: real  # where new starts are drawn from
+    low: real  # range of random start positions
     high: real
 
 
 @struct
 class JointPlace:
-    """Where the frame of a joint is."""
+    """Pose of a joint's frame in the base's."""
 
     position: Vector3
     rotation: Quaternion
@@ -83,7 +83,7 @@ class JointPlace:
 
 @struct
 class DofChoice:
-    """The options of a dof, and its next step."""
+    """Options of a dof for the search, and its next step."""
 
     damping: real
     lower: real
@@ -95,10 +95,10 @@ class DofChoice:
 
 @struct
 class ColumnChoice:
-    """The options of a column."""
+    """Options of a column for the search."""
 
     weight: real
-    held: Int32  # 1 at a bound that its step would pass
+    held: Int32  # 1: at a bound that its step would pass
 
 
 if TYPE_CHECKING:
@@ -117,10 +117,10 @@ else:
 
 @struct
 class Chain:
-    """The joints that move the ends; parents before children."""
+    """The joints that move the ends, parents before children; and the ends."""
 
     joint: JointModels
-    end_joint: Ints  # the joint that carries it, -1 if none does
+    end_joint: Ints  # the joint whose child link carries the end, -1 for none
     end_offset: Vectors3  # in the frame of that joint
     end_turn: Quaternions
     column: ColumnModels
@@ -129,13 +129,13 @@ class Chain:
 
 @struct
 class Search:
-    """A question, and the memory that answering it needs.
+    """Targets and options of a search for a pose, and its workspace.
 
-    Errors come in *blocks* of three rows: the way of an end and, where it is to be turned, its turn.
-    The Jacobian is stored column by column, matrices over blocks row by row.
+    Errors are in *blocks* of three rows: the position error of an end and, if its orientation has a target,
+    its rotation error. The Jacobian is stored column by column, matrices over blocks row by row.
     """
 
-    base_pose: Reals  # position, quaternion: the targets are given in axes that have the base there
+    base_pose: Reals  # position, quaternion, in the frame of the given targets
     end_given_position: Vectors3
     end_given_rotation: Quaternions
     end_target_position: Vectors3
@@ -145,7 +145,7 @@ class Search:
     coordinate_start: Reals
     coordinate_now: Reals
     coordinate_trial: Reals
-    coordinate_best: Reals  # what the answer is in the end
+    coordinate_best: Reals  # the result
 
     joint: JointPlaces
     column: ColumnChoices
@@ -153,5 +153,5 @@ class Search:
     block_solution: Vectors3
     entry_jacobian: Vectors3
     square_matrix: Matrices3
-    spectrum_matrix: Reals  # of the selective step, number by number
+    spectrum_matrix: Reals  # eigenvalue problem of the selective step, entry by entry
     spectrum_vectors: Reals

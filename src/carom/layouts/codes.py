@@ -1,4 +1,4 @@
-"""Integer codes that kernels and Python share."""
+"""Integer codes shared by kernels and Python."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class JointCode(IntEnum):
-    """Kinds of joint as the engine sees them; the values are PyBullet's."""
+    """Joint types of the engine; the values are PyBullet's."""
 
     REVOLUTE = 0
     PRISMATIC = 1
@@ -16,7 +16,7 @@ class JointCode(IntEnum):
 
 
 class ConstraintKind(IntEnum):
-    """Constraints that act on the joints of one tree, and those that users create."""
+    """Kinds of constraint: on the joints of one tree, and those created by users."""
 
     MOTOR = 0
     LIMIT = 1
@@ -26,7 +26,7 @@ class ConstraintKind(IntEnum):
 
 
 class UserConstraintKind(IntEnum):
-    """Constraints between links; the values are PyBullet's."""
+    """Kinds of user constraint between links; the values are PyBullet's."""
 
     PRISMATIC = 1
     FIXED = 4
@@ -35,20 +35,20 @@ class UserConstraintKind(IntEnum):
 
 
 class Activity(IntEnum):
-    """Whether a tree takes part in the simulation."""
+    """Sleep state of a tree."""
 
     ACTIVE = 0
-    WANTS_SLEEP = 1  # takes part, but will not as soon as no tree of its island is active
+    WANTS_SLEEP = 1  # simulated, until no tree of its island is active
     ASLEEP = 2
-    WOKEN = 3  # was asleep until this substep; else as WANTS_SLEEP
+    WOKEN = 3  # as WANTS_SLEEP, in the first substep after being asleep
 
 
 class ShapeKind(IntEnum):
-    """Kinds of collision shape, and what `Shapes.shape_size` holds for each."""
+    """Kinds of collision shape; in comments the content of `Shapes.shape_size` for each."""
 
     SPHERE = 0  # radius
     BOX = 1  # half extents
-    CAPSULE = 2  # radius, half length along z, what its bounds are larger by
+    CAPSULE = 2  # radius, half length along z, margin of its bounding box
     CYLINDER = 3  # radius, half length along z
     PLANE = 4  # unit normal
     HULL = 5  # half extents of its bounds
@@ -57,7 +57,7 @@ class ShapeKind(IntEnum):
 
 
 class Rolling(IntEnum):
-    """About which axis of its frame a shape is round; or that it is a hull that is not."""
+    """How a shape can roll: about an axis of its frame; OFF_FACES: a hull, unless it lies on a face."""
 
     NONE = 0
     ABOUT_X = 1
@@ -77,7 +77,7 @@ DOF_COUNT = {
 POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
 # Joints whose positions are lengths, not angles.
 SLIDING_JOINTS = (JointCode.PRISMATIC,)
-# The motor and the limit that a joint can have.
+# Kinds of motor and limit by joint type.
 MOTOR_KIND: dict[int, ConstraintKind] = {
     JointCode.REVOLUTE: ConstraintKind.MOTOR,
     JointCode.PRISMATIC: ConstraintKind.MOTOR,
@@ -92,22 +92,22 @@ LIMIT_KIND: dict[int, ConstraintKind] = {
 BASE_POSITIONS = 7
 BASE_VELOCITIES = 6
 
-# What one constraint can add to the solver at most: three axes of a spherical joint.
+# Maximum number of solver rows of one constraint: three axes of a spherical joint.
 MAX_ROWS_PER_CONSTRAINT = 3
 
-# Columns of a motor's settings (`State.dof_motor`) and of an explicit PD drive (`State.dof_pd`).
+# Columns of `State.dof_motor` (settings of motors) and of `State.dof_pd` (explicit PD control).
 MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 
-# Columns of the numbers of a row over two trees (`PairRows.row_terms`); ROW_SHARE is the impulse
-# that would bring about the whole change of velocity if nothing else pushed.
+# Columns of `PairRows.row_terms`, the data of rows over two trees. ROW_SHARE is the impulse that would
+# cause the whole requested change of rate if there were no other impulses.
 ROW_SHARE, ROW_EFFECTIVE_MASS, ROW_INVERSE_MASS, ROW_LOWER, ROW_UPPER, ROW_IMPULSE = 0, 1, 2, 3, 4, 5
 ROW_SOFTNESS, ROW_FRICTION = 6, 7
-# Columns of a contact's rows (`PairRows.contact_rows`); -1 where there is none.
+# Columns of `PairRows.contact_rows`, the rows of a contact; -1 for none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
-# Columns of a contact candidate (`Pairs.candidate_terms`): point on shape b, normal on b, distance.
+# Columns of `Pairs.candidate_terms`, contact candidates: point on shape b, normal on b, distance.
 CANDIDATE_POINT, CANDIDATE_NORMAL, CANDIDATE_DISTANCE = 0, 3, 6
 
 # Kernels read codes as Warp constants.
@@ -143,6 +143,6 @@ USER_FIXED = int(UserConstraintKind.FIXED)
 USER_POINT_TO_POINT = int(UserConstraintKind.POINT_TO_POINT)
 USER_GEAR = int(UserConstraintKind.GEAR)
 
-# What link forces are computed for; see `kernels.dynamics.dynamics.link_bias_forces`.
+# Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION = 0
 CONSTRAINT_FEEDBACK = 1

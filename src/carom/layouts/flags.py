@@ -1,4 +1,4 @@
-"""Options of loading a robot and of putting it to sleep, with PyBullet's values."""
+"""Flags for loading a robot and for changing its sleep settings, with PyBullet's values."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntFlag
 
 
 class LoadFlags(IntFlag):
-    """What `loadURDF(flags=...)` takes. Bits without a name are kept and have no effect."""
+    """Flags of `loadURDF(flags=...)`. Bits without a name are kept and have no effect."""
 
     NONE = 0
     USE_INERTIA_FROM_FILE = 2
@@ -38,7 +38,7 @@ class LoadFlags(IntFlag):
 
 
 class ActivationChange(IntFlag):
-    """What `changeDynamics(activationState=...)` takes."""
+    """Flags of `changeDynamics(activationState=...)`."""
 
     ENABLE_SLEEPING = 1
     DISABLE_SLEEPING = 2

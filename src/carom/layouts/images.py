@@ -1,8 +1,8 @@
-"""The arrays the kernels of the renderer share.
+"""Data of the kernels of the renderer.
 
-Names begin with what an entry belongs to: a `part` is a piece of one shape of a link, with one colour and
-one texture; a `chunk` is parts in a row, handled by one launch; a `facet` is a triangle that may be seen,
-ready to be filled. Pixel coordinates have their origin at the centre of the top left pixel, y downwards.
+A field's axis is the first word of its name: a `part` is a piece of one shape of a link, with one colour and
+one texture; a `chunk` is a run of parts processed by one launch; a `facet` is a projected triangle that may
+be visible. Pixel coordinates have their origin at the centre of the top left pixel, y downwards.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -52,23 +52,23 @@ else:
 
 @struct
 class Scene:
-    """Everything visible, in link frames: changes only when bodies or their appearance change."""
+    """Everything visible, in link frames; changes only when bodies or their appearance change."""
 
     vertex_position: Vectors3  # in the inertial frame of the link
     vertex_normal: Vectors3
     vertex_uv: Vectors2
     triangle_corners: Indices3
     triangle_part: Ints
-    part_first_vertex: Ints  # one entry more than there are parts, as below
+    part_first_vertex: Ints  # number of parts + 1 entries, like the next
     part_first_triangle: Ints
-    part_centre: Vectors3  # of a ball around it
+    part_centre: Vectors3  # of a bounding sphere
     part_radius: Reals
     part_link: Ints
     part_label: Ints  # body id + (link + 1) << 24
     part_rgba: Vectors4
     part_two_sided: Ints
     part_texture: Ints  # -1: none
-    texture_first: Ints  # texel of its lower left corner
+    texture_first: Ints  # row of the texel at its lower left corner
     texture_size: Indices2
     texel: Colours
     chunk_first_part: Ints
@@ -76,7 +76,7 @@ class Scene:
 
 @struct
 class View:
-    """The scene as one eye sees it, be it the camera or, for its shadows, the light."""
+    """A view of the scene, from the camera or, for shadows, from the light."""
 
     width: Int32
     height: Int32
@@ -87,7 +87,7 @@ class View:
     facet_second: Vectors3
     facet_third: Vectors3
     facet_depth: Vectors3
-    facet_box: Indices4  # least column and row, largest column and row
+    facet_box: Indices4  # lowest column and row, highest column and row
     facet_triangle: Ints
     chunk_facet_count: Ints
     pixel_depth: Reals
@@ -96,7 +96,7 @@ class View:
 
 @struct
 class Lighting:
-    """How surfaces are lit in one image."""
+    """Light and shading of one image."""
 
     direction: Vector3  # towards the light, unit length
     colour: Vector3
@@ -104,10 +104,10 @@ class Lighting:
     diffuse: real
     specular: real
     shadow: Int32  # 1: shadows are cast
-    shade: real  # what remains of the directed light in the shadow
-    bias_depth: real  # change of (depth w, w) of the light's view towards the light that ends
-    bias_w: real  # a surface's shadow on itself
-    projected: Int32  # 1: textures are cast by a projector
+    shade: real  # factor on the directional light in the shadow
+    bias_depth: real  # shadow bias against self-shadowing: offsets of depth w and of w
+    bias_w: real  # in the light's view, towards the light
+    projected: Int32  # 1: textures are projected by a projector
 
 
 if TYPE_CHECKING:
@@ -118,12 +118,12 @@ else:
 
 @struct
 class Picture:
-    """What one image needs besides the view, and its pixels."""
+    """Other inputs of one image, and its pixels."""
 
     lighting: Lightings
     link_rotation: Matrices3
     link_to_projector: Matrices4  # (x, y, z, 1) to (u w, v w, ., w)
     rgba: UnsignedInts  # red in the lowest byte
     depth: Floats  # 0..1
-    distance: Floats  # along the view; infinite: background
+    distance: Floats  # along the viewing direction; infinite: background
     label: Ints  # -1: background

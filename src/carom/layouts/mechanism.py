@@ -1,14 +1,14 @@
 """Data of the kernels of inverse dynamics, mass matrices, Jacobians and stable PD control.
 
-A *node* is a joint that moves, with all links that move as one behind it; node 0 is the base. A node's frame
-has its origin at the joint. Hinges turn about z; the other axes are as convenient. Everything about a node
-is constant in its frame. A *dof* is one velocity coordinate: the six of a free base, angular before linear,
-then those of the joints.
+A *node* is a moving joint with its rigid body: the joint's child link and all links fixed to that. Node 0 is
+the base. A node's frame has its origin at the joint. Revolute joints turn about z; the directions of other
+axes do not matter. All parameters of a node are constant in its frame. A *dof* is one velocity coordinate:
+the six of a free base, angular before linear, then those of the joints.
 
-`input` and `output` are all that changes from call to call, in one piece each, so that Python writes and
-reads them at once. `input` begins with the motion of the base along its own axes: angular velocity, angular
-acceleration, and acceleration less gravity; or for a Jacobian with the point. Then come positions, rates and
-accelerations of the joints, as far as the question has them.
+Only `input` and `output` change between calls. Each is one array, which Python writes or reads as a whole.
+`input` begins with the motion of the base in its own axes: angular velocity, angular acceleration, and
+linear acceleration minus gravity; for a Jacobian it begins with the point. Positions, rates and accelerations
+of the joints follow, as far as the kernel needs them.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -16,40 +16,40 @@ from typing import TYPE_CHECKING, Any
 from carom.layouts.types import ArrayType, Int32, Matrix3, Reals, Vector3, real, struct
 
 BASE_MOTION = 9
-"""Numbers of `input` before the positions."""
-# Where a question begins to be about the mechanism; gravity comes before.
+"""Count of numbers in `input` before the positions."""
+# Index in a question of `motion_kernel` where the positions begin; gravity comes first.
 POSE = 3
 
 
 @struct
 class MechanismSizes:
-    """The numbers of links, joints and so on."""
+    """Sizes of a mechanism."""
 
     nodes: Int32
     coordinates: Int32
     dofs: Int32
-    base_dofs: Int32  # 6 or 0, the first of the dofs
+    base_dofs: Int32  # 6 or 0; they come before those of the joints
 
 
 @struct
 class NodeModel:
-    """A joint and the rigid body behind it."""
+    """A joint and the rigid body it carries."""
 
     parent: Int32
     joint_type: Int32
     first_position: Int32
     first_dof: Int32
     dof_count: Int32
-    turn: Matrix3  # from its frame at position 0 to the parent's
+    turn: Matrix3  # rotation from its frame at position 0 to the parent's
     origin: Vector3  # in the parent's frame, at position 0
     mass: real
-    moment: Vector3  # mass times centre of mass
+    moment: Vector3  # first moment of mass: mass times centre of mass
     inertia: Matrix3  # about the origin
 
 
 @struct
 class DofAxis:
-    """What one unit of a dof does to its node, at the node's origin."""
+    """Velocity of a node per unit rate of one of its dofs, at the node's origin."""
 
     angular: Vector3
     linear: Vector3
@@ -57,7 +57,7 @@ class DofAxis:
 
 @struct
 class EndModel:
-    """A link as points on it are given: its place in the frame of its node."""
+    """Pose of a link's frame in the frame of its node; points on the link are given in it."""
 
     node: Int32
     turn: Matrix3
@@ -66,18 +66,18 @@ class EndModel:
 
 @struct
 class NodeMotion:
-    """Where a node is and how it moves; vectors and matrices in its frame where nothing else is said."""
+    """Pose, motion, forces and composite inertia of a node, in its own frame unless noted."""
 
-    turn: Matrix3  # to the parent's frame
+    turn: Matrix3  # rotation to the parent's frame
     origin: Vector3  # in the parent's frame
-    rotation: Matrix3  # to the base's frame
+    rotation: Matrix3  # rotation to the base's frame
     position: Vector3  # in the base's frame
     omega: Vector3
     alpha: Vector3
-    acceleration: Vector3  # of its origin, less gravity
+    acceleration: Vector3  # of its origin, minus gravity
     torque: Vector3
     force: Vector3
-    mass: real  # of the node and all behind it, in the frame of the base
+    mass: real  # of the node and all its descendants, in the base's frame; like the next two
     moment: Vector3
     inertia: Matrix3
 
@@ -96,16 +96,16 @@ else:
 
 @struct
 class MechanismTable:
-    """One body, and the memory of a question about it."""
+    """One body, and the workspace of a call."""
 
     node: Nodes
     dof: DofAxes
-    axis: DofAxes  # the same in the frame of the base, at its origin
+    axis: DofAxes  # the same in the base's frame, at its origin
     end: Ends
     motion: Motions
     input: Reals
     output: Reals
-    matrix: Reals  # the mass matrix, row after row
+    matrix: Reals  # mass matrix, row-major
 
 
 @struct
@@ -117,6 +117,6 @@ class Control:
     dof_kp: Reals
     dof_kd: Reals
     dof_most: Reals  # maximum torque
-    dof_torque: Reals  # the answer
+    dof_torque: Reals  # result
     dof_acceleration: Reals
-    entry_factor: Reals  # triangular factor of the mass matrix with the controller's damping, row after row
+    entry_factor: Reals  # Cholesky factor of the mass matrix with the controller's damping, row-major

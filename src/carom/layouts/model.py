@@ -1,13 +1,13 @@
-"""What kernels work on: `Settings`, `Model`, `State` and `Scratch`.
+"""Data of the kernels of a step: `Settings`, `Model`, `State` and `Scratch`.
 
-`Model` is topology and parameters, shared by all worlds; `State` and `Scratch` have a leading world
-axis. Quantities that are used together lie together, as the fields of one struct per tree, link,
-dof, constraint or row: the kernel finds them all from one address. A field's axis is the first
+`Model` is topology and parameters. Topology is shared by all worlds; parameters, `State` and `Scratch`
+have a leading world axis. Quantities that are used together are fields of one struct per tree, link,
+dof, constraint or row, so that a kernel reads them from one address. A field's axis is the first
 word of its name: `Model.link` and `State.link_pose` have one entry per link.
 
 A *tree* is one body: a base and its links. A *dof* is one velocity coordinate; the six of the base
 come first, angular before linear. *Active* dofs are those that dynamics may change: all of a
-floating tree, all but the base's six of a fixed one; `tree_first_dof` is the first of them.
+floating tree, the joint dofs of a fixed one; `tree_first_dof` is the first of them.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -61,7 +61,7 @@ class Settings:
 
 @struct
 class TreeModel:
-    """One body: a base and its links, and what holds for all of them."""
+    """One body: a base and its links."""
 
     first_link: Int32
     link_count: Int32
@@ -71,16 +71,16 @@ class TreeModel:
     first_dof: Int32
     dof_count: Int32
     fixed: Int32
-    first_block: Int32  # of its matrices, in rows of four columns
-    first_delta: Int32  # of its vectors, in blocks of four
+    first_block: Int32  # first block of its matrices; a block is four columns of a row
+    first_delta: Int32  # first block of four entries of its vectors
     sensor_count: Int32
     constraint_count: Int32
-    batch: Int32  # first tree of those solved together with it for lack of constraints
-    first_constraint: Int32  # of its batch, if it is the first tree of one
-    batch_constraints: Int32  # of its batch, if it is the first tree of one; else 0
+    batch: Int32  # first tree of its batch: small islands that are solved together
+    first_constraint: Int32  # first constraint of its batch, if it is the first tree of one
+    batch_constraints: Int32  # constraints of its batch, if it is the first tree of one; else 0
     can_sleep: Int32
-    can_wake: Int32  # by moving
-    sleep_threshold: real  # sum of its squared velocities below which it wants to sleep, after a while
+    can_wake: Int32  # 1: wakes up when it moves
+    sleep_threshold: real  # it may fall asleep after a time with its sum of squared velocities below this
 
 
 @struct
@@ -92,12 +92,12 @@ class LinkModel:
     first_position: Int32
     first_dof: Int32
     dof_count: Int32
-    nearest_dof: Int32  # last of the dofs that move it, -1 if none does
+    nearest_dof: Int32  # last dof on the path from the root to this link, -1 for none
     sensor: Int32
-    joint_rotation: Quaternion  # inertial frame in the parent's inertial frame at position 0
+    joint_rotation: Quaternion  # of the inertial frame in the parent's inertial frame, at position 0
     pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
     com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
-    axis: Vector3  # velocity per unit rate, in the inertial frame
+    axis: Vector3  # angular or linear velocity per unit of the joint's rate, in the inertial frame
     unit_axis: Vector3
     planar_axis1: Vector3  # first translation of a planar joint, in the inertial frame
     planar_axis2: Vector3
@@ -107,16 +107,16 @@ class LinkModel:
 class DofModel:
     """One velocity coordinate."""
 
-    parent: Int32  # next active dof towards the root, -1 at the root
+    parent: Int32  # next active dof towards the root, -1 for none
 
 
 @struct
 class ConstraintModel:
-    """What one joint motor, joint limit or user constraint may do."""
+    """One joint motor, joint limit or user constraint."""
 
     kind: Int32
     tree: Int32
-    link: Int32  # of a user constraint: its row
+    link: Int32  # of a user constraint: its row in `UserConstraints`
 
 
 if TYPE_CHECKING:
@@ -135,9 +135,9 @@ else:
 class Model:
     """Topology and parameters of every body.
 
-    Link rows include the base of each tree, its first. Indices of links, dofs and positions count
-    over all trees. All worlds share the topology. What may differ from world to world has a leading world
-    axis, with one row for each world, or a single one that all of them share.
+    The first link row of a tree is its base. Indices of links, dofs and positions count over all trees.
+    All worlds share the topology. Parameters that may differ between worlds have a leading world axis, with
+    one row for each world, or a single row shared by all worlds.
     """
 
     tree: Trees
@@ -145,7 +145,7 @@ class Model:
     dof: Dofs
     constraint: Constraints
 
-    gravity_vector: Vector3Rows  # its first entry [m/s²]
+    gravity_vector: Vector3Rows  # in the first entry [m/s²]
     tree_linear_damping: RealRows
     tree_angular_damping: RealRows
     tree_max_velocity: RealRows
@@ -169,32 +169,32 @@ class State:
     dof_torque: RealRows
     dof_motor_impulse: RealRows
     link_pose: TransformRows  # of the inertial frame
-    link_twist: Vector6Rows  # velocity of the centre of mass, angular velocity
-    link_wrench: Vector6Rows  # force, torque about the centre of mass
-    link_reaction: Vector6Rows  # force, torque of the force-torque sensor
-    tree_island: IntRows  # root of its island; the next two are those of roots
-    tree_iterations: IntRows
-    tree_residual: RealRows
+    link_twist: Vector6Rows  # linear velocity of the centre of mass, angular velocity
+    link_wrench: Vector6Rows  # external force, torque about the centre of mass
+    link_reaction: Vector6Rows  # force-torque sensor: force, torque
+    tree_island: IntRows  # root of its island
+    tree_iterations: IntRows  # sweeps of the solver; in the row of the island's root
+    tree_residual: RealRows  # likewise
     tree_activity: IntRows  # see `codes.Activity`
-    tree_wants_sleep: IntRows  # 1: it sleeps as soon as all of its island are
-    tree_idle_time: RealRows  # time for which it has hardly moved [s]
+    tree_wants_sleep: IntRows  # 1: falls asleep as soon as no tree of its island is active
+    tree_idle_time: RealRows  # time with velocities below its sleep threshold [s]
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
-    node_position: Vector3Rows  # of soft bodies, see `layouts.soft`
+    node_position: Vector3Rows  # nodes of soft bodies, see `layouts.soft`
     node_velocity: Vector3Rows
     node_force: Vector3Rows
-    node_push: Vector3Rows  # what shapes pushed it with in the last substep [N]
-    status_entry: IntRows  # what became of the last step: see `layouts.status`
+    node_push: Vector3Rows  # contact force by shapes in the last substep [N]
+    status_entry: IntRows  # result of the last step: see `layouts.status`
 
 
 @struct
 class LinkScratch:
     """Motion, inertia and forces of one link.
 
-    Spatial quantities are in world axes and refer to the base's centre of mass: velocities and
-    accelerations are those of the point of the link that is there, moments are about it.
+    Spatial quantities are in world axes, with the base's centre of mass as reference point: velocities and
+    accelerations are those of the link's point there, moments are about it.
     """
 
-    offset: Vector3  # centre of mass from the reference point
+    offset: Vector3  # from the reference point to the centre of mass
     rotation: Matrix3
     com_inertia: Matrix3  # about the centre of mass, world axes
     omega: Vector3
@@ -212,7 +212,7 @@ class LinkScratch:
 
 @struct
 class TreeScratch:
-    """Whether a tree slept at the start of the step."""
+    """Sleep state of a tree at the start of the step."""
 
     start_activity: Int32
     start_wants_sleep: Int32
@@ -236,11 +236,11 @@ class RowScratch:
     """One constraint row that acts on a single dof."""
 
     constraint: Int32
-    entry: Int32  # of its dof in `entry_delta_velocity`
+    entry: Int32  # its dof's place in `entry_delta_velocity`
     delta: Int32  # first block of its tree in `delta_velocity`
     response: Int32  # first block of `block_response`
     blocks: Int32
-    change: real  # of its dof's rate, wanted
+    change: real  # requested change of the dof's rate
     effective_mass: real
     lower: real  # bounds of the impulse
     upper: real
@@ -265,15 +265,15 @@ class Scratch:
 
     tree: TreeRows
     link: LinkRows
-    link_pose: TransformRows  # like `State.link_pose`, for other coordinates or of the substep before
+    link_pose: TransformRows  # like `State.link_pose`, but for other coordinates or of the last substep
     dof: DofRows
     position_start: RealRows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
-    # columns, and the `entry_` arrays show the same memory column by column.
+    # columns. The `entry_` arrays are views of the same memory, entry by entry.
     block_factor: Vector4Rows
     block_inverse_mass: Vector4Rows
-    block_response: Vector4Rows  # to the impulse that changes the rate of a row's dof by 1
+    block_response: Vector4Rows  # response to the impulse that changes the rate of a row's dof by 1
     delta_velocity: Vector4Rows
     entry_factor: RealRows
     entry_inverse_mass: RealRows
@@ -282,7 +282,7 @@ class Scratch:
     row: ConstraintRows
 
 
-# Scratch arrays that show another array's blocks entry by entry.
+# Scratch arrays that are views of another array's blocks, entry by entry.
 ENTRY_VIEWS = {
     "entry_factor": "block_factor",
     "entry_inverse_mass": "block_inverse_mass",

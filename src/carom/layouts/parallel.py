@@ -1,4 +1,4 @@
-"""What steps in fine launches work on besides: room for islands, and for pairs of shapes, side by side."""
+"""Additional data of steps in fine launches: workspace for islands and pairs of shapes in parallel."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -17,31 +17,31 @@ from carom.layouts.types import (
     struct,
 )
 
-# A pair leaves at most so many candidates.
+# Maximum number of contact candidates of a pair.
 MOST_CANDIDATES = 4
 
-# What a world is to do in a run of steps: begin it; go on after the steps it has done; stay as it is; or what
-# it is doing already.
+# What a world does in a run of steps: begin it; resume it after the steps it has done; stay as it is; or
+# continue what it is doing already.
 BEGIN, RESUME, STAY, GO_ON = 0, 1, 2, 3
 
-# Where parts of an island's window begin, or how long they are.
+# Starts of the parts of an island's window, or their lengths; see `kernels.parallel.workspace`.
 Window = Type("int32", (8,), "vector")
 
 
 @struct
 class IslandProgress:
-    """How far the search for the impulses of an island has come."""
+    """Progress of solving an island."""
 
-    rows: Int32  # what `solver.island_rows` returned
+    rows: Int32  # returned by `solver.island_rows`
     pair_row: Int32
     block: Int32
     visits: Int32
-    units: Int32  # what `units.write_units` returned
+    units: Int32  # returned by `units.write_units`
     manifold_blocks: Int32
     torsion: Int32
-    resting: Int32  # 1: its contacts start from their last impulses
+    resting: Int32  # 1: its contacts are warm started
     outcome: Int32  # see `warm_starting.NOT_RESTING`
-    stage: Int32  # see `UNWRITTEN`
+    stage: Int32  # see `UNWRITTEN` in `kernels.parallel.workspace`
     residual: real
     sweeps: Int32
 
@@ -56,12 +56,12 @@ else:
 
 @struct
 class IslandWork:
-    """Intermediate results of islands that are solved side by side; the rows of trees are those of roots."""
+    """Intermediate results of islands solved in parallel; an island uses the tree row of its root."""
 
-    tree_window: WindowRows  # where its window begins
-    tree_room: WindowRows  # how long that is
+    tree_window: WindowRows  # starts of the parts of its window
+    tree_room: WindowRows  # their lengths
     tree_progress: ProgressRows
-    # 1 + the tree, if its velocities were not finite before or after the solver, else 0.
+    # 1 + the tree, if its velocities were not finite before or after the solver; else 0.
     tree_free_fault: IntRows
     tree_motion_fault: IntRows
     terms: TermsRows
@@ -69,22 +69,22 @@ class IslandWork:
 
 @struct
 class RunWork:
-    """Which worlds have a part in a run of steps, and what becomes of it."""
+    """Worlds that take part in a run of steps, and whether it succeeded."""
 
-    world_part: Ints  # what it is to do: `BEGIN` and so on
-    trouble: Ints  # its first entry: 1 since something went wrong or did not fit in some world
+    world_part: Ints  # `BEGIN`, `RESUME`, `STAY` or `GO_ON`
+    trouble: Ints  # first entry: 1 if in some world a velocity was not finite or something did not fit
 
 
 @struct
 class PairWork:
-    """Room for the candidates of all pairs of all worlds, and for looking for them.
+    """Contact candidates of all pairs of all worlds, and workspace for finding them.
 
-    The former are arrays by world, like those of `Pairs`. There are fewer *workers*, each with the
-    room that the search in one pair takes; see `Pairs`.
+    Candidates have a world axis, like the fields of `Pairs`. Each *worker* has the workspace of one pair at a
+    time, see `Pairs`; there are fewer workers than pairs.
     """
 
-    world_kept: Ints  # where the contacts of the last substep have been put aside
-    pair_found: Index4Rows  # its first previous contact and the end of these; what `find_candidates` returned
+    world_kept: Ints  # first row of the saved contacts of the last substep, see `manifold.keep_previous`
+    pair_found: Index4Rows  # first and end of its previous contacts; then as `find_candidates` returned
     candidate_terms: Vector8Rows  # `MOST_CANDIDATES` for each pair
 
     worker_candidates: Vector8Rows

@@ -1,4 +1,4 @@
-"""What questions about a world work on: rays, nearest points, lists of contacts."""
+"""Data of the kernels of queries: rays, nearest points, lists of contacts."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -16,16 +16,16 @@ from carom.layouts.types import (
 if TYPE_CHECKING:
     Truths = Any
 else:
-    # 0 or 1: what NumPy has as booleans.
+    # 0 or 1, NumPy's booleans.
     Truths = ArrayType(Type("uint8"))
 
-# Links from this one down stand for any link.
+# Link indices up to this one mean any link.
 ANY_LINK = -2
 
 
 @struct
 class Places:
-    """The body and the link of each row, by the numbers that users know them by."""
+    """Body id and link index of each link row, as users have them."""
 
     place_body: Ints
     place_link: Ints  # -1: the base
@@ -33,7 +33,7 @@ class Places:
 
 @struct
 class ContactReport:
-    """The contacts that were asked for."""
+    """Result of a query for contacts."""
 
     report_body_a: Ints
     report_body_b: Ints
@@ -43,51 +43,51 @@ class ContactReport:
     report_point_b: Vectors3
     report_normal: Vectors3  # on b, towards a
     report_distance: Reals
-    report_force: Reals  # along the normal
-    report_force1: Reals  # along the friction directions
+    report_force: Reals  # along the normal [N]
+    report_force1: Reals  # along the friction directions [N]
     report_force2: Reals
     report_direction1: Vectors3
     report_direction2: Vectors3
-    report_count: Ints  # the first one: how many there are
+    report_count: Ints  # in the first entry: number of contacts
 
 
 @struct
 class Touching:
-    """How some links touch some others in each world."""
+    """Contacts between chosen links and some other links, summarised for each world."""
 
-    link_place: Ints  # by row of link: its place among those that are asked for, or -1
-    link_other: Ints  # 1: one of the others
-    world_number: Ints  # contact points
-    world_touching: Truths  # whether one of them pushes
-    world_impulse: Vectors3  # on the links that are asked for, in world axes
+    link_place: Ints  # by link row: its index among the chosen links, or -1
+    link_other: Ints  # by link row: 1 for one of the other links, else 0
+    world_number: Ints  # number of contact points
+    world_touching: Truths  # whether one of them has a normal impulse
+    world_impulse: Vectors3  # total impulse on the chosen links, in world axes
     world_distance: Reals  # of the deepest point
-    world_deepest: Vectors3  # that point on those links, in world axes
-    place_touching: Truths  # world after world: which of the links have a contact point
+    world_deepest: Vectors3  # that point on the chosen link, in world axes
+    place_touching: Truths  # by world, then chosen link: whether the link has a contact point
 
 
 @struct
 class Searches:
-    """Pairs of shapes, and the nearest points of those within reach."""
+    """Pairs of shapes, and the nearest points of pairs within the maximum distance."""
 
     search_first: IntRows
     search_second: IntRows
-    search_count: IntRows  # the first one: how many were found
-    search_pair: IntRows  # which pair each of them is
-    search_found: Vector8Rows  # as `Pairs.candidate_terms`
+    search_count: IntRows  # in the first entry: number of pairs found
+    search_pair: IntRows  # index of each pair found
+    search_found: Vector8Rows  # columns as in `Pairs.candidate_terms`
 
 
 @struct
 class Rays:
-    """Rays, and what they hit."""
+    """Rays and their hits."""
 
     ray_start: Vectors3
     ray_end: Vectors3
-    ray_shape: Ints  # -1: nothing
-    ray_body: Ints  # -1: nothing
-    ray_link: Ints  # -1: the base, or nothing
-    ray_fraction: Reals  # 1: nothing
-    ray_position: Vectors3  # 0: nothing
-    ray_normal: Vectors3  # in world axes; 0: nothing
-    # Hits that do not come after these do not count; shape -1 for none.
+    ray_shape: Ints  # -1: no hit
+    ray_body: Ints  # -1: no hit
+    ray_link: Ints  # -1: the base, or no hit
+    ray_fraction: Reals  # 1: no hit
+    ray_position: Vectors3  # 0: no hit
+    ray_normal: Vectors3  # in world axes; 0: no hit
+    # The last hit found so far: only hits after it count. Shape -1 for none.
     ray_last_shape: Ints
     ray_last_fraction: Reals

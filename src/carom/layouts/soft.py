@@ -1,9 +1,9 @@
 """Data of soft bodies: `SoftModel`, and `SoftWork`, the workspace of a step.
 
 A soft body is *nodes* (points with mass), *springs* between two and *tetrahedra* between four of them, and a
-surface of triangular *faces*. A tree without links stands for it among all other bodies: a fixed base whose
-pose and velocity follow the nodes. As in `layouts.model`, a field's axis is the first word of its name; rows
-of all soft bodies follow each other, and all worlds share the topology.
+surface of triangular *faces*. A tree without links represents it among all other bodies: a fixed base whose
+pose and velocity follow the nodes. As in `layouts.model`, a field's axis is the first word of its name. The
+rows of each soft body are contiguous, and all worlds share the topology.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -26,13 +26,13 @@ from carom.layouts.types import (
 
 # Columns of `SoftModel.count_soft`.
 BODIES, ANCHORS = 0, 1
-# Shapes that one node can touch at a time: the nearest ones are kept.
+# Maximum number of shapes in contact with one node: the nearest ones are kept.
 TOUCHES_PER_NODE = 3
-# Rows over a tree that a touch or an anchor needs: a push along each axis of the world.
+# Rows over a tree of a touch or an anchor: an impulse along each world axis.
 PUSH_ROWS = 3
-# Faces of soft bodies that one node remembers at a time: the nearest ones.
+# Maximum number of faces of soft bodies stored for one node: the nearest ones.
 FACES_PER_NODE = 4
-# Lists of the nodes in the cells of a grid; a power of two.
+# Number of buckets of the hash grid of nodes; a power of two.
 BUCKETS = 4096
 
 
@@ -40,7 +40,7 @@ BUCKETS = 4096
 class SoftBodyModel:
     """One soft body."""
 
-    tree: Int32  # the tree that stands for it
+    tree: Int32  # the tree that represents it
     first_node: Int32
     node_count: Int32
     first_spring: Int32
@@ -50,13 +50,13 @@ class SoftBodyModel:
     first_face: Int32
     face_count: Int32
     self_collision: Int32
-    margin: real  # distance from other surfaces at which a node rests [m]
-    thickness: real  # distance at which nodes are kept off its faces [m]
+    margin: real  # distance of resting nodes from shapes [m]
+    thickness: real  # minimum distance of nodes from its faces [m]
     mu: real  # Neo-Hookean parameters [Pa]
     lam: real
-    damping: real  # viscosity of tetrahedra as a share of `mu` and `lam` [s]
-    frequency: real  # bound of the angular frequencies at which it can vibrate [rad/s]
-    gravity_factor: real  # share of the world's gravity that pulls it
+    damping: real  # viscosity of tetrahedra, per unit of `mu` and `lam` [s]
+    frequency: real  # upper bound of its natural angular frequencies [rad/s]
+    gravity_factor: real  # factor on the world's gravity
 
 
 @struct
@@ -65,11 +65,11 @@ class SpringModel:
 
     a: Int32
     b: Int32
-    all_directions: Int32  # 1: damps every relative motion of its ends; 0: that along it
+    all_directions: Int32  # 1: damps all relative motion of its ends; 0: only along the spring
     length: real  # at rest [m]
     stiffness: real  # [N/m]
     damping: real  # [N s/m]
-    frequency: real  # bound of the angular frequencies at which its ends can vibrate [rad/s]
+    frequency: real  # upper bound of the natural angular frequencies of its nodes [rad/s]
 
 
 @struct
@@ -77,9 +77,9 @@ class TetraModel:
     """A tetrahedron between four nodes."""
 
     nodes: Index4
-    inverse: Matrix3  # of the edges from the first node, as columns, at rest [1/m]
+    inverse: Matrix3  # of the matrix of edges from the first node (columns), at rest [1/m]
     volume: real  # at rest [m³]
-    frequency: real  # as of a spring, at rest [rad/s]
+    frequency: real  # as for a spring, at rest [rad/s]
 
 
 @struct
@@ -114,39 +114,39 @@ class SoftModel:
     spring: Springs
     tetra: Tetras
     anchor: Anchors
-    node_inverse_mass: Reals  # 0: held where it is in the world
-    node_anchored: Ints  # 1: held at a link, whose shapes and those of others it does not touch
-    node_rest: Vectors3  # from the centre of mass of its body, as it was loaded [m]
+    node_inverse_mass: Reals  # 0: fixed in the world
+    node_anchored: Ints  # 1: fixed to a link; it has no contacts with any shapes
+    node_rest: Vectors3  # position as loaded, from its body's centre of mass [m]
     face_nodes: Index4s  # three nodes, counter-clockwise from outside
-    count_soft: Ints  # its columns are BODIES, ANCHORS
+    count_soft: Ints  # columns: BODIES, ANCHORS
 
 
 @struct
 class SoftWork:
     """Intermediate results of a step of soft bodies.
 
-    A *touch* is a node near a shape. While a substep lasts it sees the shape as a plane through a point that
-    moves with the link; `TOUCHES_PER_NODE` of them follow each other for each node.
+    A *touch* is a node near a shape. During a substep the shape is approximated by a plane through a point
+    that moves with the link. Each node has `TOUCHES_PER_NODE` contiguous rows for touches.
     """
 
     node_start_position: Vector3Rows  # at the start of the step
     node_start_velocity: Vector3Rows
-    node_before: Vector3Rows  # at the start of the small step
-    node_touches: IntRows  # how many
+    node_before: Vector3Rows  # position at the start of the smaller time step
+    node_touches: IntRows  # number of touches
     node_body: IntRows
-    node_faces: IntRows  # how many it is near
-    node_next: IntRows  # in the list of its bucket
+    node_faces: IntRows  # number of faces near it
+    node_next: IntRows  # next node in the same bucket
     bucket_first: IntRows
     near_face: IntRows  # `FACES_PER_NODE` for each node
-    near_side: RealRows  # 1: the node is where the normal of the face points; -1: behind
-    near_distance: RealRows  # when it was found
+    near_side: RealRows  # 1: the node is on the side of the face's normal; -1: on the other
+    near_distance: RealRows  # when the face was found
     near_impulse: Vector3Rows  # on the node, in this substep [N s]
-    touch_row: IntRows  # the first of its rows over a tree, -1 if nothing moves the link
+    touch_row: IntRows  # first of its rows over a tree, -1 if no dof moves the link
     touch_shape: IntRows
     touch_point: Vector3Rows
     touch_velocity: Vector3Rows  # of the point at the start of the substep
     touch_normal: Vector3Rows  # towards the node
-    touch_offset: RealRows  # distance of the node from the plane at which it rests [m]
+    touch_offset: RealRows  # distance of a resting node from the plane [m]
     touch_friction: RealRows
     touch_impulse: Vector3Rows  # on the node, in this substep [N s]
     anchor_row: IntRows  # likewise
@@ -154,4 +154,4 @@ class SoftWork:
     anchor_velocity: Vector3Rows
     anchor_impulse: Vector3Rows
     dof_start: RealRows  # velocity at the start of the substep
-    tree_ready: IntRows  # 1: its inverse mass matrix is there
+    tree_ready: IntRows  # 1: its inverse mass matrix has been computed

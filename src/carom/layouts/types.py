@@ -1,8 +1,8 @@
-"""Plain declarations of what kernels and Python share: types of numbers, vectors, arrays and structs.
+"""Types shared by kernels and Python: numbers, vectors, arrays and structs.
 
-A struct is declared once, as a class with annotations, and is a C struct (`ctypes.Structure`) from then on.
-From its `fields` come the NumPy types of tables (`carom.native.tables`) and the structs that the kernels'
-compiler knows (`carom.kernels.structs`).
+A struct is declared once, as a class with annotations, which `struct` makes a C struct (`ctypes.Structure`).
+The NumPy types of tables (`carom.native.tables`) and Warp's structs (`carom.kernels.structs`) are derived
+from its `fields`.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ _SCALARS: dict[str, Any] = {
 
 @record
 class Type:
-    """A number, or a fixed number of them.
+    """Type of a scalar, or of a vector or matrix of fixed size.
 
     Attributes:
-        scalar: NumPy's name of the numbers.
-        shape: () for a number.
+        scalar: NumPy's name of the type of the numbers.
+        shape: Its shape; () for a scalar.
         kind: Its type in kernels: "scalar", "vector", "quaternion", "transform" or "matrix".
     """
 
@@ -47,7 +47,7 @@ class Type:
 
 @record
 class ArrayType:
-    """An array of one or two dimensions; the first of two is the world axis.
+    """Type of an array of one or two dimensions; the first of two is the world axis.
 
     Attributes:
         entry: Type of an entry: a `Type` or a struct.
@@ -64,7 +64,7 @@ class ArrayType:
 
 
 class ArrayView(ctypes.Structure):
-    """An array as kernels are given it: its address, and its shape and strides [bytes] on up to four axes."""
+    """Array argument of a kernel: its address, and its shape and strides [bytes] on up to four axes."""
 
     _fields_: ClassVar[Any] = [
         ("data", ctypes.c_uint64),
@@ -92,7 +92,7 @@ def c_type(declared: Any) -> Any:
 
 
 def struct(declaration: type) -> Any:
-    """Make a class with annotations a C struct with these fields."""
+    """Make a C struct from a class with annotations, its fields."""
     fields: dict[str, Any] = declaration.__annotations__
     return type(
         declaration.__name__,
@@ -107,7 +107,7 @@ def struct(declaration: type) -> Any:
 
 
 if TYPE_CHECKING:
-    # What a field holds is seen at run time only.
+    # The type checker does not know the types of fields.
     real = Any
     Float32 = Any
     Int32 = Any
@@ -170,7 +170,7 @@ if TYPE_CHECKING:
     Matrix3Rows = Any
     TransformRows = Any
 else:
-    # One value per tree, link, coordinate...: shared by all worlds.
+    # One entry per tree, link, coordinate...: shared by all worlds.
     Ints = ArrayType(Int32)
     Reals = ArrayType(real)
     Vectors3 = ArrayType(Vector3)

@@ -1,1 +1,1 @@
-"""Motion of trees of links: kinematics, inertia, forces, motors, integration."""
+"""Dynamics of articulated bodies: kinematics, inertia, forces, motors, limits, integration."""

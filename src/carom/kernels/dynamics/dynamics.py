@@ -1,7 +1,7 @@
-"""Forces on the links and joint accelerations before constraints.
+"""Forces on the links, and joint accelerations without constraints.
 
-Recursive Newton-Euler in spatial vectors gives the generalized bias force; the composite rigid
-body algorithm and the factorisation of `mass_matrix` turn generalized force into acceleration.
+Recursive Newton-Euler with spatial vectors computes the generalized bias force; the composite rigid
+body algorithm and the factorisation in `mass_matrix` give the accelerations for generalized forces.
 Notation and method: R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5, 6 and 8.
 """
 
@@ -17,7 +17,7 @@ from carom.layouts.codes import CONSTRAINT_FEEDBACK, FREE_MOTION
 
 @func
 def link_inertias(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Rotational inertia of each link in world axes, and its spatial inertia as composite seed."""
+    """Fill in the rotational inertia of each link in world axes, and start composite inertias with it."""
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         rotation = scratch.link[world, link].rotation
@@ -47,7 +47,7 @@ def turned_inertia(r: Matrix3, moments: Vector3) -> Matrix3:
 
 @func
 def parallel_axis(c: Vector3) -> Matrix3:
-    """Inertia of a unit point mass at `c`."""
+    """Rotational inertia of a unit point mass at `c`, about the origin."""
     xx, yy, zz = c[0] * c[0], c[1] * c[1], c[2] * c[2]
     xy, xz, yz = c[0] * c[1], c[0] * c[2], c[1] * c[2]
     return Matrix3(yy + zz, -xy, -xz, -xy, xx + zz, -yz, -xz, -yz, xx + yy)
@@ -55,20 +55,20 @@ def parallel_axis(c: Vector3) -> Matrix3:
 
 @func
 def damping_rate(coefficient: real, speed: real) -> real:
-    """Decay rate of a damped velocity: `coefficient` both per second and per unit of speed."""
+    """Decay rate of a damped velocity [1/s]: linear and quadratic damping, both by `coefficient`."""
     return coefficient + coefficient * speed
 
 
 @func
 def external_force(model: Model, state: State, mass: real, world: Int32, link: Int32) -> Vector3:
-    """Gravity and the force the user applied, at the centre of mass [N]."""
+    """Gravity and the force applied by the user, at the centre of mass [N]."""
     wrench = state.link_wrench[world, link]
     return model.gravity_vector[world, 0] * mass + Vector3(wrench[0], wrench[1], wrench[2])
 
 
 @func
 def external_torque(state: State, world: Int32, link: Int32) -> Vector3:
-    """Torque the user applied [N m]."""
+    """Torque applied by the user [N m]."""
     wrench = state.link_wrench[world, link]
     return Vector3(wrench[3], wrench[4], wrench[5])
 
@@ -83,11 +83,11 @@ def link_bias_forces(
     tree: Int32,
     purpose: Int32,
 ):
-    """Velocities of the links, and the force each needs to move as it does.
+    """Fill in the velocities and bias accelerations of the links, and the force each link needs for them.
 
-    For the purpose `FREE_MOTION` that is to move on without joint acceleration, against gravity, the
-    forces the user applied and damping. `CONSTRAINT_FEEDBACK` is Bullet's second pass for
-    force-torque sensors: constraint forces in place of gravity and applied forces, and no
+    For the purpose `FREE_MOTION` that is the force for motion without joint acceleration, less gravity and
+    applied forces, plus damping. `CONSTRAINT_FEEDBACK` is Bullet's second pass for force-torque
+    sensors: with constraint forces in place of gravity and applied forces, and without the
     centripetal force of the links.
     """
     base = model.tree[tree].first_link
@@ -116,11 +116,11 @@ def link_bias_forces(
                 dof += 1
             omega += joint_omega
             velocity += joint_velocity
-            # The motion subspace turns with the link: spatial cross product of both velocities.
+            # The motion subspace moves with the link: spatial cross product of both velocities.
             alpha += wp.cross(omega, joint_omega)
             acceleration += wp.cross(omega, joint_velocity) + wp.cross(velocity, joint_omega)
         elif model.tree[tree].fixed == 0:
-            # The base keeps its velocity; its spatial acceleration is that minus omega x velocity.
+            # The base's velocity stays constant, so its spatial acceleration is -omega x velocity.
             acceleration = -wp.cross(omega, velocity)
         scratch.link[world, link].omega = omega
         scratch.link[world, link].velocity = velocity
@@ -133,7 +133,7 @@ def link_bias_forces(
         com_velocity = velocity + wp.cross(omega, c)
         spin = about_com * omega
 
-        # Newton and Euler at the centre of mass.
+        # Newton-Euler equations at the centre of mass.
         com_acceleration = acceleration + wp.cross(alpha, c) + wp.cross(omega, com_velocity)
         force = mass * com_acceleration
         torque = about_com * alpha + wp.cross(omega, spin)
@@ -160,7 +160,7 @@ def link_bias_forces(
 def generalized_forces(
     model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, purpose: Int32
 ):
-    """Gather link forces towards the root; leaves in `dof_force` what is free to accelerate dofs."""
+    """Sum up link forces towards the root; leaves in `dof_force` applied minus bias forces."""
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
     for i in range(count):
@@ -188,7 +188,7 @@ def generalized_forces(
 def update_velocities(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
-    """Velocities after the step if nothing constrained them; `dof_force` holds accelerations."""
+    """Update velocities by the accelerations in `dof_force`, without constraints."""
     bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     total = real(0.0)

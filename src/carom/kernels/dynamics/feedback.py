@@ -1,7 +1,7 @@
-"""Force-torque sensors: the wrench that a joint carries from its parent to its link.
+"""Force-torque sensors: the wrench that a joint transmits from the parent link to its link.
 
-As in Bullet it is measured in two passes: the wrench of the unconstrained motion, plus that of a
-second motion which only the constraint forces drive.
+As in Bullet it is computed in two passes: the wrench of the unconstrained motion, plus that of a
+second motion caused by the constraint forces alone.
 """
 
 import warp as wp
@@ -16,7 +16,7 @@ from carom.layouts.codes import CONSTRAINT_FEEDBACK
 
 @func
 def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Forget the constraint forces of the last substep."""
+    """Set the constraint forces on the links of a tree to zero."""
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
@@ -25,7 +25,7 @@ def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: 
 
 @func
 def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, point: Vector3, force: Vector3):
-    """Add a force at a point of a link [m] to the constraint forces of the substep."""
+    """Add a force [N] at a point of a link [m], in world axes, to the constraint forces of the substep."""
     center = wp.transform_get_translation(state.link_pose[world, link])
     scratch.link[world, link].constraint_force += force
     scratch.link[world, link].constraint_torque += wp.cross(point - center, force)
@@ -35,7 +35,7 @@ def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, po
 def gather_constraint_forces(
     model: Model, settings: Settings, scratch: Scratch, world: Int32, first: Int32, last: Int32
 ):
-    """Turn the impulses of rows [first, last) into forces on the joint's link and on its parent."""
+    """Add the impulses of rows [first, last), as forces, to the joint's link and its parent."""
     for row in range(first, last):
         constraint = scratch.row[world, row].constraint
         if model.tree[model.constraint[constraint].tree].sensor_count > 0:
@@ -57,15 +57,15 @@ def gather_constraint_forces(
 def measure_joint_wrenches(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, add: Int32
 ):
-    """Store in (or add to) the sensors the wrenches that their joints carry.
+    """Store in (or add to) the sensors the wrenches transmitted by their joints.
 
-    Expects the accelerations in `dof_force` and the gathered bias forces of `generalized_forces`.
+    Expects the accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
     """
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
     zero = Vector3(0.0, 0.0, 0.0)
 
-    # What the joint accelerations add to the accelerations of the links.
+    # Accelerations of the links caused by the joint accelerations.
     for link in range(base, base + count):
         alpha = zero
         acceleration = zero
@@ -80,7 +80,7 @@ def measure_joint_wrenches(
         scratch.link[world, link].alpha = alpha
         scratch.link[world, link].acceleration = acceleration
 
-    # The force for that, gathered towards the root on top of the bias forces.
+    # The forces needed for these, summed up towards the root and added to the bias forces.
     for link in range(base, base + count):
         mass = model.link_mass[world, link]
         c = scratch.link[world, link].offset
@@ -117,7 +117,7 @@ def measure_joint_wrenches(
 def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
-    """Second pass: add the effect of constraint forces to the sensors."""
+    """Second pass: add the wrenches caused by constraint forces to the sensors."""
     link_bias_forces(model, settings, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)

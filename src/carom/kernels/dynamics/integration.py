@@ -1,4 +1,4 @@
-"""Positions after a step, from the velocities the step ended with (semi-implicit Euler)."""
+"""Integration of positions, with the velocities at the end of the step (semi-implicit Euler)."""
 
 import warp as wp
 
@@ -19,10 +19,10 @@ def store_quaternion(state: State, world: Int32, q: Int32, value: Quaternion):
 
 @func
 def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, dt: real):
-    """Advance the coordinates of a tree by `dt`.
+    """Integrate the coordinates of a tree over `dt`.
 
-    The base's orientation turns in world axes, a spherical joint's in the axes of its link; the
-    translations of a planar joint are given along axes of the link.
+    Angular velocities of the base are in world axes, those of a spherical joint in the axes of its link; the
+    translational rates of a planar joint are along axes of its link.
     """
     base = model.tree[tree].first_link
     q = model.tree[tree].first_position

@@ -1,4 +1,4 @@
-"""Forward kinematics: poses of links, motion subspaces of joints, velocities of links."""
+"""Forward kinematics: poses and velocities of links, motion subspaces of joints."""
 
 import warp as wp
 
@@ -10,7 +10,7 @@ from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 
 @func
 def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
-    """The quaternion stored from coordinate `q` on."""
+    """The quaternion in coordinates `q` to `q + 3`."""
     return Quaternion(
         state.position[world, q],
         state.position[world, q + 1],
@@ -33,7 +33,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
         pivot = wp.transform_get_translation(parent_pose) + wp.quat_rotate(
             parent_orientation, model.link[link].pivot_in_parent
         )
-        # Kept in the parent's frame for as long as possible: the next link waits for the world pose only.
+        # Most is computed in the parent's frame, without waiting for the parent's world pose.
         turn = model.link[link].joint_rotation
         slide = Vector3(0.0, 0.0, 0.0)
 
@@ -61,7 +61,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
 
 @func
 def base_subspace(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """What one unit of each dof of a free base does: it turns about an axis, then moves along one."""
+    """Motion subspaces of a free base: rotation about each world axis, then translation along each."""
     zero = Vector3(0.0, 0.0, 0.0)
     first = model.tree[tree].first_velocity
     for axis in range(3):
@@ -75,9 +75,10 @@ def base_subspace(model: Model, scratch: Scratch, world: Int32, tree: Int32):
 
 @func
 def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world: Int32, tree: Int32):
-    """What one unit of each active dof does to its link: angular and linear velocity.
+    """Motion subspace of each active dof: angular and linear velocity of its link per unit rate.
 
-    Linear velocities are those at the tree's reference point, the centre of mass of its base.
+    Linear velocities are those at the tree's reference point, the centre of mass of its base. Rotation
+    matrices and centres of mass of the links are filled in, too.
     """
     base = model.tree[tree].first_link
     reference = wp.transform_get_translation(poses[world, base])
@@ -139,7 +140,7 @@ def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vect
 
 @func
 def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Velocities of all links of a tree about its reference point, from the joint rates."""
+    """Compute the velocities of all links of a tree at its reference point, from the rates of the dofs."""
     base = model.tree[tree].first_link
     scratch.link[world, base].omega = base_omega(model, state, world, tree)
     scratch.link[world, base].velocity = base_velocity(model, state, world, tree)
@@ -166,7 +167,7 @@ def forward_kinematics_kernel(model: Model, state: State, tree: Int32, first_wor
 def update_link_poses(
     settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
-    """Bring the link poses of a tree up to date; if some shape is to look ahead, keep them as they were."""
+    """Update the link poses of a tree; the last ones are saved if continuous detection is used."""
     if settings.looks_ahead != 0:
         base = model.tree[tree].first_link
         for link in range(base, base + model.tree[tree].link_count):
@@ -184,10 +185,10 @@ def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: S
 
 @kernel
 def link_twist_kernel(model: Model, state: State, scratch: Scratch, tree: Int32, first_world: Int32):
-    """Velocities of the links of one tree, in world axes, for its present coordinates.
+    """Compute the velocities of the links of one tree, in world axes, for its present coordinates.
 
-    As in Bullet they are turned to world axes by `State.link_pose`, which after a step is that of
-    the start of its last substep.
+    As in Bullet they are rotated to world axes by the orientations of `State.link_pose`, which after a step
+    are those at the start of its last substep.
     """
     world = first_world + wp.tid()
     forward_kinematics(model, state, scratch.link_pose, world, tree)

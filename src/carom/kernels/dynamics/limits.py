@@ -1,4 +1,4 @@
-"""Joint limits: one-sided rows that exist while the limit is reached or passed."""
+"""Joint limits: one-sided constraint rows of joints that have reached or exceeded a limit."""
 
 import math
 
@@ -12,13 +12,13 @@ from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 
 _EPSILON = real(2.220446049250313e-16)
 _PI = real(math.pi)
-# Share of a spherical joint's excess that one step takes back, before the error reduction.
+# Factor on the error of a spherical joint, in addition to the error reduction.
 _SPHERICAL_GAIN = real(0.2)
 
 
 @func
 def limit_change(settings: Settings, violation: real) -> real:
-    """Speed at which a joint returns into its range from `violation` outside."""
+    """Requested speed back into the range of a joint that exceeds it by `violation` >= 0."""
     if settings.split_impulse == 0 or -violation > settings.split_threshold:
         return violation * settings.joint_erp / settings.time_step
     return real(0.0)
@@ -34,10 +34,10 @@ def limit_rows(
     constraint: Int32,
     row: Int32,
 ) -> Int32:
-    """Add the rows of the bounds that a revolute or prismatic joint has reached.
+    """Add the rows of the limits that a revolute or prismatic joint has reached; returns the next free row.
 
-    A violation within the split threshold is taken back at the joint's error reduction rate; a
-    deeper one only stops growing.
+    A violation is reduced at the joints' error reduction rate. With split impulse, one beyond the split
+    threshold only stops growing.
     """
     link = model.constraint[constraint].link
     dof = model.link[link].first_dof
@@ -59,7 +59,7 @@ def limit_rows(
 
 @func
 def swing_and_twist(current: Quaternion) -> Vector3:
-    """Angles of a spherical joint away from its twist axis z (x, y) and about it (z) [rad]."""
+    """Swing angles (x, y) of a spherical joint, and its twist angle about z (z) [rad]."""
     up = Vector3(0.0, 0.0, 1.0)
     cone = wp.normalize(wp.quat_rotate(current, up))
     across = wp.cross(up, cone)
@@ -91,7 +91,7 @@ def spherical_limit_rows(
     constraint: Int32,
     row: Int32,
 ) -> Int32:
-    """Add the rows of the swing and twist ranges that a spherical joint has left."""
+    """Add the rows of a spherical joint's exceeded swing and twist limits; returns the next free row."""
     link = model.constraint[constraint].link
     first = model.link[link].first_dof
     angles = swing_and_twist(joint_quaternion(model, state, world, link))

@@ -1,12 +1,12 @@
-"""The joint-space inertia of a tree, its factorisation and its inverse.
+"""Joint-space inertia matrix of a tree, its factorisation and its inverse.
 
-Matrices over the n active dofs of a tree are stored by rows of ceil(n/4) four-wide blocks, so that
-row operations run four columns at a time. Dofs are numbered from the root, so the factorisation
-H = Lᵀ D L fills nothing in: an entry is zero unless one dof carries the other
+Matrices over the n active dofs of a tree are stored by rows of ceil(n/4) blocks of four columns, so that
+row operations process four columns at a time. Dofs are numbered from the root, so the factorisation
+H = Lᵀ D L causes no fill-in: an entry is zero unless one dof is an ancestor of the other
 (R. Featherstone, Efficient factorization of the joint-space inertia matrix for branched kinematic
 trees, IJRR 2005). Its pivots D are the articulated inertias of the dofs.
 
-Inner loops are written with `while`: Warp's `range` costs as much as what they do.
+Inner loops use `while`: Warp's `range` costs as much as the body of these loops.
 """
 
 import warp as wp
@@ -23,7 +23,7 @@ LEAST_PIVOT = real(2.220446049250313e-16)
 def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Fill `block_factor` with the joint-space inertia matrix (its lower triangle).
 
-    Composite rigid body algorithm: each link carries the inertia of its whole subtree.
+    Composite rigid body algorithm: the composite inertia of a link is that of its whole subtree.
     """
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
@@ -65,7 +65,7 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
 
 @func
 def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Turn the joint-space inertia in `block_factor` into L, and its pivots into inverses."""
+    """Replace the joint-space inertia in `block_factor` by L, and store the inverses of the pivots D."""
     first = model.tree[tree].first_dof
     count = model.tree[tree].dof_count
     blocks = (count + 3) // 4
@@ -89,7 +89,7 @@ def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
                 )  # fmt: skip
             i += 1
             target += blocks
-        # The row of L; done last because every entry above needs the unscaled row.
+        # The row of L: last, because the steps above need the unscaled row.
         write_multiple(scratch.block_factor, row, inverse, scratch.block_factor, row, world, k // 4 + 1)
         k -= 1
         row -= blocks
@@ -128,7 +128,7 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Fill `block_inverse_mass` with the inverse A of the joint-space inertia.
 
     L A = D⁻¹ L⁻ᵀ is upper triangular, which gives the rows of A one after the other:
-    A[i, c] = -Σ L[i, j] A[j, c] over j < i for c < i, and 1 / D[i] more on the diagonal.
+    A[i, c] = -Σ L[i, j] A[j, c] over j < i for c < i; on the diagonal, 1 / D[i] is added.
     """
     first = model.tree[tree].first_dof
     count = model.tree[tree].dof_count
@@ -149,7 +149,7 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
                 )  # fmt: skip
             j += 1
             source += blocks
-        # Column i of the rows above is still to come, so the diagonal is summed on its own.
+        # Column i of the rows above is not filled yet, so the diagonal is summed separately.
         diagonal = scratch.dof[world, first + i].inverse_pivot
         j = Int32(0)
         source = matrix + 0

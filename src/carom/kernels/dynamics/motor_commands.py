@@ -1,4 +1,4 @@
-"""Setting the motors of several joints at once."""
+"""Setting the motors of several joints in one launch."""
 
 import math
 
@@ -21,7 +21,7 @@ UNBOUNDED = real(math.inf)
 
 @func
 def stated(given: Int32, bit: Int32, numbers: Reals, joint: Int32, otherwise: real) -> real:
-    """A number that is given, or what stands for it."""
+    """The number for a joint if such numbers are given, else the default `otherwise`."""
     if given & bit != 0:
         return numbers[joint]
     return otherwise
@@ -29,7 +29,7 @@ def stated(given: Int32, bit: Int32, numbers: Reals, joint: Int32, otherwise: re
 
 @func
 def total(given: Int32, bit: Int32, numbers: Reals, count: Int32) -> real:
-    """The sum of numbers if they are given."""
+    """Sum of the numbers for all joints if they are given, else 0."""
     result = real(0.0)
     if given & bit != 0:
         for joint in range(count):
@@ -39,7 +39,7 @@ def total(given: Int32, bit: Int32, numbers: Reals, count: Int32) -> real:
 
 @func
 def sum_of_given(commands: MotorCommands, count: Int32, given: Int32) -> real:
-    """The sum of all numbers that are given: finite if all of them are."""
+    """Sum of all numbers given: it is finite if all of them are."""
     return (
         total(given, POSITIONS, commands.joint_position, count)
         + total(given, VELOCITIES, commands.joint_velocity, count)
@@ -62,21 +62,21 @@ def command_motors_kernel(
     given: Int32,
     time_step: real,
 ):
-    """Set the motors of joints, or add to their torques; nothing if a number is not finite.
+    """Set the motors of joints, or add joint torques; does nothing if a number is not finite.
 
-    The same as `AxisMotor.command` of `carom.scene.joint_motor` for each.
+    For each joint the result is that of `AxisMotor.command` in `carom.scene.joint_motor`.
 
     Args:
         state: The state of all worlds.
         commands: The commands of the motors.
-        world: Their world.
-        count: How many joints there are.
-        default_force: Force of motors whose forces are not given [N or N m].
-        default_kp: Default gain.
-        default_kd: Default gain.
+        world: The world.
+        count: Number of joints.
+        default_force: Maximum force if forces are not given; with `TORQUE`, the torque [N or N m].
+        default_kp: Position gain if these are not given.
+        default_kd: Velocity gain if these are not given.
         mode: `VELOCITY`, `TORQUE` or `POSITION`.
-        given: What is given; other positions and velocities are 0.
-        time_step: Of a step [s]; makes impulses of forces.
+        given: Bits of the quantities given; positions and velocities that are not given are 0.
+        time_step: Duration by which forces become impulses [s].
     """
     if not wp.isfinite(sum_of_given(commands, count, given)):
         commands.joint_refused[0] = 1

@@ -1,7 +1,7 @@
 """Joint motors (POSITION_CONTROL, VELOCITY_CONTROL): constraint rows with gains and a maximum impulse.
 
-A motor asks for a joint rate after the step; the solver gives the impulse that reaches it, as far
-as the motor's maximum impulse allows. Explicit drives (PD, joint damping) are forces instead.
+A motor's row requests a joint rate after the step; the solver computes the impulse that causes it, up to
+the motor's maximum impulse. Explicit PD control and joint damping are torques instead.
 """
 
 import warp as wp
@@ -31,13 +31,13 @@ from carom.layouts.codes import (
 
 @func
 def unless_nan(value: real, other: real) -> real:
-    """A number, or NaN where another is that: bounds that are NaN bound nothing, and would not be noticed."""
+    """Return `value`, or NaN if `other` is NaN: clamping to NaN bounds would hide the NaN."""
     return wp.where(other == other, value, other)
 
 
 @func
 def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
-    """Joint damping: viscous friction as an explicit torque, from the rates before the step."""
+    """Add viscous joint damping as an explicit torque, from the rates before the step."""
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
         state.dof_torque[world, dof] -= model.dof_damping[world, dof] * state.dof_velocity[world, dof]
@@ -45,7 +45,7 @@ def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
 
 @func
 def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
-    """Torque of proportional-derivative drives; it adds up over the substeps of one step."""
+    """Add the torques of explicit PD control; they add up over the substeps of one step."""
     base = model.tree[tree].first_link
     for link in range(base + 1, base + model.tree[tree].link_count):
         if model.link[link].dof_count == 1:
@@ -120,7 +120,7 @@ def spherical_motor_rows(
     constraint: Int32,
     row: Int32,
 ) -> Int32:
-    """Add the three rows of a spherical motor: kp of the orientation error per step, rate damped."""
+    """Add the rows of a spherical motor, by orientation error and rate; returns the next free row."""
     link = model.constraint[constraint].link
     first = model.link[link].first_dof
     x = state.dof_motor[world, first]

@@ -1,8 +1,8 @@
-"""A state that is not finite never leaves the step it arose in, nor does one for which room was short.
+"""Saving the state at the start of a step, and restoring it if the step fails.
 
-Each step keeps what it started from. If a velocity comes out as NaN or infinite, or contacts or rows do not
-fit into their arrays, the world goes back there, and its entries of `State.status_entry` tell why. In the
-second case the step is done again with longer arrays.
+A step fails if a velocity becomes NaN or infinite, or if contacts or rows do not fit into their arrays. The
+state of the world is then restored, and `State.status_entry` has the reason. In the second case the step is
+repeated with longer arrays.
 """
 
 import warp as wp
@@ -14,7 +14,7 @@ from carom.layouts.status import STATUS, WELL
 
 @func
 def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Remember the coordinates of a tree at the start of the step, and whether it slept."""
+    """Save the coordinates, joint torques and sleep state of a tree at the start of the step."""
     q = model.tree[tree].first_position
     while q < model.tree[tree].first_position + model.tree[tree].position_count:
         scratch.position_start[world, q] = state.position[world, q]
@@ -31,7 +31,7 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
 
 @func
 def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Put a tree back to where the step started."""
+    """Restore the state of a tree at the start of the step."""
     q = model.tree[tree].first_position
     while q < model.tree[tree].first_position + model.tree[tree].position_count:
         state.position[world, q] = scratch.position_start[world, q]
@@ -48,6 +48,6 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
 
 @func
 def report_fault(state: State, world: Int32, tree: Int32, sum_of_velocities: real):
-    """Note the first tree whose velocities are not finite."""
+    """Record a tree in the status if the sum of its velocities is not finite; the first fault stays."""
     if not wp.isfinite(sum_of_velocities) and state.status_entry[world, STATUS] == WELL:
         state.status_entry[world, STATUS] = tree + 1

@@ -1,7 +1,7 @@
 """Constraint rows that act on one dof of one tree.
 
-A row asks for a change of the rate of its dof; the solver finds the impulse on the dof, within
-bounds, that brings it about. Rows of an island are contiguous, in the order in which the solver visits them.
+A row requests a change of the rate of its dof; the solver computes the impulse on the dof, within
+bounds, that causes it. Rows of an island are contiguous, in the order in which the solver visits them.
 """
 
 import warp as wp
@@ -27,7 +27,7 @@ def add_row(
     lower: real,
     upper: real,
 ) -> Int32:
-    """Write a row that wants the rate of `dof` to change by `change`; returns `row + 1`."""
+    """Write a row that requests the `change` of the rate of `dof`; returns `row + 1`."""
     tree = model.constraint[constraint].tree
     i = dof - model.tree[tree].first_dof
     blocks = (model.tree[tree].dof_count + 3) // 4
@@ -60,14 +60,14 @@ def row_dof(model: Model, scratch: Scratch, world: Int32, row: Int32) -> Int32:
 
 @func
 def inverse_mass_entry(model: Model, scratch: Scratch, world: Int32, tree: Int32, i: Int32, j: Int32) -> real:
-    """Entry (i, j) of a tree's inverse mass matrix, in its active dofs."""
+    """Entry (i, j) of a tree's inverse mass matrix over its active dofs."""
     blocks = (model.tree[tree].dof_count + 3) // 4
     return scratch.entry_inverse_mass[world, 4 * (model.tree[tree].first_block + i * blocks) + j]
 
 
 @func
 def inverse_or_off(inverse_mass: real) -> real:
-    """Effective mass of a row; 0 where nothing can move."""
+    """Effective mass of a row from its inverse mass; 0 if that is too small, as nothing can move."""
     if inverse_mass > LEAST_INVERSE_MASS:
         return 1.0 / inverse_mass
     return 0.0
@@ -84,7 +84,7 @@ def dof_effective_mass(model: Model, scratch: Scratch, world: Int32, tree: Int32
 def angular_inverse_mass(
     model: Model, scratch: Scratch, world: Int32, tree: Int32, last_dof: Int32, direction: Vector3
 ) -> real:
-    """Angular velocity along `direction` that a unit torque along it gives the link moved by `last_dof`."""
+    """Angular velocity of the link of `last_dof` along `direction`, by a unit angular impulse along it."""
     total = real(0.0)
     first = model.tree[tree].first_dof
     i = last_dof
@@ -106,8 +106,8 @@ def angular_inverse_mass(
 def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: Int32, link: Int32) -> Vector3:
     """Effective masses of the three axes of a spherical joint.
 
-    The responses of both links add as if they were independent, as Bullet has it. That makes effective
-    masses too small: the rows converge all the same, by smaller steps.
+    As in Bullet, the inverse inertias of both links are added as if the links were independent. So effective
+    masses are too small, but the rows still converge, in smaller steps.
     """
     result = Vector3(0.0, 0.0, 0.0)
     first = model.link[link].first_dof

@@ -1,7 +1,7 @@
-"""Free motion of bodies of one link, by the equations of Newton and Euler.
+"""Free motion of bodies of one link, by the Newton-Euler equations.
 
-They say what `dynamics` and `mass_matrix` say of trees, but there is no matrix to factorise: the inverse
-inertia is diagonal in the principal axes.
+The result is that of `dynamics` and `mass_matrix` for such a tree, but no matrix has to be factorised: the
+inverse inertia is diagonal in the principal axes.
 """
 
 import warp as wp
@@ -23,7 +23,7 @@ from carom.kernels.types import Int32, Matrix3, Vector3, Vector4, func, real
 
 @func
 def is_single_body(model: Model, tree: Int32) -> bool:
-    """Whether a tree is one link that can move freely."""
+    """Whether a tree is a single link without a fixed base."""
     return model.tree[tree].link_count == 1 and model.tree[tree].fixed == 0
 
 
@@ -31,7 +31,7 @@ def is_single_body(model: Model, tree: Int32) -> bool:
 def write_inverse_mass(
     model: Model, scratch: Scratch, world: Int32, tree: Int32, inverse_inertia: Matrix3, inverse_mass: real
 ):
-    """Fill the inverse mass matrix of a body: the turning dofs, then the others."""
+    """Fill the inverse mass matrix of a body; its angular dofs come first, then the linear ones."""
     block = model.tree[tree].first_block
     none = Vector4(0.0, 0.0, 0.0, 0.0)
     for axis in range(3):
@@ -50,7 +50,7 @@ def write_inverse_mass(
 def move_single_body(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
 ):
-    """Velocities of a body after the substep if there were no constraints; as `step.free_motion`."""
+    """Update the velocities of a body for the substep without constraints; as `step.free_motion`."""
     forward_kinematics(model, state, state.link_pose, world, tree)
     link = model.tree[tree].first_link
     moments = model.link_inertia[world, link]
@@ -89,7 +89,7 @@ def move_single_body(
         scratch.dof[world, first + axis].force = angular[axis]
         scratch.dof[world, first + 3 + axis].force = linear[axis]
     update_velocities(model, settings, state, scratch, world, tree)
-    # No force depends on where a single body is, so that its velocities do not tell.
+    # No force depends on the position of a single body, so a fault there does not reach its velocities.
     position = wp.transform_get_translation(state.link_pose[world, link])
     report_fault(state, world, tree, position[0] + position[1] + position[2])
     if pushed:

@@ -1,4 +1,4 @@
-"""One step of worlds whose bodies neither touch nor are tied together, in one kernel launch."""
+"""Free motion of trees; and a whole step in one launch, for bodies without contacts and user constraints."""
 
 import warp as wp
 
@@ -36,7 +36,7 @@ from carom.layouts.status import STATUS, WELL
 def move_tree(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
 ):
-    """As `free_motion`, for any tree that is awake."""
+    """As `free_motion`, for a tree that is awake, with any number of links."""
     explicit_pd(model, state, world, tree)
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
@@ -64,7 +64,7 @@ def free_motion(
     tree: Int32,
     pushed: bool,
 ):
-    """Velocities after the substep without constraints; with `pushed`, the data for them."""
+    """Update velocities for the substep without constraints; if `pushed`, also the data for constraints."""
     if is_asleep(state, world, tree):
         return
     if is_single_body(model, tree):
@@ -72,14 +72,14 @@ def free_motion(
     else:
         move_tree(model, settings, state, scratch, world, tree, pushed)
     if has_woken(state, world, tree):
-        # Gravity and forces act on it from the next substep on.
+        # Gravity and forces act on a tree from the substep after its waking up.
         stop(model, state, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
 
 
 @func
 def constrained_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
-    """Add the solver's change to the velocities, and integrate positions."""
+    """Add the solver's delta velocities to the velocities, and integrate positions, of all trees."""
     for tree in range(settings.tree_count):
         move_or_stop(settings, model, state, scratch, world, tree)
 

@@ -1,4 +1,4 @@
-"""How a step begins, ends, and is abandoned."""
+"""Beginning, ending and abandoning a step."""
 
 import warp as wp
 
@@ -13,7 +13,7 @@ from carom.layouts.status import CONTACTS_WANTED, PAIRS_WANTED, STATUS, WELL
 
 @func
 def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
-    """Applied forces and torques last for one step."""
+    """Clear the forces and torques applied to a tree; they act for one step."""
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         state.link_wrench[world, link] = Vector6()
@@ -24,7 +24,7 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
 
 @func
 def begin_world(state: State, pairs: Pairs, world: Int32):
-    """Let a world be well at the start of a step, with none of its contacts put aside."""
+    """Reset the status of a world at the start of a step, and mark its contacts as not saved."""
     state.status_entry[world, STATUS] = WELL
     state.status_entry[world, PAIRS_WANTED] = 0
     state.status_entry[world, CONTACTS_WANTED] = 0
@@ -33,9 +33,9 @@ def begin_world(state: State, pairs: Pairs, world: Int32):
 
 @func
 def abandon_tree(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Put a tree back to where the step started.
+    """Restore the state of a tree at the start of the step.
 
-    Applied forces are cleared after a step that failed; a step that is repeated needs them.
+    Applied forces are cleared if velocities were not finite; a step that is to be repeated needs them.
     """
     return_to_start(model, state, scratch, world, tree)
     if state.status_entry[world, STATUS] > WELL:
@@ -46,7 +46,7 @@ def abandon_tree(model: Model, state: State, scratch: Scratch, world: Int32, tre
 def begin_step(
     settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, moves: Int32
 ):
-    """Keep the start of a step, and let joint friction act for all of it, if anything `moves`."""
+    """Save the state at the start of a step; add joint damping, unless `moves` is 0."""
     begin_world(state, pairs, world)
     for tree in range(settings.tree_count):
         keep_start(model, state, scratch, world, tree)
@@ -56,7 +56,7 @@ def begin_step(
 
 @func
 def end_step(settings: Settings, model: Model, state: State, world: Int32):
-    """Forces last until a step is complete."""
+    """Clear the applied forces of all trees."""
     for tree in range(settings.tree_count):
         clear_forces(model, state, world, tree)
 
@@ -91,7 +91,7 @@ def abandon_step_kernel(
     pairs: Pairs,
     first_world: Int32,
 ):
-    """Go back to the start, where a step went wrong or something did not fit."""
+    """Restore the state at the start of a step that failed."""
     world = first_world + wp.tid()
     restore_contacts(contacts, pairs, world)
     for tree in range(settings.tree_count):

@@ -15,19 +15,19 @@ from carom.layouts.mechanism import BASE_MOTION
 
 @func
 def vector_at(numbers: Reals, first: Int32) -> Vector3:
-    """Three numbers of an array."""
+    """The vector in entries `first` to `first + 2` of an array."""
     return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
 
 
 @func
 def first_rate(sizes: MechanismSizes) -> Int32:
-    """Where in `input` the rate of dof 0 would be: those of a free base are not there."""
+    """Index in `input` of the rate of dof 0, counted as if a free base's rates were there."""
     return BASE_MOTION + sizes.coordinates - sizes.base_dofs
 
 
 @func
 def turned_about_z(r: Matrix3, angle: real) -> Matrix3:
-    """A rotation after a turn about its own z axis."""
+    """The product of a rotation matrix and a rotation about z."""
     s = wp.sin(angle)
     c = wp.cos(angle)
     return Matrix3(
@@ -49,7 +49,7 @@ def turned_back(r: Matrix3, v: Vector3) -> Vector3:
 
 @func
 def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
-    """The rotation from the frame of a node to its parent's, from the positions of its joint."""
+    """Rotation from a node's frame to its parent's, at the joint positions in `input`."""
     turn = mechanism.node[node].turn
     kind = mechanism.node[node].joint_type
     q = BASE_MOTION + mechanism.node[node].first_position
@@ -68,7 +68,7 @@ def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
 
 @func
 def joint_origin(mechanism: MechanismTable, node: Int32) -> Vector3:
-    """The origin of a node in the frame of its parent, from the positions of its joint."""
+    """Origin of a node's frame in its parent's, at the joint positions in `input`."""
     origin = mechanism.node[node].origin
     kind = mechanism.node[node].joint_type
     q = BASE_MOTION + mechanism.node[node].first_position
@@ -87,14 +87,14 @@ def joint_origin(mechanism: MechanismTable, node: Int32) -> Vector3:
 
 @func
 def place(mechanism: MechanismTable, node: Int32):
-    """Find the frame of a node in its parent's."""
+    """Compute the pose of a node's frame in its parent's."""
     mechanism.motion[node].turn = joint_turn(mechanism, node)
     mechanism.motion[node].origin = joint_origin(mechanism, node)
 
 
 @func
 def place_nodes(mechanism: MechanismTable, count: Int32):
-    """Find the frames of the first nodes but the base: in one loop, so that several are under way at once."""
+    """Place the first `count` nodes: in a loop of its own, so that the processor overlaps iterations."""
     for node in range(1, count):
         place(mechanism, node)
 
@@ -110,28 +110,28 @@ def newton_euler(
     rates: Int32,
     accelerations: Int32,
 ):
-    """Leave the forces of the dofs in `output`, from the positions in `input` and what is given.
+    """Compute the generalized forces in `output`, for the positions in `input` and the motion given.
 
     Args:
         sizes: Sizes of the mechanism.
         mechanism: The mechanism.
         omega: Angular velocity of the base.
         alpha: Its derivative.
-        acceleration: Acceleration of the base less gravity.
-        joints: Numbers about the dofs.
-        rates: Where among them the rate of dof 0 is, or would be.
-        accelerations: The same for accelerations; negative where all of them are 0.
+        acceleration: Linear acceleration of the base minus gravity.
+        joints: Array with the rates and accelerations of the dofs.
+        rates: Index in it of the rate of dof 0, counted as if a free base's rates were there.
+        accelerations: The same for accelerations; negative if all of them are 0.
     """
     keep_motion(mechanism, 0, omega, alpha, acceleration)
     mechanism.motion[0].force = Vector3(0.0, 0.0, 0.0)
     mechanism.motion[0].torque = Vector3(0.0, 0.0, 0.0)
-    # What holds a fixed base is not asked for.
+    # Reaction forces on a fixed base are not computed.
     if sizes.base_dofs > 0:
         keep_forces(mechanism, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
     place_nodes(mechanism, sizes.nodes)
     for node in range(1, sizes.nodes):
         parent = mechanism.node[node].parent
-        # Most nodes hang on the one before, whose motion is still at hand.
+        # The parent of most nodes is the node before, whose motion is still in the variables.
         if parent != node - 1:
             omega = mechanism.motion[parent].omega
             alpha = mechanism.motion[parent].alpha
@@ -155,7 +155,7 @@ def moved_on(
     rates: Int32,
     accelerations: Int32,
 ):
-    """The motion of a node, in its own frame, by that of its parent."""
+    """Compute the motion of a node in its own frame from that of its parent, which is given."""
     turn = mechanism.motion[node].turn
     swing = swing_matrix(omega, alpha)
     linear = turned_back(turn, acceleration + swing * mechanism.motion[node].origin)
@@ -202,7 +202,7 @@ def moved_on(
 
 @func
 def swing_matrix(omega: Vector3, alpha: Vector3) -> Matrix3:
-    """What takes a place in a turning frame to its acceleration against the origin of the frame."""
+    """The matrix [α]× + [ω]×[ω]×: times a point of a rotating frame, its acceleration about the origin."""
     xx, yy, zz = omega[0] * omega[0], omega[1] * omega[1], omega[2] * omega[2]
     xy, xz, yz = omega[0] * omega[1], omega[0] * omega[2], omega[1] * omega[2]
     return Matrix3(
@@ -216,7 +216,7 @@ def swing_matrix(omega: Vector3, alpha: Vector3) -> Matrix3:
 def keep_motion(
     mechanism: MechanismTable, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3
 ):
-    """Keep the motion of a node, for the nodes that hang on it."""
+    """Store the motion of a node, for its children."""
     mechanism.motion[node].omega = omega
     mechanism.motion[node].alpha = alpha
     mechanism.motion[node].acceleration = acceleration
@@ -231,7 +231,7 @@ def keep_forces(
     acceleration: Vector3,
     swing: Matrix3,
 ):
-    """Keep the force and the torque about its origin that the motion of a node takes."""
+    """Store the force, and the torque about its origin, that a node needs for its motion."""
     moment = mechanism.node[node].moment
     inertia = mechanism.node[node].inertia
     mechanism.motion[node].force = mechanism.node[node].mass * acceleration + swing * moment
@@ -242,9 +242,9 @@ def keep_forces(
 
 @func
 def gather_forces(sizes: MechanismSizes, mechanism: MechanismTable):
-    """Pass the forces of the nodes on to their parents, and leave what the dofs have of them in `output`.
+    """Sum up the forces of the nodes towards the base, and write the generalized forces to `output`.
 
-    The first of them is NaN if not everything is finite: so a look at one number is enough.
+    The first of these is NaN if any of the forces is not finite, so that only one number has to be checked.
     """
     for behind in range(sizes.nodes):
         node = sizes.nodes - 1 - behind
@@ -270,16 +270,17 @@ def gather_forces(sizes: MechanismSizes, mechanism: MechanismTable):
             mechanism.motion[parent].force += force
             mechanism.motion[parent].torque += turn * torque + wp.cross(mechanism.motion[node].origin, force)
         else:
-            # Everything arrives at the base.
+            # The sums at the base are not finite if any force is not.
             zero = 0.0 * (force[0] + force[1] + force[2] + torque[0] + torque[1] + torque[2])
             mechanism.output[0] += zero
 
 
 @func
 def place_in_base(mechanism: MechanismTable, node: Int32):
-    """Find where a node is in the frame of the base, and what its dofs do there.
+    """Compute the pose of a node and the motion subspaces of its dofs in the base's frame.
 
-    The node is placed, and its parent has been here. Linear velocities are those at the origin of the base.
+    The node has been placed, and this function called for its parent. Linear velocities are those at the
+    base's origin.
     """
     rotation = wp.identity(3, dtype=real)
     position = Vector3(0.0, 0.0, 0.0)
@@ -301,9 +302,9 @@ def place_in_base(mechanism: MechanismTable, node: Int32):
 
 @func
 def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
-    """Leave the mass matrix in `matrix`, row after row; the nodes are placed in the base.
+    """Compute the mass matrix in `matrix`, row-major; `place_in_base` has been called for all nodes.
 
-    Entries of dofs of which neither moves the other are left alone: they are 0 from the beginning.
+    Entries of two dofs on different branches are not written: they are 0 from the beginning.
     """
     for node in range(sizes.nodes):
         rotation = mechanism.motion[node].rotation
@@ -347,7 +348,7 @@ def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
 
 @func
 def shift(c: Vector3, moment: Vector3) -> Matrix3:
-    """What a body's inertia gains when its moment lies at c: 2 (c · moment) 1 - c momentᵀ - moment cᵀ."""
+    """A term of the inertia of a body shifted by c: 2 (c · moment) 1 - c momentᵀ - moment cᵀ."""
     xx, yy, zz = 2.0 * c[0] * moment[0], 2.0 * c[1] * moment[1], 2.0 * c[2] * moment[2]
     xy = c[0] * moment[1] + c[1] * moment[0]
     xz = c[0] * moment[2] + c[2] * moment[0]
@@ -357,7 +358,7 @@ def shift(c: Vector3, moment: Vector3) -> Matrix3:
 
 @kernel
 def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
-    """Leave in `output` the forces that cause the motion in `input`."""
+    """Compute in `output` the generalized forces that cause the motion in `input`."""
     rates = first_rate(sizes)
     motion = mechanism.input
     newton_euler(
@@ -374,7 +375,7 @@ def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
 
 @kernel
 def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
-    """Leave the mass matrix at the positions in `input` in `matrix`."""
+    """Compute the mass matrix in `matrix`, at the positions in `input`."""
     place_nodes(mechanism, sizes.nodes)
     for node in range(sizes.nodes):
         place_in_base(mechanism, node)
@@ -383,7 +384,7 @@ def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
 
 @kernel
 def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32):
-    """Leave the Jacobian of a point in `output`: three rows of velocity, three of angular velocity."""
+    """Compute the Jacobian of a point in `output`: three rows of linear, then three of angular velocity."""
     last = mechanism.end[end].node
     place_nodes(mechanism, last + 1)
     for node in range(last + 1):

@@ -1,4 +1,4 @@
-"""Inverse dynamics of a mechanism in the coordinates that users have."""
+"""Inverse dynamics of a mechanism in users' coordinates."""
 
 import math
 
@@ -12,7 +12,7 @@ from carom.layouts.codes import BASE_POSITIONS, SPHERICAL
 from carom.layouts.mechanism import BASE_MOTION, POSE
 
 NOT_FINITE = real(math.inf)
-# Sine of the pitch from which on Bullet takes the roll for 0.
+# Sine of the pitch above which Bullet sets the roll to 0.
 GIMBAL_LOCK = real(0.99999)
 
 
@@ -28,9 +28,9 @@ def direction(x: real, y: real):
 
 @func
 def turned_back_in_opposite_order(q: Quaternion, v: Vector3) -> Vector3:
-    """A vector in a frame rotated by a quaternion's yaw, pitch and roll in the wrong order.
+    """Components of a vector in a frame rotated by a quaternion's yaw, pitch and roll, in the wrong order.
 
-    PyBullet splits the orientation of a floating base like this, and combines it in the opposite order. The
+    PyBullet converts the orientation of a floating base to these angles and back in the opposite order. The
     result is wrong only for a base rotated about more than one axis.
     """
     x, y, z, w = q[0], q[1], q[2], q[3]
@@ -68,14 +68,14 @@ def rotation_by_angles(roll: real, pitch: real, yaw: real) -> Quaternion:
 def take_positions(
     sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, first: Int32, by_angles: Int32
 ):
-    """Fill `input` with the positions of the joints that begin at `first` in the question.
+    """Copy the positions of the joints from the question to `input`.
 
     Args:
         sizes: Sizes of the mechanism.
         mechanism: The mechanism.
-        question: The question.
-        first: Where they begin.
-        by_angles: 1: spherical joints have roll, pitch and yaw instead of a quaternion.
+        question: As for `motion_kernel`.
+        first: Index in it of the first joint position.
+        by_angles: 1: positions of spherical joints are roll, pitch and yaw instead of a quaternion.
     """
     joint_dofs = sizes.dofs - sizes.base_dofs
     if by_angles == 0 or sizes.coordinates == joint_dofs:
@@ -96,7 +96,7 @@ def take_positions(
 
 @func
 def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
-    """Gravity along the axes of a free base; not finite if its quaternion is no rotation."""
+    """Gravity in the axes of a free base; not finite if the length of its quaternion is 0 or NaN."""
     gravity = vector_at(question, 0)
     q = POSE + 3
     turn = Quaternion(question[q], question[q + 1], question[q + 2], question[q + 3])
@@ -109,17 +109,17 @@ def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
 
 @kernel
 def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, as_pybullet: Int32):
-    """Leave in `output` the forces that cause a motion; of a free base force, then torque.
+    """Compute in `output` the generalized forces that cause a motion; for a free base, force before torque.
 
     Args:
         sizes: Sizes of the mechanism.
         mechanism: The mechanism.
-        question: Gravity along the axes of the base; positions; rates; accelerations. With a free base
+        question: Gravity in the axes of the base; positions; rates; accelerations. With a free base,
             gravity is in world axes; position and quaternion of the base come before the other positions,
-            its angular velocity and its velocity along its own axes before the other rates, and their
+            its angular velocity and its velocity, in its own axes, before the other rates, and their
             derivatives likewise.
-        as_pybullet: 1: gravity at a free base has the direction PyBullet gives it, and spherical joints have
-            roll, pitch and yaw.
+        as_pybullet: 1: gravity acts on a free base in the same direction as in PyBullet, and positions of
+            spherical joints are roll, pitch and yaw.
     """
     positions = POSE + 0
     acceleration = -vector_at(question, 0)
@@ -136,7 +136,7 @@ def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Re
         alpha = vector_at(question, rates + sizes.dofs)
         own = vector_at(question, rates + sizes.dofs + 3)
         acceleration = own - gravity_in_base(question, as_pybullet)
-        # What has no influence has to be finite, too.
+        # Position and velocity of the base have no influence, but have to be finite, too.
         idle = vector_at(question, POSE) + vector_at(question, rates + 3)
         unused = 0.0 * (idle[0] + idle[1] + idle[2])
     take_positions(sizes, mechanism, question, positions, as_pybullet)

@@ -22,13 +22,13 @@ _HALF_TURN = real(math.pi)
 
 @func
 def quaternion_at(numbers: Reals, first: Int32) -> Quaternion:
-    """Four numbers as a quaternion."""
+    """The quaternion in entries `first` to `first + 3` of an array."""
     return Quaternion(numbers[first], numbers[first + 1], numbers[first + 2], numbers[first + 3])
 
 
 @func
 def turn_between(start: Quaternion, end: Quaternion) -> Vector3:
-    """Rotation vector from one rotation to another, in the axes of the first."""
+    """Rotation vector from orientation `start` to `end`, in the axes of `start` [rad]."""
     turn = wp.quat_inverse(start) * end
     cosine = wp.clamp(turn[3], -1.0, 1.0)
     sine = wp.sqrt(1.0 - cosine * cosine)
@@ -42,14 +42,14 @@ def turn_between(start: Quaternion, end: Quaternion) -> Vector3:
 
 @func
 def advanced(start: Quaternion, rate: Vector3, time_step: real) -> Quaternion:
-    """A rotation after one explicit step at an angular velocity in its own axes."""
+    """An orientation after one explicit Euler step with an angular velocity in its own axes."""
     half = 0.5 * time_step
     return wp.normalize(start + start * Quaternion(rate[0] * half, rate[1] * half, rate[2] * half, 0.0))
 
 
 @func
 def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, time_step: real):
-    """Fill `dof_torque`: from where the joints will be after a step at their rates to their targets."""
+    """Fill `dof_torque` with PD torques, with the errors of positions extrapolated by one time step."""
     rates = first_rate(sizes)
     for node in range(sizes.nodes):
         q = mechanism.node[node].first_position
@@ -77,9 +77,9 @@ def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Co
 
 @func
 def solve(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, first: Int32, time_step: real):
-    """Fill `dof_acceleration` with what the wanted torques would do, the controller's damping included.
+    """Fill `dof_acceleration` with the accelerations by `dof_torque`, with the controller's damping implicit.
 
-    By Cholesky's method; dofs before `first`, and those without inertia, stay at rest.
+    By Cholesky decomposition; accelerations of dofs before `first`, and of dofs without inertia, are 0.
     """
     count = sizes.dofs
     for row in range(first, count):
@@ -92,7 +92,7 @@ def solve(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, fi
                 entry -= control.entry_factor[row * count + k] * control.entry_factor[column * count + k]
             pivot = control.entry_factor[column * count + column]
             if row == column:
-                # The diagonal holds reciprocals, 0 for dofs that stay at rest.
+                # Reciprocals are stored on the diagonal, 0 for dofs without inertia.
                 pivot = 0.0
                 if mechanism.matrix[row * count + row] + time_step * control.dof_kd[row] > 0.0:
                     pivot = 1.0 / wp.sqrt(entry)
@@ -113,7 +113,7 @@ def solve(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, fi
 def stable_pd_kernel(
     sizes: MechanismSizes, mechanism: MechanismTable, control: Control, base_is_held: Int32, time_step: real
 ):
-    """Leave in `dof_torque` the torques for the next step."""
+    """Compute in `dof_torque` the torques of stable PD control for the next step."""
     still = Int32(-1)
     newton_euler(
         sizes,

@@ -1,1 +1,1 @@
-"""Islands, sleep, constraint rows and their relaxation."""
+"""Islands, sleeping, constraint rows and the solver."""

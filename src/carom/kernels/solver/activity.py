@@ -1,4 +1,4 @@
-"""Which trees take part in a substep: those that can move and are not asleep; `sleeping` says who is."""
+"""Which trees can move or are asleep; `sleeping` has the rules for falling asleep and waking up."""
 
 from carom.kernels.structs import Model, Shapes, State
 from carom.kernels.types import Index4, Int32, func, real
@@ -21,7 +21,7 @@ def link_moves(model: Model, link: Int32) -> bool:
 
 @func
 def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
-    """The tree of the first of two links in contact that moves; -1 if neither does.
+    """Tree of the first of two links in contact that some dof moves; -1 if neither is moved.
 
     `pair` has both shapes, then both links.
     """
@@ -34,7 +34,7 @@ def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
 
 @func
 def is_asleep(state: State, world: Int32, tree: Int32) -> bool:
-    """Whether a tree takes no part in this substep."""
+    """Whether a tree is asleep: it is left out of dynamics and solver in this substep."""
     return state.tree_activity[world, tree] == ASLEEP
 
 
@@ -58,7 +58,7 @@ def squared_motion(model: Model, state: State, world: Int32, tree: Int32) -> rea
 
 @func
 def stop(model: Model, state: State, world: Int32, tree: Int32):
-    """Take the velocity of a tree."""
+    """Set the velocities of a tree's dofs to zero."""
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
         state.dof_velocity[world, dof] = 0.0

@@ -1,4 +1,4 @@
-"""Writing the rows of manifold blocks of trees of any size; see `articulated_manifolds`."""
+"""Writing the rows of manifold blocks of articulated bodies; see `articulated_manifolds`."""
 
 from carom.kernels.maths.blocks import combine4, combine8, fill_zero
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK, matrix_parts
@@ -24,7 +24,7 @@ def clear_matrices(pair_rows: PairRows, world: Int32, manifold_block: Int32):
 def write_normal_matrices(
     pair_rows: PairRows, world: Int32, part: Index4, blocks: Int32, contact: Int32, mass: real, start: Int32
 ):
-    """Write the weighted Jacobian and the response of a normal row, which are at block `start`."""
+    """Copy a normal row's Jacobian (times `mass`) and response, at block `start`, to the matrices."""
     block = Int32(0)
     while block < blocks:
         jacobian = pair_rows.jacobian_row[world, start + block]
@@ -56,9 +56,10 @@ def write_friction_matrices(
 def write_normal_delassus(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, contact: Int32, mass: real, start: Int32
 ):
-    """Write by how much the normal rows before this, of effective mass `mass`, lower its impulse wanted.
+    """Write a column of the Delassus matrix: the effect of the rows written so far on this normal row.
 
-    The response to this row says by how much it lowers theirs; masses tell the two apart.
+    It is computed from the response to this row, whose effective mass is `mass`: the matrix is symmetric
+    before the multiplication by effective masses.
     """
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
@@ -111,7 +112,7 @@ def write_articulated_contact(
     contact: Int32,
     start: Int32,
 ):
-    """Write the three rows of a contact; blocks of rows over two trees from `start` on are free."""
+    """Write the three rows of a contact; blocks from `start` on, for rows over two trees, are workspace."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     row = Int32(0)
@@ -126,7 +127,7 @@ def write_articulated_contact(
         )
         line = 2 * contact + row - 1
         for side in range(2):
-            # What is of body b comes after what is of body a.
+            # The parts of body b come after those of body a.
             own = part + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1]) * side
             jacobian = start + place[1] * side
             if row == 0:

@@ -1,11 +1,11 @@
-"""Manifold blocks of trees of any size; see `rigid_manifolds`.
+"""Manifold blocks of articulated bodies; see `rigid_manifolds`.
 
 Their matrices are in `PairRows.matrix_block`, one after the other, each for tree a and then tree b: the
-weighted Jacobians of the normals, a vector for each dof; those of friction, two for each; the responses
-to the normals, four vectors for each block of dofs; those to friction, eight.
+weighted Jacobians of the normals, one vector of four for each dof; those of friction, two vectors for each;
+the responses to the normals, four vectors for each block of dofs; those to friction, eight.
 
-Two pairs of twins stay for speed: rigid bodies have functions of their own, as matrices of known sizes stay
-in registers; and normals and friction do, as compilers have to know how wide vectors are.
+Functions exist in two versions for speed: for rigid and articulated bodies, since matrices of fixed size stay
+in registers; for normals and friction, since compilers have to know the width of vectors.
 """
 
 import warp as wp
@@ -20,13 +20,13 @@ from carom.kernels.solver.rigid_manifolds import (
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Index4, Int32, func, real
 
-# Vectors of all matrices of an articulated manifold block for each block of dofs of its trees.
+# Number of vectors, in all matrices of an articulated manifold block, per block of dofs of its trees.
 VECTORS_PER_BLOCK = 24
 
 
 @func
 def matrix_parts(matrices: Int32, place: Index4) -> Index4:
-    """Where the four matrices of a manifold block start."""
+    """First blocks of the four matrices of a manifold block."""
     blocks = place[1] + place[3]
     return Index4(matrices, matrices + 4 * blocks, matrices + 12 * blocks, matrices + 16 * blocks)
 

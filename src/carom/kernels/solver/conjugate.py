@@ -1,9 +1,9 @@
-"""Nonsmooth conjugate gradients between the sweeps over an island at rest, so that these converge quickly.
+"""Nonsmooth conjugate gradients for islands at rest: they speed up the convergence of the sweeps.
 
 A sweep of projected Gauss-Seidel takes the place of the gradient in the method of Fletcher and Reeves.
-After it the impulses go on along what is left of the last direction; the next sweep takes back what their
-bounds forbid (M. Silcowitz-Hansen, S. Niebe, K. Erleben, A nonsmooth nonlinear conjugate gradient method
-for interactive contact force problems, The Visual Computer 26, 2010).
+After it the impulses are moved further, along a share of the last search direction; the next sweep brings
+them back within their bounds (M. Silcowitz-Hansen, S. Niebe, K. Erleben, A nonsmooth nonlinear conjugate
+gradient method for interactive contact force problems, The Visual Computer 26, 2010).
 """
 
 import warp as wp
@@ -15,7 +15,7 @@ from carom.kernels.types import Int32, Vector4, Vector8, func, real
 
 @func
 def remember_impulses(pair_rows: PairRows, world: Int32, manifold_blocks: Int32):
-    """Keep the impulses from which a sweep starts."""
+    """Save the impulses before a sweep."""
     manifold_block = Int32(0)
     while manifold_block < manifold_blocks:
         pair_rows.manifold_block[world, manifold_block].normal_before = pair_rows.manifold_block[
@@ -29,7 +29,7 @@ def remember_impulses(pair_rows: PairRows, world: Int32, manifold_blocks: Int32)
 
 @func
 def squared_change(pair_rows: PairRows, world: Int32, manifold_blocks: Int32) -> real:
-    """How far the last sweep moved the impulses, squared."""
+    """Squared norm of the change of impulses by the last sweep."""
     square = real(0.0)
     manifold_block = Int32(0)
     while manifold_block < manifold_blocks:
@@ -50,17 +50,17 @@ def squared_change(pair_rows: PairRows, world: Int32, manifold_blocks: Int32) ->
 def go_on(
     scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_blocks: Int32, last_square: real
 ) -> real:
-    """Move the impulses on along a direction conjugate to the last one.
+    """Move the impulses further, so that their total change is conjugate to the last search direction.
 
     Args:
-        scratch: Changes of the velocities.
+        scratch: Has the delta velocities.
         pair_rows: The manifold blocks; `remember_impulses` was called before the sweep.
         world: The world.
         manifold_blocks: Their number.
-        last_square: What this returned after the sweep before; 0 after the first.
+        last_square: Returned by this function after the sweep before; 0 after the first sweep.
 
     Returns:
-        How far the sweep moved the impulses, squared.
+        Squared norm of the change of impulses by the sweep.
     """
     square = squared_change(pair_rows, world, manifold_blocks)
     share = real(0.0)

@@ -1,7 +1,7 @@
 """The order in which an island's manifolds are relaxed.
 
-A sweep that stops early depends on the order of its rows, so Bullet's motion needs Bullet's order: it
-sorts all manifolds by island with a quicksort that does not keep the order of equals.
+If sweeps end before convergence, the result depends on the order of rows, so reproducing Bullet's motion
+needs Bullet's order. Bullet sorts all manifolds by island, with an unstable quicksort.
 """
 
 import warp as wp
@@ -11,7 +11,8 @@ from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, S
 from carom.kernels.types import Index4, Int32, func
 from carom.layouts.contacts import THERE
 
-# Room for the bounds of parts that are still to be sorted; the longer part waits, so 32 would do.
+# Stack of ranges that are still to be sorted, as pairs of bounds. As the longer range is pushed each time, it
+# has at most log2(n) ranges for n manifolds.
 Bounds = wp.types.vector(64, int)
 # End of a list.
 NONE = wp.constant(-1)
@@ -19,7 +20,7 @@ NONE = wp.constant(-1)
 
 @func
 def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) -> bool:
-    """Whether a contact, if it is one, is between the shapes of `pair`."""
+    """Whether a contact, -1 for none, is between the shapes of `pair`."""
     if contact < 0:
         return False
     other = contacts.contact_shapes[world, contact]
@@ -30,9 +31,9 @@ def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) 
 def gather_manifolds(
     model: Model, state: State, shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32
 ) -> Int32:
-    """List the manifolds that can push a tree that is not asleep; returns their number.
+    """List the manifolds that act on trees that can move and are awake; returns their number.
 
-    `tree_first_contact` of the root of an island has to be the last tree of it.
+    On entry, `tree_first_contact` of the root of an island has to be the last tree of the island.
     """
     count = Int32(0)
     contact_count = contacts.count_contacts[world, THERE]
@@ -65,7 +66,7 @@ def exchange_manifolds(pair_rows: PairRows, world: Int32, i: Int32, j: Int32):
 
 @func
 def sort_manifolds(pair_rows: PairRows, world: Int32, count: Int32):
-    """Sort the first `count` manifolds by island: Hoare's quicksort around the middle element."""
+    """Sort the first `count` manifolds by island: Hoare's quicksort with the middle element as pivot."""
     bounds = Bounds()
     waiting = Int32(0)
     low = Int32(0)
@@ -83,7 +84,7 @@ def sort_manifolds(pair_rows: PairRows, world: Int32, count: Int32):
                 exchange_manifolds(pair_rows, world, i, j)
                 i += 1
                 j -= 1
-        # Go on with the shorter part; the other waits.
+        # The shorter range is sorted next; the other is pushed on the stack.
         if j - low < high - i:
             bounds[waiting] = i
             bounds[waiting + 1] = high
@@ -109,7 +110,7 @@ def list_contacts(
     pair_rows: PairRows,
     world: Int32,
 ):
-    """Give the root of each island the list of its contacts, manifold by manifold."""
+    """Make the linked list of contacts of each island, manifold by manifold."""
     for tree in range(settings.tree_count):
         if can_move(model, tree):
             pair_rows.tree_first_contact[world, state.tree_island[world, tree]] = tree

@@ -1,4 +1,4 @@
-"""Rows of contacts: normal, friction, rolling and spinning friction, one by one."""
+"""Rows of single contacts: normal, and lateral, rolling and spinning friction."""
 
 import warp as wp
 
@@ -27,7 +27,7 @@ def add_contact_rows(
     row: Int32,
     block: Int32,
 ):
-    """Write all rows of one contact: normal, two lateral, two rolling, spinning, as far as there are.
+    """Write the rows of one contact: normal, two lateral; two rolling and one spinning if it has them.
 
     Returns:
         The next free row, and the next free block.
@@ -85,7 +85,7 @@ def add_contact_rows(
 
 @func
 def keep_contact_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, contact: Int32):
-    """Report the impulses of a contact's rows."""
+    """Store the impulses of a contact's rows."""
     rows = pair_rows.contact_rows[world, contact]
     keep_contact_impulse(
         contacts,

@@ -1,4 +1,4 @@
-"""Target velocity, softness and friction of a contact, whichever variety of rows it is solved by."""
+"""Requested velocity, softness and friction of contacts, for all kinds of contact rows."""
 
 import warp as wp
 
@@ -10,7 +10,7 @@ from carom.kernels.types import Index4, Int32, Vector3, func, real
 
 _GREATEST_FRICTION = real(10.0)
 _LEAST_DENOMINATOR = real(2.220446049250313e-16)
-# Damping of links for which none is set, in contact with soft ones [N s/m].
+# Default damping of a link in a soft contact [N s/m].
 _DEFAULT_DAMPING = 0.1
 
 
@@ -29,7 +29,7 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
     stiffness_b = shapes.link_stiffness[world, b]
     if stiffness_a < 0.0 and stiffness_b < 0.0:
         return settings.contact_softness, settings.contact_erp
-    # Springs in series, dampers side by side; a link without a spring is rigid, but has a damper.
+    # Springs are in series, dampers in parallel; a link without a spring is rigid, but has a damper.
     compliance = real(0.0)
     if stiffness_a > 0.0:
         compliance += 1.0 / stiffness_a
@@ -43,13 +43,13 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
 
 @func
 def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
-    """Share of the speed with which two links part after they collide."""
+    """Combined coefficient of restitution of two links."""
     return shapes.link_restitution[world, a] * shapes.link_restitution[world, b]
 
 
 @func
 def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
-    """Combined coefficients of two links: lateral, rolling, spinning."""
+    """Combined coefficients of friction of two links: lateral, rolling, spinning."""
     lateral_a = shapes.link_lateral_friction[world, a]
     lateral_b = shapes.link_lateral_friction[world, b]
     lateral = lateral_a * lateral_b
@@ -68,7 +68,7 @@ def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector
 
 @func
 def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
-    """A friction direction, its components along a link's axes times the factors of that link."""
+    """A friction direction, with its components along a link's axes multiplied by the link's factors."""
     factors = shapes.link_anisotropy[world, link]
     if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
         return direction
@@ -80,13 +80,13 @@ def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, dire
 def scaled_direction(
     state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, direction: Vector3
 ) -> Vector3:
-    """A friction direction with the factors of both links."""
+    """A friction direction multiplied by the factors of both links."""
     return scaled_by_link(state, shapes, world, b, scaled_by_link(state, shapes, world, a, direction))
 
 
 @func
 def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
-    """From where a contact with a friction anchor began to stick on b to where it did on a; else 0."""
+    """Vector from a contact's friction anchor on b to that on a, in world axes [m]; 0 if it has none."""
     pair = contacts.contact_shapes[world, contact]
     if shapes.link_friction_anchor[world, pair[2]] == 0 and shapes.link_friction_anchor[world, pair[3]] == 0:
         return Vector3(0.0, 0.0, 0.0)
@@ -107,7 +107,7 @@ def velocity_from_forces(
     point: Vector3,
     direction: Vector3,
 ) -> real:
-    """Velocity along a direction that forces gave a point of a link in this substep [m/s]."""
+    """Change of a link point's velocity along a direction by the forces of this substep [m/s]."""
     reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
     moment = wp.cross(point - reference, direction)
     acceleration = real(0.0)
@@ -122,7 +122,7 @@ def velocity_from_forces(
 
 @func
 def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, point: Vector3) -> Vector3:
-    """Velocity of a point that goes along with a fixed base: no impulse changes it."""
+    """Velocity of a point that moves with a fixed base, which no impulse changes; 0 for free bases."""
     if model.tree[tree].fixed == 0:
         return Vector3(0.0, 0.0, 0.0)
     reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
@@ -132,7 +132,7 @@ def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, poin
 
 @func
 def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
-    """Angular velocity of a fixed base."""
+    """Angular velocity of a fixed base; 0 for free bases."""
     if model.tree[tree].fixed == 0:
         return Vector3(0.0, 0.0, 0.0)
     return base_omega(model, state, world, tree)
@@ -150,9 +150,9 @@ def contact_terms(
     contact: Int32,
     share: real,
 ) -> ContactTerms:
-    """Everything about a contact that its rows depend on; its friction directions become scaled ones.
+    """Data of a contact for its rows; also replaces the contact's friction directions by scaled ones.
 
-    It starts from a `share` of its last impulses.
+    Initial impulses are the last impulses times `share`.
     """
     pair = contacts.contact_shapes[world, contact]
     a = pair[2]
@@ -205,11 +205,11 @@ def contact_terms(
 def normal_change(
     settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, velocity: real
 ) -> real:
-    """Change of the velocity along the normal that keeps a contact from closing.
+    """Requested change of the normal velocity of a contact.
 
-    A gap may close within the step but not more. Penetration is taken back at the rate `terms.erp`, on top
-    of what restitution asks for. But neither that nor what forces did in this step makes anything rebound
-    faster than it came: at a restitution of 1 bodies would gain energy with every bounce.
+    A gap may close within the step, but not more. Penetration is corrected at the rate `terms.erp`, in
+    addition to restitution. But neither this correction nor the forces of this step make bodies rebound
+    faster than they approached; otherwise, at a restitution of 1, they would gain energy with every bounce.
     """
     gap = terms.distance + settings.contact_slop
     parting = -gap / settings.time_step
@@ -226,7 +226,7 @@ def normal_change(
 
 @func
 def friction_change(settings: Settings, velocity: real, drift: Vector3, direction: Vector3) -> real:
-    """Change of velocity along a friction direction that stops sliding and takes back a drift."""
+    """Change of velocity along a friction direction that stops sliding and corrects a drift."""
     return -velocity - wp.dot(drift, direction) * settings.friction_erp / settings.time_step
 
 
@@ -252,17 +252,17 @@ def keep_contact_impulse(
     friction: real,
     outcome: Int32,
 ):
-    """Report the impulses of a contact; one that slides begins to stick where it is now.
+    """Store the impulses of a contact; if it slides, its friction anchor moves to its present point.
 
     Args:
         contacts: The contacts.
         world: The world.
         contact: The contact.
         normal: Impulse along the normal.
-        first: That along the first friction direction.
-        second: That along the second.
+        first: Impulse along the first friction direction.
+        second: Impulse along the second.
         friction: Coefficient of lateral friction.
-        outcome: How the search for it went, see `warm_starting.next_warm_start`.
+        outcome: Outcome of solving it, see `warm_starting.next_warm_start`.
     """
     contacts.contact_impulse[world, contact] = Vector3(normal, first, second)
     contacts.contact_warm_start[world, contact] = next_warm_start(

@@ -1,7 +1,7 @@
-"""Islands: groups of trees that contacts or user constraints join, solved one after the other.
+"""Islands: groups of trees joined by contacts or user constraints, each of which is solved separately.
 
-Union-find over the trees; then each root gets linked lists of its constraints, in ascending order, and
-contacts.
+They are found by union-find over the trees. The root of each island then gets linked lists of the island's
+constraints, in ascending order, and contacts.
 """
 
 import warp as wp
@@ -17,7 +17,7 @@ _NONE = wp.constant(-1)
 
 @func
 def island_root(state: State, world: Int32, tree: Int32) -> Int32:
-    """Root of the island of a tree; shortens the way there."""
+    """Root of the island of a tree; compresses the path to it."""
     root = tree + 0
     while state.tree_island[world, root] != root:
         above = state.tree_island[world, root]
@@ -28,7 +28,7 @@ def island_root(state: State, world: Int32, tree: Int32) -> Int32:
 
 @func
 def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
-    """Put two trees into one island, unless one of them cannot move."""
+    """Join the islands of two trees, unless one of the trees cannot move."""
     if can_move(model, a) and can_move(model, b):
         root_a = island_root(state, world, a)
         root_b = island_root(state, world, b)
@@ -37,7 +37,7 @@ def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
 
 @func
 def unite_tied(settings: Settings, model: Model, state: State, users: UserConstraints, world: Int32):
-    """Put trees that user constraints tie together into one island."""
+    """Put trees that user constraints join into one island."""
     for user in range(settings.user_count):
         if users.user_enabled[world, user] != 0:
             unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
@@ -45,7 +45,7 @@ def unite_tied(settings: Settings, model: Model, state: State, users: UserConstr
 
 @func
 def note_contact(pair_rows: PairRows, world: Int32, tree: Int32, touches: Int32):
-    """Note that a tree has a contact, and of what kind."""
+    """Add the bits of a contact, `contact_traits`, to those of a tree."""
     pair_rows.tree_contacts[world, tree] = pair_rows.tree_contacts[world, tree] | touches
 
 
@@ -60,9 +60,9 @@ def build_islands(
     pair_rows: PairRows,
     world: Int32,
 ):
-    """Join trees that touch or are tied together, and list the constraints and contacts of each island.
+    """Find islands, and list the constraints and contacts of each; also mark islands at rest.
 
-    Those of trees that are asleep are left out.
+    Constraints and contacts of trees that are asleep are left out.
     """
     contact_count = contacts.count_contacts[world, 0]
     for tree in range(settings.tree_count):

@@ -1,7 +1,7 @@
-"""Projected Gauss-Seidel on the rows of motors and limits, where nothing ties bodies together.
+"""Projected Gauss-Seidel on the rows of motors and limits, for trees without contacts and user constraints.
 
-The rows are visited last to first in even sweeps and first to last in odd ones; the sweeps end when
-no row changed its velocity by more than the residual threshold, or after the given number.
+The rows are visited last to first in even sweeps and first to last in odd ones. Sweeps end when the maximum
+squared change of a row's velocity is at most the residual threshold, or after the maximum number of sweeps.
 """
 
 import warp as wp
@@ -20,7 +20,7 @@ from carom.layouts.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT
 
 @func
 def is_constrained(model: Model, state: State, world: Int32, root: Int32) -> bool:
-    """Whether a motor or a limit of a batch of trees may push in this substep."""
+    """Whether some motor or limit of a batch of trees may be active in this substep."""
     constraint = model.tree[root].first_constraint
     end = constraint + model.tree[root].batch_constraints
     while constraint < end:
@@ -67,16 +67,16 @@ def joint_constraint_rows(
 
 @shared_func
 def bounded_change(before: real, after: real, lower: real, upper: real, effective_mass: real) -> real:
-    """Change of rate that is left of a row's when its impulse stops at a bound."""
+    """Change of a row's rate when its impulse is clamped to its bounds."""
     return (within_bounds(after, lower, upper) - before) / effective_mass
 
 
 @func
 def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
-    """Bring one row to its target as far as its bounds allow; returns the change of its velocity.
+    """Relax one row within its bounds; returns the change of its velocity.
 
-    From one row to the next only the change of velocity has to be waited for: the impulse is found
-    beside it, and a bound is a branch that is seldom taken.
+    Each row depends on the row before only through the delta velocities: the impulse is computed alongside,
+    and clamping is a branch that is seldom taken.
     """
     entry = scratch.row[world, row].entry
     before = scratch.row[world, row].impulse
@@ -115,7 +115,7 @@ def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> rea
 
 @func
 def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, root: Int32):
-    """Solve the rows of one batch of trees; leaves the change of velocity in `delta_velocity`."""
+    """Solve the rows of one batch of trees; leaves the result in `delta_velocity`."""
     state.tree_island[world, root] = model.tree[root].batch
     count = Int32(0)
     constraint = model.tree[root].first_constraint
@@ -133,7 +133,7 @@ def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratc
             residual = row_sweep(scratch, world, count, sweep)
             inner += 1
             if residual == 0.0:
-                # Nothing has changed, so nothing ever will.
+                # No row has changed, so further inner sweeps would not change any.
                 inner = settings.inner_iterations
         sweep += 1
         searching = residual > settings.residual_threshold and sweep < settings.iterations
@@ -152,7 +152,7 @@ def keep_row_results(
     sweeps: Int32,
     residual: real,
 ):
-    """Report how the search went, and the impulses of the first `count` rows, to user and sensors."""
+    """Store number of sweeps and residual, motor impulses, and constraint forces of `count` rows."""
     state.tree_iterations[world, root] = sweeps
     state.tree_residual[world, root] = residual
     for row in range(count):
@@ -162,7 +162,7 @@ def keep_row_results(
 
 @func
 def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int32, row: Int32):
-    """Report the impulse of a motor's row to the user."""
+    """Store the impulse of a row in the state if it is a motor's."""
     kind = model.constraint[scratch.row[world, row].constraint].kind
     if kind == MOTOR or kind == SPHERICAL_MOTOR:
         state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row[world, row].impulse
@@ -170,9 +170,9 @@ def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int3
 
 @func
 def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Start the solver from no change of velocity.
+    """Set the delta velocities of a tree to zero.
 
-    Every tree has room for a free base, two blocks, which manifold blocks read whether there is one or not.
+    Every tree has at least two blocks, enough for a free base: manifold blocks read two for any tree.
     """
     first = model.tree[tree].first_delta
     for block in range(first, first + wp.max((model.tree[tree].dof_count + 3) // 4, 2)):
@@ -181,7 +181,7 @@ def clear_delta_velocities(model: Model, scratch: Scratch, world: Int32, tree: I
 
 @func
 def apply_delta_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Add the solver's change to the velocities of a tree."""
+    """Add the delta velocities to the velocities of a tree."""
     bound = model.tree_max_velocity[world, tree]
     first = model.tree[tree].first_dof
     delta = model.tree[tree].first_delta

@@ -1,8 +1,8 @@
-"""What contacts and user constraints do to the links of one tree, for force-torque sensors.
+"""Forces of contacts and user constraints on the links of one tree, for force-torque sensors.
 
-It is gathered from the impulses that the solver left, by the tree itself once all islands are solved: so no
-two islands write to one link where they run side by side, and sums have one order. A tree without dofs is in
-no island, but feels what lies on it as well.
+They are computed from the impulses of the solver, tree by tree, after all islands have been solved. So
+islands solved in parallel never write to the same link, and sums have a fixed order. A tree without dofs is
+in no island, but its sensors measure these forces as well.
 """
 
 import warp as wp
@@ -59,9 +59,9 @@ def gather_contact_force(
     tree: Int32,
     contact: Int32,
 ):
-    """Add the force of a contact to the links of a tree that it touches, if it was solved.
+    """Add the force of a contact to the constraint forces of a tree's links, if the contact was solved.
 
-    Torques of rolling and spinning friction are not in it: PyBullet leaves them out.
+    As in PyBullet, torques of rolling and spinning friction are left out.
     """
     pair = contacts.contact_shapes[world, contact]
     a = shapes.shape_tree[pair[0]]
@@ -89,7 +89,7 @@ def gather_user_forces(
     tree: Int32,
     user: Int32,
 ):
-    """Add what a user constraint does to the links of a tree that it holds, if it was solved."""
+    """Add force and torque of a user constraint to those of a tree's links, if it was solved."""
     ends = user_ends(users, user)
     if ends[0] != tree and ends[2] != tree:
         return
@@ -101,7 +101,7 @@ def gather_user_forces(
     force, torque = user_wrench(settings, model, state, scratch, users, world, user)
     point_a, point_b = held_points(state, users, world, user)
     if users.user_kind[user] == USER_GEAR:
-        # Of what slides it is a force without a moment.
+        # The force on a prismatic joint acts at the centre of mass, without a torque.
         point_a = wp.transform_get_translation(state.link_pose[world, ends[1]])
         point_b = wp.transform_get_translation(state.link_pose[world, ends[3]])
     if ends[0] == tree:
@@ -122,12 +122,12 @@ def user_wrench(
     world: Int32,
     user: Int32,
 ):
-    """Force on a of a user constraint in the last substep, and the torque beside it, in world axes."""
+    """Force [N] and torque [N m] of a user constraint on link a in the last substep, in world axes."""
     force = Vector3(0.0, 0.0, 0.0)
     torque = Vector3(0.0, 0.0, 0.0)
     impulse = state.user_impulse[world, user] / settings.time_step
     if users.user_kind[user] == USER_GEAR:
-        # PyBullet takes the axis of joint a for both.
+        # As in PyBullet, the torques or forces on both links are along the axis of joint a.
         dof = model.link[users.user_link_a[user]].first_dof
         torque = scratch.dof[world, dof].angular * impulse[0]
         if wp.dot(torque, torque) == 0.0:

@@ -44,10 +44,10 @@ def write_manifold_block(
     matrices: Int32,
     temporary: Int32,
 ):
-    """Write the rows of the `count` contacts in `members` of two trees, whose terms are in `PairRows.terms`.
+    """Write the rows of the `count` contacts in `members`, of trees a and b, from their `PairRows.terms`.
 
-    `matrices` is where in `PairRows.matrix_block` their matrices go, -1 if they are rigid bodies; the
-    blocks from `temporary` on of a row over two trees are free.
+    `matrices` is the first block of their matrices in `PairRows.matrix_block`, -1 if both trees are rigid
+    bodies. Blocks from `temporary` on, for rows over two trees, are workspace.
     """
     pair_rows.manifold_block[world, manifold_block] = ManifoldBlock()
     pair_rows.manifold_block[world, manifold_block].place = Index4(
@@ -76,7 +76,7 @@ def write_manifold_block(
 def keep_manifold_impulses(
     contacts: Contacts, pair_rows: PairRows, world: Int32, manifold_block: Int32, outcome: Int32
 ):
-    """Report the impulses of the contacts of a manifold block, and the `outcome` of the search for them."""
+    """Store the impulses of a manifold block's contacts, and the `outcome` of solving them."""
     normal = pair_rows.manifold_block[world, manifold_block].normal_impulse
     lateral = pair_rows.manifold_block[world, manifold_block].friction_impulse
     friction = pair_rows.manifold_block[world, manifold_block].friction

@@ -1,4 +1,4 @@
-"""Constraint rows over up to two trees: their Jacobians, and relaxing them."""
+"""Constraint rows over up to two trees: Jacobians and relaxation."""
 
 import warp as wp
 
@@ -20,7 +20,7 @@ from carom.layouts.contacts import ROWS_PER_PAIR
 
 @func
 def tree_blocks(model: Model, tree: Int32) -> Int32:
-    """Number of four-wide blocks of a vector over a tree's active dofs; 0 for the world, -1."""
+    """Number of blocks of four in a vector over a tree's active dofs; 0 for the world, -1."""
     if tree < 0:
         return Int32(0)
     return (model.tree[tree].dof_count + 3) // 4
@@ -30,7 +30,7 @@ def tree_blocks(model: Model, tree: Int32) -> Int32:
 def has_room(
     model: Model, pair_rows: PairRows, row: Int32, block: Int32, tree_a: Int32, tree_b: Int32
 ) -> bool:
-    """Whether all rows there may be between two trees still fit, from the next free row and block on."""
+    """Whether the maximum number of rows between two trees fits, from the next free row and block on."""
     blocks = tree_blocks(model, tree_a) + tree_blocks(model, tree_b)
     if row + ROWS_PER_PAIR > pair_rows.row_start.shape[1]:
         return False
@@ -51,12 +51,12 @@ def write_jacobian(
     angular: Vector3,
     start: Int32,
 ):
-    """Write how dofs move a point of a link along `linear` and turn it about `angular`.
+    """Write the Jacobian row of a point of a link along `linear` and about `angular`, and its response.
 
-    The point is in world axes. The row goes to block `start`, and the response of the tree to it beside.
+    The point is in world axes. Both are stored from block `start` on, in arrays of their own.
 
     Returns:
-        Inverse mass of the row on this tree, and its present velocity.
+        Inverse mass of the row for this tree, and its present velocity.
     """
     inverse_mass = real(0.0)
     velocity = real(0.0)
@@ -90,7 +90,7 @@ def write_jacobian(
 def place_row(
     model: Model, pair_rows: PairRows, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
 ) -> Int32:
-    """Note which trees a row acts on and where its Jacobian is; returns the next free block."""
+    """Store the trees of a row and the first block of its Jacobian; returns the next free block."""
     blocks_a = tree_blocks(model, tree_a)
     blocks_b = tree_blocks(model, tree_b)
     delta_a = Int32(0)
@@ -117,9 +117,9 @@ def write_row(
     upper: real,
     friction: real,
 ):
-    """Write the numbers of a row that wants its velocity to change by `change`.
+    """Write the data of a row that requests the `change` of its velocity.
 
-    `softness` (constraint force mixing) is the velocity the row gives way by per unit of impulse.
+    `softness` (constraint force mixing) is the velocity by which the row yields per unit of impulse.
     """
     effective_mass = inverse_or_off(inverse_mass + softness)
     diagonal = real(0.0)
@@ -141,7 +141,7 @@ def write_row(
 def row_velocity_change(
     scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32
 ) -> real:
-    """The solver's change of a row's velocity so far, by its place and start."""
+    """Change of a row's velocity by the delta velocities so far."""
     total = real(0.0)
     if place[1] > 0:
         total = dot_product(pair_rows.jacobian_row, start, scratch.delta_velocity, place[0], world, place[1])
@@ -154,7 +154,7 @@ def row_velocity_change(
 
 @func
 def push_row(scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, impulse: real):
-    """Apply an impulse along a row to the changes of velocity of its trees."""
+    """Apply an impulse along a row to the delta velocities of its trees."""
     if place[1] > 0:
         add_multiple(
             scratch.delta_velocity, place[0], impulse, pair_rows.jacobian_response, start, world, place[1]
@@ -170,7 +170,7 @@ def push_row(scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4,
 def wanted_impulse(
     scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, terms: Vector8
 ) -> real:
-    """Impulse that would bring a row to its target without bounds."""
+    """Impulse with which a row would reach its target, without bounds."""
     return (
         terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
         + terms[ROW_SHARE]
@@ -182,7 +182,7 @@ def wanted_impulse(
 def relax_within(
     scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, lower: real, upper: real
 ) -> real:
-    """Bring one row to its target as far as bounds allow; returns the change of its velocity."""
+    """Relax one row within given bounds; returns the change of its velocity."""
     terms = pair_rows.row_terms[world, row]
     place = pair_rows.row_place[world, row]
     start = pair_rows.row_start[world, row]
@@ -206,7 +206,7 @@ def relax_pair_row(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int
 
 @func
 def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, bound: real) -> real:
-    """Relax two perpendicular rows, this and the next, their impulses together within `bound`."""
+    """Relax two perpendicular rows, this and the next, with the length of both impulses at most `bound`."""
     place = pair_rows.row_place[world, row]
     start1 = pair_rows.row_start[world, row]
     start2 = start1 + place[1] + place[3]
@@ -244,9 +244,9 @@ def write_jacobians(
     angular: Vector3,
     start: Int32,
 ):
-    """Write the velocity of a point of a against one of b, along or about an axis, as a row.
+    """Write the Jacobian row of the motion of a point of a relative to one of b, along or about an axis.
 
-    `ends` are tree and link of a, then of b; tree -1 is the world. The row goes to block `start`.
+    `ends` are tree and link of a, then of b; tree -1 is the world. The row is stored from block `start` on.
 
     Returns:
         Inverse mass and relative velocity.
@@ -286,7 +286,7 @@ def write_pair_jacobian(
     linear: Vector3,
     angular: Vector3,
 ):
-    """As `write_jacobians`, at the first free block, and note where the row is.
+    """As `write_jacobians`, from the first free `block` on, with `place_row`.
 
     Returns:
         Inverse mass, relative velocity, and the next free block.

@@ -11,7 +11,7 @@ from carom.kernels.types import Int32, Matrix8, Vector3, Vector4, Vector8, func,
 
 @wp.struct
 class RigidBody:
-    """A rigid body about the reference point of its tree; all zero where it cannot be moved."""
+    """A rigid body with the reference point of its tree; all zero if it cannot move."""
 
     reference: Vector3
     velocity: Vector8  # angular before linear, in world axes
@@ -20,7 +20,7 @@ class RigidBody:
 
 @func
 def rigid_body(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32) -> RigidBody:
-    """The rigid body that a tree, -1 for none, is."""
+    """Data of a tree that is a rigid body; -1 is the world."""
     body = RigidBody()
     body.reference = Vector3(0.0, 0.0, 0.0)
     body.velocity = Vector8(0.0)
@@ -39,7 +39,7 @@ def rigid_body(model: Model, state: State, scratch: Scratch, world: Int32, tree:
 
 @func
 def row_direction(terms: ContactTerms, row: Int32) -> Vector3:
-    """Direction of a row of a contact: 0 is the normal, 1 and 2 are those of friction."""
+    """Direction of a row of a contact: row 0 is the normal, rows 1 and 2 are friction."""
     direction = terms.normal
     if row == 1:
         direction = terms.lateral1
@@ -61,19 +61,19 @@ def write_row_numbers(
     velocity: real,
     inverse_mass: real,
 ) -> real:
-    """Write everything about a row of a contact but its matrices.
+    """Write all data of a row of a contact except its matrices.
 
     Args:
-        settings: Softness, error reduction and more.
-        shapes: Restitution of the links.
+        settings: Time step, error reduction of friction, and more.
+        shapes: Has the restitution of the links.
         pair_rows: The manifold block.
         terms: The contact.
         world: The world.
         manifold_block: The manifold block.
-        contact: Which of its contacts.
-        row: Which of the rows of the contact: 0 is the normal, 1 and 2 are those of friction.
-        velocity: Present velocity of the row, but for what fixed bases do.
-        inverse_mass: Velocity that a unit impulse gives it.
+        contact: Index of the contact in the block.
+        row: Row of the contact: 0 is the normal, 1 and 2 are friction.
+        velocity: Present velocity of the row, without set velocities of fixed bases.
+        inverse_mass: Change of this velocity by a unit impulse.
 
     Returns:
         Effective mass of the row.
@@ -108,7 +108,7 @@ def write_row_numbers(
 
 @func
 def rigid_jacobian(arm: Vector3, direction: Vector3) -> Vector8:
-    """How the velocities of a rigid body move the end of an arm along a direction, in world axes."""
+    """Jacobian row of the velocity of a point at `arm` along a direction, in world axes."""
     moment = wp.cross(arm, direction)
     return Vector8(
         moment[0], moment[1], moment[2], direction[0], direction[1], direction[2], real(0.0), real(0.0)
@@ -125,7 +125,7 @@ def write_rigid_jacobians(
     manifold_block: Int32,
     contact: Int32,
 ):
-    """Write the Jacobians of a contact between rigid bodies in place of responses and weighted Jacobians."""
+    """Store the Jacobians of a contact where its responses and weighted Jacobians will be."""
     row = Int32(0)
     while row < 3:
         direction = row_direction(terms, row)
@@ -148,10 +148,10 @@ def write_rigid_jacobians(
 
 @func
 def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, side: Int32, body: RigidBody):
-    """Turn the Jacobians of a body into responses, and add up what rows are to know of both bodies.
+    """Compute the responses of a body, and add its part to Delassus matrices and velocities of rows.
 
-    Until masses are known the Delassus matrices hold products of Jacobians and responses, and shares the
-    present velocities.
+    Until `weigh`, Delassus matrices are not multiplied by effective masses; until `write_row_numbers`, shares
+    are the present velocities of the rows.
     """
     normal = pair_rows.side[world, side].normal_weighted
     friction = pair_rows.side[world, side].friction_weighted
@@ -206,7 +206,7 @@ def write_rigid_rows(
     tree_a: Int32,
     tree_b: Int32,
 ):
-    """Write all rows of a manifold block of rigid bodies; what its contacts are is in `PairRows.terms`."""
+    """Write all rows of a manifold block of rigid bodies; its contacts are in `PairRows.terms`."""
     body_a = rigid_body(model, state, scratch, world, tree_a)
     body_b = rigid_body(model, state, scratch, world, tree_b)
     count = pair_rows.manifold_block[world, manifold_block].count

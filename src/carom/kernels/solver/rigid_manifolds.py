@@ -1,11 +1,12 @@
-"""Manifold blocks: up to four contacts of two trees that come one after the other, relaxed together.
+"""Manifold blocks: up to four consecutive contacts of the same two trees, relaxed together.
 
-What a row of a manifold block does to the velocities of those after it is known beforehand. So all velocities
-are computed at once, from then on only the impulses depend on each other, and the trees' velocities
-are brought up to date once per manifold block: the same steps of Gauss-Seidel, without waiting for memory.
+The effect of each row of a manifold block on the velocities of the rows after it is computed beforehand, as a
+Delassus matrix. So the velocities of all rows are computed at once, then the impulses row by row, and the
+delta velocities of the trees are updated once per block. These are the same Gauss-Seidel steps as with
+single rows, with fewer reads and writes of memory.
 
-Places beyond the last contact of a manifold block have no effective mass. Those of rigid bodies are here;
-`articulated_manifolds` does the same for articulated ones.
+Entries beyond the last contact of a manifold block have effective mass 0. This module is for rigid bodies;
+`articulated_manifolds` does the same for articulated bodies.
 """
 
 from typing import Any
@@ -19,7 +20,7 @@ from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, s
 
 @func
 def body_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
-    """The solver's change of a rigid body's velocity so far."""
+    """Delta velocities of a rigid body so far."""
     first = scratch.delta_velocity[world, delta]
     second = scratch.delta_velocity[world, delta + 1]
     return Vector8(first[0], first[1], first[2], first[3], second[0], second[1], second[2], second[3])
@@ -27,14 +28,14 @@ def body_change(scratch: Scratch, world: Int32, delta: Int32) -> Vector8:
 
 @func
 def add_change(scratch: Scratch, world: Int32, delta: Int32, change: Vector8):
-    """Change the velocity of a rigid body."""
+    """Add a change to the delta velocities of a rigid body."""
     scratch.delta_velocity[world, delta] += Vector4(change[0], change[1], change[2], change[3])
     scratch.delta_velocity[world, delta + 1] += Vector4(change[4], change[5], change[6], change[7])
 
 
 @func
 def combination(rows: Any, factors: Vector8) -> Any:
-    """The eight rows of a matrix, each times its factor, summed up."""
+    """Linear combination of the eight rows of a matrix."""
     return ((factors[0] * rows[0] + factors[1] * rows[1]) + (factors[2] * rows[2] + factors[3] * rows[3])) + (
         (factors[4] * rows[4] + factors[5] * rows[5]) + (factors[6] * rows[6] + factors[7] * rows[7])
     )
@@ -42,7 +43,7 @@ def combination(rows: Any, factors: Vector8) -> Any:
 
 @func
 def push_of_normals(response: Matrix48, impulse: Vector4) -> Vector8:
-    """How impulses along the normals change velocities."""
+    """Change of velocities by impulses along the normals."""
     return (impulse[0] * response[0] + impulse[1] * response[1]) + (
         impulse[2] * response[2] + impulse[3] * response[3]
     )
@@ -70,14 +71,14 @@ def push_manifold_block(
 
 @func
 def greatest_square(change: Vector4) -> real:
-    """The largest of the squares."""
+    """The largest square of the entries."""
     square = wp.cw_mul(change, change)
     return maximum(maximum(square[0], square[1]), maximum(square[2], square[3]))
 
 
 @func
 def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector4:
-    """Change the normal impulses of a manifold block by what is wanted as far as they stay pushes."""
+    """Update the normal impulses of a block by the wanted changes, clamped to >= 0; returns the changes."""
     before = pair_rows.manifold_block[world, manifold_block].normal_impulse
     wanted = pair_rows.manifold_block[world, manifold_block].normal_wanted
     delassus = pair_rows.manifold_block[world, manifold_block].normal_delassus
@@ -93,7 +94,7 @@ def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) ->
 
 @func
 def normal_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector4) -> real:
-    """The maximum change of velocity squared that goes with a change of normal impulses."""
+    """Maximum squared change of a row's velocity by a change of normal impulses."""
     return greatest_square(
         wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].normal_inverse_mass)
     )
@@ -101,9 +102,10 @@ def normal_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, ch
 
 @shared_func
 def scale_to_circle(square: real, bound: real) -> real:
-    """Factor that takes impulses whose squares add up to `square` back to the circle of radius `bound`.
+    """Factor that scales impulses of squared length `square` to the circle of radius `bound`.
 
-    Being called keeps root and quotient off the way of impulses within the circle, which most are.
+    It is not inlined, so that square root and quotient are not computed for impulses within the circle, as
+    most are.
     """
     if bound == 0.0:
         return 0.0
@@ -112,7 +114,7 @@ def scale_to_circle(square: real, bound: real) -> real:
 
 @func
 def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
-    """Change the friction of a manifold block by what is wanted, within its normal impulses."""
+    """Update the friction impulses of a block, within bounds by the normal impulses; returns the changes."""
     wanted = pair_rows.manifold_block[world, manifold_block].friction_wanted
     before = pair_rows.manifold_block[world, manifold_block].friction_impulse
     bounds = wp.cw_mul(
@@ -149,7 +151,7 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
 
 @func
 def friction_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector8) -> real:
-    """The maximum change of velocity squared that goes with a change of friction."""
+    """Maximum square of the sum of a contact's two velocity changes, by a change of friction impulses."""
     velocity = wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].friction_inverse_mass)
     return greatest_square(
         Vector4(

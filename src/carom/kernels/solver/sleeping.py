@@ -1,8 +1,8 @@
-"""Sleeping (deactivation): trees at rest take no part in a step until something in motion comes near.
+"""Sleeping (deactivation): islands at rest are left out of steps until a moving body comes near.
 
-A tree that hardly moves for `SLEEP_DELAY` seconds wants to sleep. Trees that are near each other, touch or
-are tied together are an island: it falls asleep when none of its trees is active, and wakes up when one is.
-As in Bullet, neither forces nor motors wake a tree up.
+A tree that has been slower than its threshold for `SLEEP_DELAY` seconds wants to sleep. Trees that are near
+each other, touch or are joined by user constraints are an island: it falls asleep when none of its trees is
+active, and wakes up when one is. As in Bullet, neither forces nor motors wake a tree up.
 """
 
 import warp as wp
@@ -18,9 +18,9 @@ from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
 from carom.layouts.contacts import LEAVES, THERE
 from carom.layouts.status import STATUS, WELL
 
-# Time without motion after which a tree may fall asleep [s].
+# Time below the threshold after which a tree may fall asleep [s].
 SLEEP_DELAY = real(2.0)
-# Gap between the bounds of two trees up to which they fall asleep and wake up together [m].
+# Maximum gap between bounding boxes of two trees that fall asleep and wake up together [m].
 NEAR = real(0.04)
 
 
@@ -28,7 +28,7 @@ NEAR = real(0.04)
 def are_near(
     settings: Settings, model: Model, shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
 ) -> bool:
-    """Whether two shapes are near each other, that of b being on a link that moves, and may touch."""
+    """Whether two shapes are near each other and may collide, and a dof moves the link of shape b."""
     if not link_moves(model, shapes.shape_link[b]):
         return False
     return boxes_meet(
@@ -51,7 +51,7 @@ def unite_near(
     place: Int32,
     own_leaf: Int32,
 ):
-    """Unite the tree of the shape at a place in the hierarchy with those near it at later places."""
+    """Unite the tree of the shape at `place` in `shape_order` with those of near shapes after it."""
     a = pairs.shape_order[world, place]
     if not link_moves(model, shapes.shape_link[a]):
         return
@@ -79,7 +79,7 @@ def unite_near(
 def unite_neighbours(
     settings: Settings, model: Model, state: State, shapes: Shapes, pairs: Pairs, world: Int32
 ):
-    """Unite all trees that are near each other."""
+    """Put trees that are near each other into one island."""
     leaf_count = pairs.count_pairs[world, LEAVES]
     for leaf in range(leaf_count):
         for place in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
@@ -88,7 +88,7 @@ def unite_neighbours(
 
 @func
 def has_moving_shapes(model: Model, shapes: Shapes, tree: Int32) -> bool:
-    """Whether a link that moves has shapes; else a tree never sleeps, as in Bullet."""
+    """Whether a link that dofs move has shapes; as in Bullet, a tree without such links never sleeps."""
     first = model.tree[tree].first_link
     for link in range(first, first + model.tree[tree].link_count):
         if shapes.link_shape_count[link] > 0 and link_moves(model, link):
@@ -118,9 +118,9 @@ def settle_kernel(
     touching: Int32,
     first_world: Int32,
 ):
-    """Before a substep: islands without an active tree fall asleep, others wake up.
+    """Put islands without an active tree to sleep, and wake up the others, before a substep.
 
-    `touching` is 0 where there is no collision detection, so that no tree has neighbours.
+    `touching` is 0 if there is no collision detection; then trees cannot be near each other or touch.
     """
     world = first_world + wp.tid()
     if state.status_entry[world, STATUS] != WELL:
@@ -151,7 +151,7 @@ def settle_kernel(
 
 @func
 def watch(model: Model, settings: Settings, state: State, world: Int32, tree: Int32):
-    """Whether a tree moves enough to stay awake, or to wake up."""
+    """Update the time for which a tree has been slow, and whether it wants to sleep."""
     if model.tree[tree].can_sleep == 0:
         state.tree_wants_sleep[world, tree] = 0
         state.tree_idle_time[world, tree] = 0.0
@@ -168,7 +168,7 @@ def watch(model: Model, settings: Settings, state: State, world: Int32, tree: In
 
 @kernel
 def watch_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
-    """After a substep: which trees move, which want to sleep, which are active again."""
+    """Update which trees are active and which want to sleep, after a substep."""
     world = first_world + wp.tid()
     if state.status_entry[world, STATUS] != WELL:
         return

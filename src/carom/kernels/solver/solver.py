@@ -1,6 +1,7 @@
 """Projected Gauss-Seidel on the constraint rows of one island, contacts and user constraints included.
 
-Sweeps go and end as those of `joint_solver`, which does the same where nothing is coupled.
+Directions and stopping rule of the sweeps are those of `joint_solver`, which is for trees without contacts
+and user constraints.
 """
 
 import warp as wp
@@ -48,7 +49,7 @@ def island_rows(
     """Write the rows of an island's active motors, limits and user constraints.
 
     Returns:
-        Next free row over one tree; next free row and block over two trees; how many rows to visit,
+        Next free row over one tree; next free row and block over two trees; number of rows in `visit_row`,
         negative if some did not fit.
     """
     row = Int32(0)
@@ -91,7 +92,7 @@ def island_rows(
 def forget_changes(
     settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, root: Int32
 ):
-    """Take back all changes of velocity in an island."""
+    """Set the delta velocities of all trees of an island to zero."""
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == root:
             clear_delta_velocities(model, scratch, world, tree)
@@ -109,21 +110,21 @@ def sweep_island(
     torsion: Int32,
     resting: Int32,
 ):
-    """Sweep over the rows of an island until they hardly change; along conjugate directions if it rests.
+    """Sweep over the rows of an island until it converges; with conjugate directions if it is at rest.
 
     Args:
-        settings: Maximum number of sweeps, and the residual threshold.
-        scratch: Rows of one tree.
+        settings: Has the maximum number of sweeps, and the residual threshold.
+        scratch: Rows over one tree.
         pair_rows: Rows over two trees.
         world: The world.
-        visits: Rows to visit.
-        units: Number of units in which its contacts are relaxed.
-        manifold_blocks: Number of manifold blocks among them.
+        visits: Number of rows of motors, limits and user constraints.
+        units: Number of units of contacts.
+        manifold_blocks: Number of manifold blocks among the units.
         torsion: 1 if there is rolling or spinning friction.
-        resting: 1 if all units are manifold blocks that start from their last impulses.
+        resting: 1 if the island is warm started; then all units are manifold blocks of rigid bodies.
 
     Returns:
-        Maximum change of a velocity in the last sweep, squared; number of sweeps.
+        Residual of the last sweep, the maximum change of a row's velocity, squared; number of sweeps.
     """
     threshold = settings.residual_threshold
     most = settings.iterations
@@ -165,15 +166,15 @@ def solve_island(
     world: Int32,
     root: Int32,
 ):
-    """Solve the rows of one island; leaves the change of velocity in `delta_velocity`.
+    """Solve the rows of one island; leaves the result in `delta_velocity`.
 
-    One that is at rest but cannot be solved so is solved once more, from nothing.
+    A warm started island whose sweeps do not converge is solved again, from zero impulses.
     """
     rows, pair_row, block, visits = island_rows(
         model, settings, state, scratch, users, pair_rows, world, root
     )
     first_contact = pair_rows.tree_first_contact[world, root]
-    # Without any sweep there are no impulses, those of the last step included.
+    # With 0 iterations there must be no impulses, so there is no warm starting either.
     resting = wp.min(wp.min(pair_rows.tree_rest[world, root], 1), settings.iterations)
     outcome = Int32(NOT_RESTING)
     units = Int32(0)
@@ -212,7 +213,7 @@ def solve_island(
 def keep_constraint_impulses(
     model: Model, state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, root: Int32
 ):
-    """Report the impulses of an island's user constraints."""
+    """Store the impulses of an island's user constraints."""
     constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
         if model.constraint[constraint].kind == USER:

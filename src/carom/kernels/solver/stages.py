@@ -1,4 +1,4 @@
-"""The stages of a substep of worlds whose bodies touch or are tied together, a kernel for each."""
+"""Kernels of the stages of a substep, for worlds with contacts or user constraints."""
 
 import warp as wp
 
@@ -30,7 +30,7 @@ def islands_kernel(
     pair_rows: PairRows,
     first_world: Int32,
 ):
-    """Group trees into islands."""
+    """Find the islands of each world."""
     world = first_world + wp.tid()
     build_islands(settings, model, state, shapes, contacts, users, pair_rows, world)
 
@@ -44,7 +44,7 @@ def free_motion_kernel(
     pair_rows: PairRows,
     first_world: Int32,
 ):
-    """Velocities after a substep if there were no constraints."""
+    """Update velocities for a substep without constraints."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         free_motion(
@@ -64,7 +64,7 @@ def constraints_kernel(
     pair_rows: PairRows,
     first_world: Int32,
 ):
-    """Changes of velocity that motors, limits, user constraints and contacts ask for."""
+    """Compute the delta velocities by motors, limits, user constraints and contacts."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
@@ -82,7 +82,7 @@ def integration_kernel(
     users: UserConstraints,
     first_world: Int32,
 ):
-    """New velocities and positions."""
+    """Add delta velocities to the velocities, and integrate positions."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         gather_link_forces(settings, model, state, scratch, shapes, contacts, users, world, tree)

@@ -1,4 +1,4 @@
-"""One sweep of projected Gauss-Seidel over the rows of an island, group by group."""
+"""One sweep of projected Gauss-Seidel over the rows of an island, by kinds of rows."""
 
 import warp as wp
 
@@ -38,7 +38,7 @@ def visit_sweep(
             if change * change > residual:
                 residual = change * change
         if residual == 0.0:
-            # Nothing has changed, so nothing ever will.
+            # No row has changed, so further inner sweeps would not change any.
             inner = settings.inner_iterations
     return residual
 
@@ -132,7 +132,7 @@ def contact_sweep(
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` and `torsion` are what `units.write_units` returns.
+    `units` and `torsion` are returned by `units.write_units`. Returns the maximum change squared.
     """
     residual = normal_sweep(scratch, pair_rows, world, units)
     kind = Int32(LATERAL_ROW)
@@ -150,7 +150,7 @@ def resting_sweep(
 ) -> real:
     """Relax all rows of a resting island's manifold blocks once; returns the maximum change squared.
 
-    Manifold block by manifold block, the friction of each right after its normals.
+    The friction rows of each block are relaxed right after its normal rows.
     """
     residual = real(0.0)
     manifold_block = Int32(0)

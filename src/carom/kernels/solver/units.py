@@ -1,4 +1,4 @@
-"""The contacts of an island as its sweeps relax them: in manifold blocks, or one by one."""
+"""Units of an island's sweeps: its contacts, grouped into manifold blocks or single."""
 
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
@@ -23,10 +23,10 @@ def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> 
 def may_join(
     shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32, first: Int32, rigid: bool
 ) -> bool:
-    """Whether a contact may be in a manifold block with another one that comes before it.
+    """Whether a contact may be in the same manifold block as `first`, a contact before it.
 
-    Manifold blocks of rigid bodies are those of two shapes, as islands at rest want them; articulated ones
-    may have contacts of several links, so that a robot on four feet has one.
+    Blocks of rigid bodies have contacts of two shapes, as warm starting requires; articulated ones may have
+    contacts of several links, so that a robot standing on four feet needs one block.
     """
     if contact < 0:
         return False
@@ -45,7 +45,7 @@ def may_join(
 def next_unit(
     shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32, first: Int32, rigid: bool
 ):
-    """The contacts, -1 for none, of the unit that begins with `first`, and their number."""
+    """Contacts of the unit that begins with `first`, -1 for none, and their number."""
     members = Index4(first, -1, -1, -1)
     count = Int32(1)
     if not twists(shapes, contacts, world, first):
@@ -72,14 +72,14 @@ def write_units(
     block: Int32,
     share: real,
 ):
-    """Write the rows of an island's contacts, from the next free row and block on.
+    """Write the rows of an island's contacts, from the next free `row` and `block` on.
 
-    Those of rigid bodies start from a `share` of their last impulses. Several contacts in a row that may
-    be solved together make a manifold block.
+    Consecutive contacts that may be solved together become a manifold block. Blocks of rigid bodies start
+    from their last impulses times `share`.
 
     Returns:
-        Number of units, negative if some did not fit; number of manifold blocks; 1 if there is rolling or
-        spinning friction.
+        Number of units, negative if some did not fit; number of manifold blocks; 1 if some contact has
+        rolling or spinning friction.
     """
     units = Int32(0)
     manifold_blocks = Int32(0)
@@ -130,7 +130,7 @@ def write_units(
 
 @func
 def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, units: Int32, outcome: Int32):
-    """Report the impulses of an island's contacts, and the `outcome` of the search for them."""
+    """Store the impulses of an island's contacts, and the `outcome` of solving them."""
     unit = Int32(0)
     while unit < units:
         code = pair_rows.unit_code[world, unit]

@@ -1,4 +1,4 @@
-"""Rows of the constraints users create: point to point, fixed, prismatic, gear."""
+"""Rows of user constraints: point to point, fixed, prismatic, gear."""
 
 import warp as wp
 
@@ -15,7 +15,7 @@ _PARALLEL = real(1e-6)
 
 @func
 def world_point(state: State, world: Int32, tree: Int32, link: Int32, local: Vector3) -> Vector3:
-    """World position of a point of a link; of the world (tree -1) the point itself."""
+    """World position of a point given in a link's frame, or in the world frame if `tree` is -1."""
     if tree < 0:
         return local
     return wp.transform_point(state.link_pose[world, link], local)
@@ -23,7 +23,7 @@ def world_point(state: State, world: Int32, tree: Int32, link: Int32, local: Vec
 
 @func
 def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Quaternion) -> Quaternion:
-    """World orientation of a frame of a link; of the world (tree -1) the frame itself."""
+    """World orientation of a frame given in a link's frame, or in the world frame if `tree` is -1."""
     if tree < 0:
         return local
     return wp.transform_get_rotation(state.link_pose[world, link]) * local
@@ -43,7 +43,7 @@ def user_row_count(kind: Int32) -> Int32:
 
 @func
 def across_axis(frame: Matrix3, axis: Vector3) -> Vector3:
-    """A unit vector perpendicular to `axis`, from the first column of `frame` that is not parallel."""
+    """A unit vector perpendicular to `axis`, by the first column of `frame` that is not parallel to it."""
     result = wp.cross(column(frame, 0), axis)
     if wp.length(result) <= _PARALLEL:
         result = wp.cross(column(frame, 1), axis)
@@ -60,7 +60,7 @@ def user_ends(users: UserConstraints, user: Int32) -> Index4:
 
 @func
 def held_points(state: State, users: UserConstraints, world: Int32, user: Int32):
-    """The points of a and of b that a user constraint holds together, in world axes."""
+    """The pivots of a user constraint on a and on b, in world axes."""
     ends = user_ends(users, user)
     point_a = world_point(state, world, ends[0], ends[1], users.user_pivot_a[user])
     point_b = world_point(state, world, ends[2], ends[3], users.user_pivot_b[user])
@@ -71,7 +71,7 @@ def held_points(state: State, users: UserConstraints, world: Int32, user: Int32)
 def held_directions(
     state: State, users: UserConstraints, world: Int32, user: Int32, axes: Matrix3
 ) -> Matrix3:
-    """Directions along which the points may not part, as rows: three axes, or the two across the slide."""
+    """Directions as rows, along which pivots must coincide: all three, or, if prismatic, the first two."""
     directions = wp.identity(3, real)
     if users.user_kind[user] == USER_PRISMATIC:
         along = wp.quat_rotate(
@@ -85,10 +85,11 @@ def held_directions(
 
 @func
 def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
-    """What row `i` of a user constraint is along or about.
+    """Direction or rotation axis of row `i` of a user constraint.
 
     Returns:
-        The direction, else 0; the axis, else 0; which column of `axes` that is, -1 for a direction.
+        The direction of a translational row, else 0; the rotation axis of a rotational row, else 0; the axis'
+        column in `axes`, -1 for a translational row.
     """
     linear = Vector3(0.0, 0.0, 0.0)
     angular = Vector3(0.0, 0.0, 0.0)
@@ -119,9 +120,9 @@ def add_pose_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add the rows of a point-to-point, fixed or prismatic constraint; returns what is free next.
+    """Add the rows of a point-to-point, fixed or prismatic constraint; returns the next free row and block.
 
-    Each row lets a not move against b along or about an axis, and takes back a share of the error.
+    Each row stops the motion of a relative to b along or about an axis, and corrects a part of the error.
     """
     ends = user_ends(users, user)
     point_a, point_b = held_points(state, users, world, user)
@@ -159,7 +160,7 @@ def write_dof_jacobian(
     share: real,
     start: Int32,
 ):
-    """Write a row that is `share` times the rate of a dof; returns inverse mass and velocity."""
+    """Write the part of a row that is `share` times a dof's rate; returns its inverse mass and velocity."""
     blocks = (model.tree[tree].dof_count + 3) // 4
     column_of_dof = dof - model.tree[tree].first_dof
     response = model.tree[tree].first_block + column_of_dof * blocks
@@ -174,7 +175,7 @@ def write_dof_jacobian(
 
 @func
 def joint_position(model: Model, state: State, world: Int32, link: Int32) -> real:
-    """Position of the joint that carries a link."""
+    """Position of a link's joint."""
     return state.position[world, model.link[link].first_position]
 
 
@@ -191,7 +192,7 @@ def add_gear_row(
     row: Int32,
     block: Int32,
 ):
-    """Add the row that ties the rate of joint a to minus the gear ratio times that of joint b."""
+    """Add a gear's row: rate of joint a + ratio * rate of joint b = rate of the auxiliary joint, or 0."""
     link_a = users.user_link_a[user]
     link_b = users.user_link_b[user]
     auxiliary = users.user_gear_auxiliary[user]
@@ -248,7 +249,7 @@ def add_user_rows(
 
 @func
 def keep_user_impulses(state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, user: Int32):
-    """Report the impulses of a user constraint's rows."""
+    """Store the impulses of a user constraint's rows."""
     first = pair_rows.user_first_row[world, user]
     for i in range(user_row_count(users.user_kind[user])):
         impulse = real(0.0)

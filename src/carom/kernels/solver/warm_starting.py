@@ -1,14 +1,15 @@
-"""Warm starting, of islands of rigid bodies at rest: their contacts start from their last impulses.
+"""Warm starting of islands of rigid bodies at rest: contacts start from the impulses of the last step.
 
-The solver then has little left to do, and goes on until it is done: a stack at rest takes a few sweeps
-instead of fifty. Bullet starts from nothing in every step, and gets nearly there. Wherever something moves,
-contacts are new, soft, alone or have rolling friction, or joints are involved, contacts start from nothing,
-and the motion is Bullet's.
+Sweeps then converge: a stack at rest takes a few of them instead of fifty. Bullet starts multibody contacts
+from zero impulses in every step, and does not quite converge. Contacts of an island start from zero here,
+too, if something in it moves, if a contact is new, soft, single or has rolling or spinning friction, or if
+there are constraints; then the motion is Bullet's.
 
-A start from impulses that were not quite right would add errors up over the steps, and stacks would tremble.
-So what could not be solved is done again as in Bullet, and the next attempt comes later. And where every
-manifold block *holds* (at least three contacts that all push, two of which do not slide), the exact solution
-is rest: the velocity left from the last step, if next to nothing, is the solver's error and is taken away.
+Starting from inaccurate impulses would accumulate errors over the steps, and stacks would tremble. So an
+island that does not converge is solved again as in Bullet, and not warm started for some steps. If every
+manifold block *holds* (it has at least three contacts, all with a normal impulse, two of which do not slide),
+the exact solution is rest: small velocities left from the last step are errors of the solver and are set to
+zero.
 """
 
 import warp as wp
@@ -20,38 +21,38 @@ from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, S
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.contacts import THERE
 
-# What `PairRows.tree_contacts` says of a tree, added up: it has contacts; some are not plain; some did not
-# hold in the last step; some, its own or others of the island whose root it is, are with what cannot move.
+# Bits of `PairRows.tree_contacts`: the tree has contacts; some are not plain (see `is_plain`); some did not
+# hold in the last step; some are with links that cannot move (at the root: some of the whole island are).
 HAS_CONTACTS, HAS_OTHER_CONTACTS, HAS_LOOSE_CONTACTS, ANCHORED = 1, 2, 4, 8
-# What `PairRows.tree_rest` says of the root of an island: it moves; it is at rest; and all its blocks hold
-# and all its bodies are still.
+# Values of `PairRows.tree_rest` at the root of an island: the island moves; it is at rest; it is at rest, all
+# its blocks hold, and all its bodies are still.
 MOVING, RESTING, HELD = 0, 1, 2
-# Sum of squared velocities of a body at rest, at most [m²/s², rad²/s²].
+# Maximum sum of squared velocities of a body at rest [m²/s², rad²/s²].
 REST = real(2e-4)
-# The same of one that is still.
+# The same for a body that is still.
 STILL = real(1e-8)
-# Bodies whose contacts are this much deeper or higher than they should be still move because of that [m].
+# Maximum error of the distance of contacts that hold; correcting a larger one moves the bodies [m].
 SETTLED = real(2e-7)
-# Share of `residual_threshold` that ends the sweeps of an island at rest.
+# Factor on `residual_threshold` for islands at rest.
 RESTING_PRECISION = real(1e-4)
-# How many times the usual sweeps it may take; a few are enough but for those after it has come to rest.
+# Factor on their maximum number of sweeps; many are needed only in the first steps at rest.
 RESTING_SWEEPS = 4
 
 
-# How the search for the impulses of a contact went: it was in no island at rest; that was solved; it was
-# not; it was, and the manifold block holds.
+# Outcomes of solving a contact: its island was not warm started; the island converged; it did not converge;
+# it converged, and the contact's manifold block holds.
 NOT_RESTING, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
-# Share of the largest friction, squared, from which on a contact slides.
+# Minimum squared ratio of friction to its bound for a contact that slides.
 SLIDING = real(1.0 - 1e-9)
-# What `next_warm_start` says of a contact in a manifold block that holds; others go up to 1.
+# Counter of a contact in a manifold block that holds; others have at most 1.
 HOLDS = real(2.0)
-# Steps without warm starting after one that did not converge.
+# Number of steps without warm starting after one that did not converge.
 PAUSE = real(60.0)
 
 
 @func
 def next_warm_start(warm_start: real, outcome: Int32) -> real:
-    """Counter of a contact: from 1 on it may be warm started; each step adds one, up to 1."""
+    """Update the counter of a contact: it may be warm started from 1 on; each step adds 1, up to 1."""
     if outcome == UNSOLVED:
         return 1.0 - PAUSE
     if outcome == SOLVED_AND_HOLDS:
@@ -68,7 +69,7 @@ def slides(normal: real, first: real, second: real, friction: real) -> bool:
 
 @func
 def is_rigid(model: Model, tree: Int32) -> bool:
-    """Whether a tree, -1 for none, is a rigid body, free to move or not to be moved at all."""
+    """Whether a tree, -1 for the world, is a free rigid body or has no dofs."""
     if tree < 0:
         return True
     dofs = model.tree[tree].dof_count
@@ -77,7 +78,7 @@ def is_rigid(model: Model, tree: Int32) -> bool:
 
 @func
 def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
-    """Whether contacts of a link are rigid and have lateral friction only, isotropic."""
+    """Whether contacts of a link are rigid, with isotropic lateral friction only."""
     return (
         shapes.link_stiffness[world, link] < 0.0
         and shapes.link_rolling_friction[world, link] == 0.0
@@ -88,7 +89,7 @@ def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
 
 @func
 def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact can be warm started: not new, in a block, rigid, lateral friction only."""
+    """Whether a contact can be warm started: not new, not single, and plain by its links' properties."""
     if contacts.contact_warm_start[world, contact] < 1.0:
         return False
     pair = contacts.contact_shapes[world, contact]
@@ -104,7 +105,7 @@ def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -
 def contact_traits(
     settings: Settings, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
 ) -> Int32:
-    """The bits that a contact adds to `PairRows.tree_contacts` of the trees it moves."""
+    """Bits that a contact adds to `PairRows.tree_contacts` of the trees it acts on."""
     if not is_plain(shapes, contacts, world, contact):
         return HAS_CONTACTS | HAS_OTHER_CONTACTS
     gap = contacts.contact_distance[world, contact] + settings.contact_slop
@@ -127,7 +128,7 @@ def rest_of(model: Model, state: State, pair_rows: PairRows, world: Int32, tree:
 
 @func
 def find_resting_islands(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
-    """Mark the roots of islands by their state of rest, and stop islands that are held."""
+    """Compute the state of rest of each island, and stop anchored islands in which all blocks hold."""
     for tree in range(settings.tree_count):
         pair_rows.tree_rest[world, tree] = Int32(HELD)
         if pair_rows.tree_first_constraint[world, tree] >= 0 or settings.contact_warm_starting == 0.0:
@@ -149,9 +150,9 @@ def find_resting_islands(settings: Settings, model: Model, state: State, pair_ro
 
 @func
 def holds(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> bool:
-    """Whether a manifold block leaves two rigid bodies no motion against each other.
+    """Whether a manifold block prevents all relative motion of two rigid bodies.
 
-    It does if three contacts or more push, and two of them do not slide.
+    It does if it has three contacts or more, all with a normal impulse, and two of them do not slide.
     """
     normal = pair_rows.manifold_block[world, manifold_block].normal_impulse
     lateral = pair_rows.manifold_block[world, manifold_block].friction_impulse
