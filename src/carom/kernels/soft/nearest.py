@@ -136,8 +136,8 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
             distance = height
             normal = outward
     if distance > 0.0 and distance <= max_distance:
-        # If the point is not right above the face with the largest height, the nearest point may be on an edge
-        # or on another face.
+        # If the point is not right above the face with the largest height, the nearest point may be on an
+        # edge or on another face.
         least = real(1.0e18)
         for face in range(first, last):
             plane = shapes.face_plane[face]
