@@ -299,7 +299,7 @@ class ArrayTable:
                 if start + count < end:
                     moves.append((rows[start : end - count], rows[start + count : end].copy()))
                 freed.append(rows[end - count : end])
-        # Axes whose last rows are removed. No row before them refers to a row behind, so values stay valid.
+        # Axes whose last rows are removed. The rows before them do not refer to removed or later rows.
         last = {axis for axis, cut in cuts.items() if sum(cut) == used.get(axis)}
         for name, target in targets.items():
             axis = name.partition("_")[0]

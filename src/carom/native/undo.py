@@ -60,7 +60,7 @@ class Undo:
             self._steps.pop()
 
     def _settle_patiently(self) -> None:
-        """Perform the remaining steps while an exception is being handled, and ignore further exceptions."""
+        """Perform the remaining steps while an exception is being handled; retry if another one occurs."""
         for _ in range(_PATIENCE):
             try:
                 self.settle()

@@ -1,8 +1,8 @@
 """Selectively damped least squares: each singular direction of the Jacobian has its own damping.
 
 After Buss and Kim, "Selectively damped least squares for inverse kinematics" (2005): by the singular value
-decomposition of the Jacobian, a step has one part for each singular vector. Each part is bounded by the ratio
-of the motion of the ends to the sum of the motions that the single joints cause.
+decomposition of the Jacobian, a step has one part for each singular vector. The bound of a part depends on
+the ratio of the motion of the ends to the sum of the motions that the single joints cause.
 """
 
 import warp as wp

@@ -6,7 +6,7 @@ positions at the start of the small step: symplectic Euler, which conserves ener
 where forces balance. Otherwise the force is implicit in time: extended position-based dynamics (XPBD;
 Macklin, Müller, Chentanez, 2016) with one sweep for each of many small steps (Macklin et al., "Small Steps in
 Physics Simulation", 2019). For an energy k C² / 2 the impulse along grad C is -k C h / (1 + k h² w), where w
-is the effective inverse mass of C. It never overshoots; where it is too stiff for the step, it acts softer.
+is the effective inverse mass of C. This never overshoots; elements too stiff for the step act softer.
 """
 
 import warp as wp
@@ -20,8 +20,9 @@ _SHORTEST = real(1.0e-12)
 # Ratio of stiffness to inertia of a tetrahedron, k h² w, above which its stress is implicit. Only deformed
 # ones get there.
 _EXPLICIT = real(0.6)
-# Largest phase of the fastest vibration around a spring or tetrahedron in one small step [rad]. Symplectic
-# Euler is stable up to 2; the margin is for deformed ones, which are stiffer.
+# Largest phase, in one small step, of the fastest vibration around a spring or tetrahedron at rest for which
+# its force is explicit [rad]. Symplectic Euler is stable up to 2; the margin is for deformed ones, which are
+# stiffer.
 _LONGEST_PHASE = real(1.1)
 
 

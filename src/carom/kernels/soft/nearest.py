@@ -205,11 +205,11 @@ def nearest_on_shape(
 
     Args:
         shapes: All shapes.
-        pairs: Where they are.
+        pairs: Their poses.
         world: The world.
         shape: The shape.
         point: The point in world axes [m].
-        max_distance: A larger distance is not exact; it is only larger than this [m].
+        max_distance: A result beyond this distance is not exact, only larger than this [m].
     """
     frame = pairs.shape_frame[world, shape]
     local = wp.transpose(frame) * (point - pairs.shape_position[world, shape])

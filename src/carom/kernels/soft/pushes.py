@@ -63,7 +63,7 @@ def make_ready(
     world: Int32,
     tree: Int32,
 ):
-    """Compute the inverse mass matrix of a tree, once in a substep, if the solver has not done so."""
+    """Compute a tree's inverse mass matrix, once in a substep, unless free motion has already done so."""
     if work.tree_ready[world, tree] == 0:
         work.tree_ready[world, tree] = 1
         if not may_be_pushed(model, pair_rows, world, tree):
