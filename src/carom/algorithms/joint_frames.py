@@ -36,7 +36,7 @@ class JointFrames:
         self._turns = {link: self._turn_of_axis(link) for link in moving}
 
     def of_joint(self, link: int) -> tuple[int, Pose]:
-        """Index of the moving link that carries a joint (-1: the base), and the joint's frame in its frame."""
+        """Index of the moving link that carries a joint (-1: base), and the joint's frame in that link's."""
         carrier, frame = self._seen(*self._placement(link, moves=True))
         turned = multiplied(frame.orientation, self._turns[link])
         return self._place(carrier), Pose(frame.position, turned)
