@@ -36,7 +36,7 @@ def test_the_library_is_made_from_the_kernels_that_are_here(copy):
 
 
 def test_one_that_is_made_from_other_kernels_is_refused(copy):
-    with pytest.raises(NativeLibraryError, match=r"was made from other kernels than .* here\. .*install"):
+    with pytest.raises(NativeLibraryError, match=r"was built from other kernels than .* here\. .*install"):
         Library(copy, "0" * 32)
 
 
@@ -58,7 +58,7 @@ def test_one_without_its_manifest_is_refused(copy, content):
 def test_where_there_is_none_and_nothing_to_build_it_with_the_cure_is_said(monkeypatch, tmp_path):
     monkeypatch.setattr(loading, "PACKAGED", tmp_path)
     monkeypatch.setattr(loading, "_COMPILERS", ("no_such_compiler",))
-    with pytest.raises(NativeLibraryError, match=r"Carom's native library is not here .*install"):
+    with pytest.raises(NativeLibraryError, match=r"Carom's native library is missing .*install"):
         loading._library.__wrapped__()
 
 

@@ -1,9 +1,9 @@
-"""Functions that write a query to memory, have it answered, and read the answer, at minimum cost.
+"""Functions that write a query to memory, run its kernel, and read the answer, at minimum cost.
 
-Spreading several lists out in one call, `pack(memory, first, *positions, *rates)`, makes a list and then a
-tuple of all their items. For a few items it is quicker to unpack them into variables and to pass these, for
-many to write each list by itself. The former needs source code for each number of items, which is generated,
-as for `namedtuple`.
+A call with several unpacked lists, `pack(memory, first, *positions, *rates)`, makes a list and then a tuple
+of all items. For a few items it is faster to unpack them into variables and to pass these; for many items it
+is faster to write each list by itself. The former needs source code for each number of items, which is
+generated at run time, as `namedtuple` does.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ def asking(
     answer: memoryview[float],
     size: int,
 ) -> Ask:
-    """Makes a function for queries whose arguments are lists of numbers.
+    """Make a function for queries whose arguments are lists of numbers.
 
     Args:
-        counts: Length of each of its arguments. The first argument is a setting, which counts as unchanged as
-            long as it is the same object.
-        question: Memory for them, one list after the other.
+        counts: Length of each argument of the function. The first argument is a setting, which counts as
+            unchanged as long as it is the same object.
+        question: Memory for the arguments, one list after the other.
         answer_it: Computes the answer.
         answer: Memory of the answer.
         size: Length of the answer, at least 1.
@@ -82,7 +82,7 @@ def asking(
 
 @cache
 def _code(counts: tuple[int, ...]) -> CodeType:
-    """Source code of `ask` for lists of these lengths."""
+    """Compiled code of `ask` for lists of these lengths."""
     lists = [f"list_{number}" for number in range(len(counts))]
     if sum(counts) > _MOST_ITEMS:
         writing = [f"write_{number}(*list_{number})" for number in range(len(counts))]

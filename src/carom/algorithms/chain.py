@@ -26,8 +26,8 @@ class BodyChain:
     """The chain to some links of a body, as arrays.
 
     Attributes:
-        arrays: `Chain`, filled.
-        sizes: The numbers of links, joints and so on.
+        arrays: The arrays of `Chain`, filled.
+        sizes: The numbers of joints, ends and so on.
     """
 
     def __init__(self, body: Body, links: Sequence[int]) -> None:
@@ -90,7 +90,7 @@ class BodyChain:
 
 
 def _ancestors(body: Body, links: Sequence[int]) -> list[int]:
-    """The links between the base and the given ones, these included, parents first."""
+    """The given links and all links between them and the base, parents first."""
     found = set()
     for link in links:
         while link != BASE and link not in found:

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 class ExtendedModel:
     """A mechanism of nodes in extended coordinates.
 
-    Rates and forces are those of the base along the world's axes, linear before angular, and a zero; then of
-    a spherical joint its angular velocity and a zero. Positions are those of the base and of the joints,
-    quaternions (x, y, z, w).
+    Rates and forces begin with those of the base in world axes, linear before angular, and a zero. Those of
+    the joints follow; a spherical joint has three and a zero. Positions are those of the base and of the
+    joints; quaternions are (x, y, z, w).
 
     Attributes:
         size: Number of coordinates.
@@ -36,7 +36,7 @@ class ExtendedModel:
     def __init__(self, nodes: Sequence[Node]) -> None:
         self._mechanism = Mechanism(nodes, free=True)
         self.size: int = BASE_POSITIONS + self._mechanism.coordinates
-        # The coordinate of each dof of the mechanism, whose base has its angular dofs first.
+        # The extended coordinate of each dof of the mechanism, whose base has its angular dofs first.
         places = [3, 4, 5, 0, 1, 2]
         first = BASE_POSITIONS
         for node in nodes:
@@ -58,7 +58,7 @@ class ExtendedModel:
         return matrix
 
     def bias_forces(self, position: np.ndarray, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
-        """Forces of inertia and gravity [m/s²] at zero acceleration, (size,)."""
+        """Generalized forces of inertia and gravity (`gravity` in m/s²) at zero acceleration, (size,)."""
         rotation = _rotation(position)
         velocity, omega = rate[:3].tolist(), rate[3:6].tolist()
         self._mechanism.set_base_motion(*base_motion(position[3:7].tolist(), velocity, omega, gravity))
@@ -74,13 +74,13 @@ class ExtendedModel:
 def base_motion(
     orientation: Sequence[float], velocity: Sequence[float], omega: Sequence[float], gravity: Vector3
 ) -> tuple[float, ...]:
-    """Motion of a base at zero acceleration, as `Mechanism.set_base_motion` takes it, in PyBullet's way.
+    """Motion of a base at zero acceleration, for `Mechanism.set_base_motion`, as PyBullet computes it.
 
     Args:
-        orientation: Of the base, a quaternion (x, y, z, w).
-        velocity: In world axes [m/s].
-        omega: In world axes [rad/s].
-        gravity: In world axes [m/s²].
+        orientation: Orientation of the base, a quaternion (x, y, z, w).
+        velocity: Linear velocity in world axes [m/s].
+        omega: Angular velocity in world axes [rad/s].
+        gravity: Gravity in world axes [m/s²].
     """
     x, y, z, w = orientation
     to_base = transposed(rotation_matrix((x, y, z, w)))
@@ -88,7 +88,8 @@ def base_motion(
     vx, vy, vz = matrix_vector(to_base, (vx, vy, vz))
     own_omega = matrix_vector(to_base, (ox, oy, oz))
     gx, gy, gz = matrix_vector(to_base, gravity)
-    # Only gravity would remain if PyBullet did not take omega along the body's axes here.
+    # PyBullet takes the two angular velocities here in different axes. In the same axes they would cancel,
+    # and only gravity would remain.
     dx, dy, dz = own_omega[0] - ox, own_omega[1] - oy, own_omega[2] - oz
     acceleration = (dy * vz - dz * vy - gx, dz * vx - dx * vz - gy, dx * vy - dy * vx - gz)
     return (*own_omega, 0.0, 0.0, 0.0, *acceleration)
@@ -100,15 +101,15 @@ def _rotation(position: np.ndarray) -> np.ndarray:
 
 
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
-    """Mass matrix of a body in extended coordinates, with ones for coordinates that do not move anything.
+    """Mass matrix of a body in extended coordinates; coordinates without inertia have a 1 on the diagonal.
 
     Args:
         body: The body.
-        positions: Of a floating base position and quaternion first; of each joint one number, or the
-            quaternion (x, y, z, w) of a spherical one.
+        positions: First position and quaternion of the base, if it is floating; then one number for each
+            joint, or a quaternion (x, y, z, w) for a spherical joint.
 
     Returns:
-        (n, n) over all extended coordinates, the base's seven first, of a fixed base as well.
+        (n, n) over all extended coordinates, the base's seven first, also for a fixed base.
 
     Raises:
         ValueError: A joint is planar.
@@ -126,8 +127,9 @@ def extended_bias_forces(body: Body, positions: Sequence[float], velocities: Seq
     Args:
         body: The body.
         positions: As in `extended_mass_matrix`.
-        velocities: As many: of a floating base linear and angular velocity and a number that does not
-            matter; of a spherical joint its angular velocity and a number that does not matter.
+        velocities: As many numbers: first linear and angular velocity of the base and an ignored number, if
+            it is floating; then one rate for each joint, or for a spherical joint its angular velocity and an
+            ignored number.
 
     Returns:
         (n,) as in `extended_mass_matrix`.
@@ -155,6 +157,6 @@ def _base_pose(body: Body) -> np.ndarray:
 
 
 def _with_base(body: Body, values: Sequence[float], of_fixed_base: np.ndarray) -> np.ndarray:
-    """Extended coordinates; those of a fixed base are not among the values."""
+    """All extended coordinates; `values` does not contain those of a fixed base."""
     own = np.asarray(values, dtype=float)
     return np.concatenate([of_fixed_base, own]) if body.fixed_base else own

@@ -1,8 +1,8 @@
 """Bodies as mechanisms of nodes, as in PyBullet's stable PD controller.
 
-Differences between PyBullet's controller and its engine are kept, so that torques are equal: inertias come
-from the first collision shape of a link alone, capsules have their axis along y, sliders move along the
-x axis of their inertial frame, and a base without shapes is left out when a fixed link can stand in.
+Differences between PyBullet's controller and its engine are reproduced, so that torques are equal: inertias
+are computed from the first collision shape of a link alone, capsules have their axis along y, sliders move
+along the x axis of their inertial frame, and a base without shapes is left out if the first link is fixed.
 """
 
 from __future__ import annotations
@@ -30,13 +30,14 @@ if TYPE_CHECKING:
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _X, _Z = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-# PyBullet reads the axis of a slider from the wrong memory: half a quaternion.
+# PyBullet reads the orientation of a slider's axis from the wrong memory. The result is this quaternion,
+# whose length is not 1.
 _SLIDER_TURN = (0.0, 0.0, 0.0, sqrt(0.5))
 
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """The joint frame of a link: turned against its inertial frame, which is `com` away in joint axes."""
+    """The joint frame of a link: its rotation relative to the inertial frame, and `com` in joint axes."""
 
     turn: Quaternion
     com: Vector3
@@ -47,7 +48,7 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
 
     Args:
         body: The body.
-        as_pybullet: With the differences named above; otherwise as the body is.
+        as_pybullet: Reproduce the differences listed above; otherwise the nodes are those of the body.
 
     Returns:
         Parents before children, the root first.
@@ -129,7 +130,7 @@ def _rigid_body(
 
 
 def _moments(mass: float, collisions: tuple[Collision, ...], implicit_cylinder: bool) -> Vector3:
-    """Moments of the first shape, where it is, as if it were at the centre of mass."""
+    """Moments of inertia of the first shape, as if its centre were the centre of mass."""
     geometry = collisions[0].geometry if collisions else None
     match geometry:
         case Sphere(radius):
@@ -147,7 +148,7 @@ def _moments(mass: float, collisions: tuple[Collision, ...], implicit_cylinder: 
 
 
 def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
-    """Moments of a capsule along y."""
+    """Moments of inertia of a capsule along y."""
     cylinder, half_ball = radius * radius * length, 2.0 / 3.0 * radius**3
     density = mass / (cylinder + 2.0 * half_ball)
     cylinder, half_ball = cylinder * density, half_ball * density
@@ -158,7 +159,7 @@ def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
 
 
 def _shortest_turn(start: Vector3, end: Vector3, opposite: Quaternion) -> Quaternion:
-    """The shortest rotation from one unit vector to another; `opposite` when they are opposed."""
+    """The shortest rotation from one unit vector to another; `opposite` if they have opposite directions."""
     cosine = start[0] * end[0] + start[1] * end[1] + start[2] * end[2]
     if cosine < -1.0 + 2.220446049250313e-16:
         return opposite
@@ -170,13 +171,13 @@ def _shortest_turn(start: Vector3, end: Vector3, opposite: Quaternion) -> Quater
 
 
 def _turned(q: Quaternion, v: Vector3) -> Vector3:
-    """Q v q*, which also scales when the quaternion is not of unit length."""
+    """The product q v q*, which also scales the vector if the quaternion does not have unit length."""
     x, y, z, _ = multiplied(multiplied(q, (*v, 0.0)), conjugate(q))
     return (x, y, z)
 
 
 def _rotation_by_angles(q: Quaternion) -> np.ndarray:
-    """Rotation matrix by way of yaw, pitch and roll; the way matters when the length is not one."""
+    """Rotation matrix computed from roll, pitch and yaw, which matters if the length of `q` is not one."""
     roll, pitch, yaw = rpy_from_quaternion(q)
     sr, cr, sp, cp, sy, cy = sin(roll), cos(roll), sin(pitch), cos(pitch), sin(yaw), cos(yaw)
     return np.array(

@@ -29,20 +29,20 @@ def inverse_dynamics(
 
     Args:
         body: The body.
-        positions: Joint positions in order, shape (n,); of a free body, base position (3) and
-            quaternion (4) of its inertial frame before them.
-        velocities: Joint rates, shape (n,); of a free body, angular (3) and linear (3) velocity of
-            the base along its own axes before them.
-        accelerations: Their derivatives, shape as `velocities`; the base's along its own axes.
+        positions: Joint positions in order, shape (n,); for a free body, base position (3) and quaternion (4)
+            of its inertial frame before them.
+        velocities: Joint rates, shape (n,); for a free body, angular (3) and linear (3) velocity of the base
+            in its own axes before them.
+        accelerations: Derivatives of the velocities, same shape; the base's in its own axes.
         base_orientation: Orientation assumed for a fixed base, quaternion of its inertial frame; None for the
-            present one.
+            current one.
 
     Returns:
-        Joint forces [N m or N], shape (n,); of a free body, force (3) and torque (3) on the base
-        along its own axes before them.
+        Joint forces [N m or N], shape (n,); for a free body, force (3) and torque (3) on the base in its own
+        axes before them.
 
     Raises:
-        ValueError: A sequence has the wrong length, something is not finite, or the forces would not be.
+        ValueError: A sequence has the wrong length, a number is not finite, or the forces overflow.
     """
     gravity = body.world.parameters.gravity
     if body.fixed_base:
@@ -57,7 +57,7 @@ def inverse_dynamics(
         mechanism.dofs,
     ):
         raise ValueError(
-            f"it does not fit the body, which takes {positions_count} positions "
+            f"the arguments do not fit the body, which takes {positions_count} positions "
             f"and {mechanism.dofs} velocities"
         )
     if not mechanism.dofs:
@@ -66,7 +66,7 @@ def inverse_dynamics(
 
 
 def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> Vector3:
-    """Gravity in a frame, by the frame's quaternion."""
+    """Gravity in a frame, given the frame's quaternion."""
     x, y, z, w = orientation
     gx, gy, gz = body.world.parameters.gravity
     ex, ey, ez = rotation_matrix(conjugate((x, y, z, w)))

@@ -29,7 +29,7 @@ _NUMBER = np.dtype(NUMPY_REAL)
 _NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
 _FIRST_OPTION = 3
-# More iterations would not help, but take very long.
+# Upper bound of iterations: more would not help, but take very long.
 _MOST_ITERATIONS = 100_000
 Numbers = Sequence[float] | np.ndarray
 
@@ -55,22 +55,22 @@ def inverse_kinematics(
 ) -> tuple[float, ...]:
     """Joint positions at which links reach target poses.
 
-    The search starts at the present pose and uses PyBullet's damped least squares, with the same result if
-    that reaches the target. If not, or if a limit is violated, up to `further` steps follow with a method
+    The search starts at the current pose and uses PyBullet's damped least squares, with the same result if
+    that reaches the target. Otherwise, or if a limit is violated, up to `further` steps follow with a method
     that converges quadratically, stays within the limits, and restarts from nearby poses if it is stuck. The
     body itself does not move.
 
     Args:
         body: The body.
         links: Indices of the links; -1 is the base.
-        positions: Targets of the origins of the link frames [m], world axes.
+        positions: Target positions of the origins of the link frames [m], world axes.
         orientations: Target orientations of the links' inertial frames, quaternions (x, y, z, w), of any
-            length but 0.
+            length except 0.
         lower: Lower limits of the result [rad or m], one for each degree of freedom of the joints. A joint
             whose lower limit is above the upper one has no limits.
         upper: Upper limits.
-        ranges: With `lower`, `upper` and `rest`, differences of the limits: the push back into the limits
-            decreases with them.
+        ranges: Together with `lower`, `upper` and `rest`: ranges of the joints. The push of a joint back into
+            its limits is divided by its range.
         rest: Preferred joint positions, approached as far as this does not move the links (null space).
         damping: Damping of each joint in the search, > 0; default 0.5.
         selective: Selectively damped least squares, without rest positions.
@@ -78,13 +78,13 @@ def inverse_kinematics(
         in_base_frame: Targets are in the inertial frame of the base instead of the world's.
         iterations: Maximum number of steps of PyBullet's method.
         further: Maximum number of steps of the other method; by default the same, with limits at least 300.
-        threshold: Distance [m] and angle [rad] that are close enough.
+        threshold: Tolerance of distances [m] and angles [rad].
         patience: The result of PyBullet's method is accepted if it is within the limits and leaves at most
             this share of the first distance, or 2 cm; with 0 only if it reaches the target.
 
     Returns:
-        Joint positions in order, a quaternion for each spherical joint; the best found, if none are close
-        enough.
+        Joint positions in order, a quaternion for each spherical joint; the best found, if none is within
+        tolerance.
 
     Raises:
         ValueError: A sequence has the wrong length.
@@ -237,7 +237,7 @@ def _writers(rows: np.ndarray) -> list[Callable[..., None]]:
 
 
 def _unchanging(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers] | None:
-    """Both together if they are tuples, which can be compared with others later."""
+    """Both as a pair to compare with those of later calls, if they are tuples, which cannot change."""
     return (first, second) if type(first) is type(second) is tuple else None
 
 

@@ -24,13 +24,13 @@ def jacobian(
     Args:
         body: The body.
         link: Index of the link; -1 is the base.
-        local_position: The point: offset from the link frame's origin (of the base: from its centre
-            of mass) along the axes of the inertial frame [m].
+        local_position: The point: offset from the link frame's origin (for the base: from its centre of mass)
+            along the axes of the inertial frame [m].
         positions: Joint positions in order, shape (n,).
 
     Returns:
-        Matrices J with velocity = J rates, in axes of the base's inertial frame, each of shape
-        (3, n); of a free body (3, 6 + n), the base first: angular, then linear.
+        Matrices J with velocity = J rates, in axes of the base's inertial frame, each of shape (3, n); for a
+        free body (3, 6 + n), the base first: angular, then linear.
     """
     mechanism = mechanism_of(body)
     linear, angular = mechanism.jacobian(link, local_position, positions)

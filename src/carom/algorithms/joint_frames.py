@@ -1,7 +1,7 @@
 """Frames of the moving joints of a body, with links that are fixed to each other merged.
 
-The origin of a frame is at the joint, and the z axis along that of a hinge or slider; others have the axes of
-the link's inertial frame. The base has its inertial frame.
+The origin of a frame is at the joint. For hinges and sliders its z axis is the joint axis; for other joints
+it has the axes of the link's inertial frame. The frame of the base is its inertial frame.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ class JointFrames:
         self._turns = {link: self._turn_of_axis(link) for link in moving}
 
     def of_joint(self, link: int) -> tuple[int, Pose]:
-        """Place among the moving links of the one that carries a joint, -1 for the base; its frame there."""
+        """Index of the moving link that carries a joint (-1: base), and the joint's frame in that link's."""
         carrier, frame = self._seen(*self._placement(link, moves=True))
         turned = multiplied(frame.orientation, self._turns[link])
         return self._place(carrier), Pose(frame.position, turned)
 
     def of_link(self, link: int) -> tuple[int, Pose]:
-        """The same for a frame at a link's joint with the axes of its inertial frame; -1 is the base's."""
+        """The same for the frame at a link's joint with the axes of its inertial frame; -1 is the base."""
         carrier, frame = self._seen(*self._placement(link, moves=False))
         return self._place(carrier), frame
 
@@ -50,7 +50,7 @@ class JointFrames:
         return BASE if carrier == BASE else self._place_of[carrier]
 
     def _seen(self, carrier: int, frame: Pose) -> tuple[int, Pose]:
-        """A frame given in the inertial axes of its parent, in the parent's frame."""
+        """Convert a frame from the inertial axes of its parent to the parent's frame."""
         if carrier == BASE:
             return carrier, frame
         return carrier, compose(Pose(orientation=conjugate(self._turns[carrier])), frame)

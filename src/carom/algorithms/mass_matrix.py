@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Joint-space inertia at the given joint positions, by the composite rigid body algorithm.
+    """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
     Args:
         body: The body.
         positions: Joint positions in order, shape (n,).
 
     Returns:
-        Symmetric matrix, shape (n, n); of a free body (6 + n, 6 + n), the base first: angular, then
-        linear velocity along its own axes.
+        Symmetric matrix, shape (n, n); for a free body (6 + n, 6 + n), the base first: angular, then linear
+        velocity in its own axes.
     """
     mechanism = mechanism_of(body)
     return np.array(mechanism.mass_matrix(positions)).reshape(mechanism.dofs, mechanism.dofs)

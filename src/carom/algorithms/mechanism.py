@@ -1,4 +1,4 @@
-"""A body's equations of motion, prepared for many calls at any coordinates."""
+"""A body's equations of motion, prepared for many calls with different coordinates."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ _JACOBIAN_ROWS = 6
 
 
 class Mechanism:
-    """A mechanism of nodes, with the memory of a query and its answer.
+    """A mechanism of nodes, with memory for a query and its answer.
 
-    Everything is in the frame of the base. Items of sequences may be anything that `float` accepts; other
-    items, or a sequence of the wrong length, raise `struct.error`.
+    All quantities are in the frame of the base. Items of sequences may be anything that `float` accepts;
+    other items, or a sequence of the wrong length, raise `struct.error`.
 
     Attributes:
         free: The base moves.
-        coordinates: Number of positions of the joints: a quaternion for each spherical one.
-        joint_dofs: Number of their rates.
-        dofs: The same with those of a free base, six before the others: angular, then linear.
+        coordinates: Number of joint positions; a spherical joint has a quaternion.
+        joint_dofs: Number of joint rates.
+        dofs: Number of all rates: those of a free base, three angular and three linear, come first.
         structs: The arguments of kernels: sizes and arrays.
         arrays: The arrays by name.
     """
@@ -49,7 +49,7 @@ class Mechanism:
 
         Args:
             nodes: Parents first, beginning with the base.
-            ends: Links for Jacobians, the base first.
+            ends: Links whose Jacobians can be computed, the base first.
             free: The base moves.
         """
         self.free = free
@@ -101,12 +101,12 @@ class Mechanism:
         self._put_base(*motion)
 
     def forces(self, positions: Numbers, rates: Numbers, accelerations: Numbers) -> tuple[float, ...]:
-        """Generalized forces, as many as `dofs`, that cause a motion; of a free base torque, then force.
+        """Generalized forces, (`dofs`,), that cause a motion; those of a free base are torque, then force.
 
         Args:
-            positions: As many as `coordinates`.
-            rates: As many as `joint_dofs`.
-            accelerations: As many as `joint_dofs`.
+            positions: Joint positions, (`coordinates`,).
+            rates: Joint rates, (`joint_dofs`,).
+            accelerations: Joint accelerations, (`joint_dofs`,).
 
         Raises:
             ValueError: A number is not finite, the forces overflow, or a length is wrong.
@@ -116,7 +116,7 @@ class Mechanism:
             and len(rates) == self.joint_dofs
             and len(accelerations) == self.joint_dofs
         ):
-            raise ValueError("the question does not fit the mechanism")
+            raise ValueError("the arguments do not fit the mechanism")
         self._put_motion(*positions, *rates, *accelerations)
         self._find_forces()
         forces = self._row.unpack_from(self._output)
@@ -135,9 +135,9 @@ class Mechanism:
 
         Args:
             link: Index of the link; -1 is the base.
-            point: Offset from the link frame's origin, of the base from its centre of mass, along the axes
+            point: Offset from the link frame's origin, for the base from its centre of mass, along the axes
                 of the inertial frame [m].
-            positions: As many as `coordinates`.
+            positions: Joint positions, (`coordinates`,).
 
         Raises:
             ValueError: There is no such link.
@@ -154,7 +154,7 @@ class Mechanism:
 
     @cached_property
     def forces_of_motion(self) -> Ask:
-        """The function for the forces of its motions."""
+        """The function that computes the forces of a motion."""
         return forces_of_motion(self)
 
     @cached_property
@@ -177,7 +177,7 @@ class Mechanism:
         return tuple(self._row.iter_unpack(memory)) if self.dofs else ()
 
     def _writer(self, first: int, count: int) -> Callable[..., None]:
-        """What writes numbers to the question, from the first of these on."""
+        """A function that writes `count` numbers to the query, beginning at number `first`."""
         write = Struct(f"{count}{_TYPE_CODE}").pack_into
         return partial(write, self.arrays["input"].data.cast("B"), first * _SIZE)
 

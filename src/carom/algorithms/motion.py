@@ -22,18 +22,17 @@ def forces_of_motion(mechanism: Mechanism, *, as_pybullet: bool = False) -> Ask:
 
     Args:
         mechanism: The mechanism, of at least one dof; its output holds the answer.
-        as_pybullet: Gravity at a free base has the wrong direction that PyBullet gives it, see
-            `turned_back_in_opposite_order`; and spherical joints have roll, pitch and yaw for positions.
+        as_pybullet: Gravity at a free base has the wrong direction that it has in PyBullet, see
+            `turned_back_in_opposite_order`; and positions of spherical joints are roll, pitch and yaw.
 
     Returns:
-        A function of gravity, along the axes of a base that is at rest, in world axes where it is free
-        [m/s²]; positions of the joints, and of a free base position (3) and quaternion (4) before them; rates
-        of the joints, and of a free base angular (3) and linear (3) velocity along its own axes before them;
-        and the derivatives of the rates, the base's along its own axes. Its result are the forces of the
-        joints, and force (3) and torque (3) on a free base along its own axes before them. It raises
-        `ValueError` if something given is not finite, or not as long as it has to be, if the quaternion has
-        no length, or the forces would not be finite; `TypeError` for what is no sequence; and `struct.error`
-        for what is not a number.
+        A function of four arguments: gravity [m/s²], in world axes, or in axes of the base if that is fixed;
+        joint positions, for a free base after its position (3) and quaternion (4); joint rates, for a free
+        base after its angular (3) and linear (3) velocity in its own axes; and the derivatives of these
+        rates. It returns the joint forces, for a free base after the force (3) and torque (3) on it in its
+        own axes. It raises `ValueError` if a number is not finite, a sequence has the wrong length, the
+        quaternion is zero, or the forces overflow; `TypeError` for an argument that is not a sequence; and
+        `struct.error` for an item that is not a number.
     """
     positions = mechanism.joint_dofs if as_pybullet else mechanism.coordinates
     counts = (

@@ -24,13 +24,13 @@ class Node:
 
     Attributes:
         parent: Index of the parent node, -1 for the base.
-        kind: Of the joint; the base's does not matter.
-        rotation: From its frame at position 0 to the parent's, (3, 3).
-        origin: Of its frame in the parent's at position 0 [m], (3,).
+        kind: Type of the joint; ignored for the base.
+        rotation: Rotation from its frame at position 0 to the parent's, (3, 3).
+        origin: Origin of its frame at position 0 in the parent's frame [m], (3,).
         mass: [kg].
         moment: Mass times centre of mass, (3,).
-        inertia: About the origin, (3, 3).
-        axes: Angular and linear velocity by unit of each of the joint's dofs, (dofs, 2, 3).
+        inertia: Inertia about the origin of its frame, (3, 3).
+        axes: Angular and linear velocity per unit rate of each dof of the joint, (dofs, 2, 3).
     """
 
     parent: int
@@ -45,12 +45,12 @@ class Node:
 
 @record
 class End:
-    """A link, for points given on it.
+    """A link, to which points for Jacobians refer.
 
     Attributes:
-        node: The node it belongs to.
-        rotation: From the axes of its inertial frame to the node's, (3, 3).
-        origin: Of its link frame, the base's centre of mass, in the node's frame [m], (3,).
+        node: Index of the node that it belongs to.
+        rotation: Rotation from the axes of its inertial frame to the node's, (3, 3).
+        origin: Origin of its link frame, for the base its centre of mass, in the node's frame [m], (3,).
     """
 
     node: int
@@ -98,7 +98,7 @@ def _com_from_joint(body: Body, link: int) -> np.ndarray:
 
 
 def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
-    """Axes of a joint's dofs in the frame of its node, whose z axis is that of a hinge or slider."""
+    """Axes of a joint's dofs, as in `Node`; z is the axis of a hinge or slider."""
     if kind == JointCode.SPHERICAL:
         return joint_axes(kind)
     model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
@@ -110,7 +110,7 @@ def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
 
 
 def joint_axes(kind: JointCode) -> np.ndarray:
-    """Axes as in `Node` of a hinge or slider along z, or a ball joint; none of a fixed joint."""
+    """Axes as in `Node` of a hinge or slider along z, or of a spherical joint; a fixed joint has none."""
     axes = np.zeros((3 if kind == JointCode.SPHERICAL else 1, 2, 3))
     match kind:
         case JointCode.REVOLUTE:
@@ -125,6 +125,6 @@ def joint_axes(kind: JointCode) -> np.ndarray:
 
 
 def skew(v: np.ndarray) -> np.ndarray:
-    """The matrix of the vector product from the left, (3, 3)."""
+    """The skew-symmetric matrix with `skew(v) @ w` = v × w, (3, 3)."""
     x, y, z = v
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -1,8 +1,8 @@
 """Stable proportional-derivative control.
 
-The controller of Tan, Liu and Turk (Stable Proportional-Derivative Controllers, 2011): the position error
-is the one expected after the next step, and so is the velocity error, for which the equations of motion
-are solved together with the damping of the controller. High gains then stay stable at long steps.
+The controller of Tan, Liu and Turk (Stable Proportional-Derivative Controllers, 2011) uses the errors of
+position and velocity that are expected after the next step. For the velocity error, the equations of motion
+are solved together with the damping of the controller. So high gains are stable with long time steps.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class JointTarget(NamedTuple):
-    """Target of a joint. Lists of the wrong length count as not given.
+    """Target of a joint. Positions and velocities of the wrong length count as not given.
 
     Attributes:
-        position: One number [rad or m], or a quaternion (x, y, z, w); 0 or no rotation when not given.
-        velocity: One number [rad/s or m/s], or three; 0 when not given.
-        force: Largest torques [N m or N] by freedom; one number of a spherical joint holds for its first.
-        kp: Torque by error.
-        kd: Torque by error of velocity.
+        position: One number [rad or m], or a quaternion (x, y, z, w); 0 or no rotation if not given.
+        velocity: One number [rad/s or m/s], or three; 0 if not given.
+        force: Maximum torque of each dof [N m or N]; for dofs beyond the length of this list it is 100000.
+        kp: Torque per position error.
+        kd: Torque per velocity error.
     """
 
     position: Sequence[float]
@@ -48,23 +48,23 @@ class JointTarget(NamedTuple):
     kd: float
 
 
-# Named tuples take long to make, and whoever controls a robot makes many.
+# Plain tuples are accepted as well: named tuples take long to make, and controllers make many.
 _Target = tuple[Sequence[float], Sequence[float], Sequence[float], float, float]
 
 
 def stable_pd_torques(body: Body, targets: Mapping[int, _Target], time_step: float) -> np.ndarray:
-    """Torques that lead joints to their targets.
+    """Torques that drive joints to their targets.
 
-    With a floating base the equations of motion are those PyBullet solves, see `extended_nodes`; with a
-    fixed one, where PyBullet mixes up coordinates, they are the body's own.
+    With a floating base the equations of motion are those that PyBullet solves, see `extended_nodes`. With a
+    fixed base, for which PyBullet mixes up coordinates, they are the body's own.
 
     Args:
         body: The body.
-        targets: By joint index, as `JointTarget` has them; other joints get no torque.
-        time_step: Of the step to come [s].
+        targets: Targets by joint index, items as in `JointTarget`; other joints get no torque.
+        time_step: Duration of the next step [s].
 
     Returns:
-        Torques by velocity coordinate of the body, zeros for its base first.
+        Torque of each velocity coordinate of the body, beginning with zeros for its base.
 
     Raises:
         ValueError: A joint is planar.
@@ -95,7 +95,7 @@ class _Controller:
         self._unaimed = array(_TYPE_CODE)
         for count in body.position_count:
             self._unaimed.extend(_NO_TURN if count == 4 else (0.0,) * count)
-        # The dofs of the mechanism begin with those of the base, as the body's do.
+        # The dofs of the mechanism begin with those of the base, like the body's.
         shift_q, shift_u = body.first_position + BASE_POSITIONS, body.first_velocity
         self._places = [
             (

@@ -1,1 +1,1 @@
-"""The engine: tables, workspaces and launches; performs the steps of any number of worlds."""
+"""The engine performs the steps of any number of worlds: tables, workspaces and launches."""

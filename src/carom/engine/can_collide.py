@@ -1,4 +1,4 @@
-"""What can happen in a world, to skip unnecessary parts of its steps."""
+"""Checks whether bodies of a world can collide or sleep, to skip unnecessary parts of its steps."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 
 def can_collide(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
-    """Whether two shapes could ever touch: of two bodies of which one is not scenery, or of one body.
+    """Whether two shapes could ever touch: in one body, or in two bodies that are not both scenery.
 
-    Scenery: bodies with shapes on their fixed base only, in the group of fixed bases.
+    Scenery is bodies that have shapes only on their fixed base, with the filter group of fixed bases.
     """
     shapes, model = contact_arrays.shapes.table.numpy, arrays.model.numpy
     solid = np.flatnonzero(shapes["link_shape_count"][: arrays.used["link"]])

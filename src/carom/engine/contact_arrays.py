@@ -29,7 +29,7 @@ class ContactArrays:
         self.soft: SoftArrays = SoftArrays()
 
     def repeated(self, arrays: WorldArrays) -> ContactArrays:
-        """Copies of the contact arrays for many worlds, all as in the first."""
+        """Copies of the contact arrays for many worlds, all with the content of the first world."""
         other = ContactArrays(arrays)
         other.shapes = deepcopy(self.shapes)
         other.contacts = self.contacts.copy(
@@ -42,7 +42,7 @@ class ContactArrays:
 
     @property
     def contact_count(self) -> int:
-        """Number of contacts now, in the first world."""
+        """Current number of contacts in the first world."""
         return int(self.contacts.numpy["count_contacts"][0, THERE])
 
     def forget_contacts(self) -> None:
@@ -52,10 +52,10 @@ class ContactArrays:
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
         """Do not warm start contacts in the next step, because a body was moved.
 
-        So the next steps depend only on the new poses, not on those before.
+        So the next steps depend only on the new poses, not on earlier ones.
 
         Args:
-            worlds: In which worlds; None where there is one.
+            worlds: Indices of the worlds; None if there is only one.
         """
         if worlds is not None:
             self.contacts.numpy["contact_warm_start"][worlds] = 0.0
@@ -65,13 +65,13 @@ class ContactArrays:
             self.contacts.numpy["contact_warm_start"][0, :count] = 0.0
 
     def reserve(self) -> None:
-        """Resize arrays to the length of the arrays they belong to."""
+        """Grow arrays to the capacity of the arrays with the same axes."""
         self.shapes.reserve({"link": self._arrays.model.capacity["link"]})
         self.users.reserve({"user": self.user_count})
         self._arrays.state.reserve({"user": self.user_count})
 
     def structs(self) -> dict[str, Any]:
-        """Structs over the present arrays, by the name kernels give them."""
+        """Structs over the current arrays, by the names of kernel arguments."""
         return {
             "shapes": self.shapes.struct(),
             "contacts": self.contacts.struct(),

@@ -1,4 +1,4 @@
-"""How long the arrays of collision detection must be."""
+"""Required lengths of the arrays of collision detection."""
 
 from __future__ import annotations
 

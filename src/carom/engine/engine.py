@@ -1,4 +1,4 @@
-"""The tables of any number of worlds, and the launches that step them."""
+"""The tables of any number of worlds, and the launches that perform their steps."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from carom.native.tables import ArrayTable
 ProgramMaker = Callable[[KernelStructs, Plan], Program]
 
 MOST_STEPS = 64
-"""Steps that can be asked for at once."""
+"""Maximum number of steps in one call."""
 # Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 16
 _NONE = np.zeros(0, dtype=np.int64)
@@ -34,16 +34,16 @@ _GROWTH_OF_MANY = 1.25
 class Engine:
     """Performs steps.
 
-    A step of a world is a function of the model, its state and parameters and a workspace, and no Python
-    runs between the launches of one. Arrays have a fixed length while worlds are stepped. Missing rows are
-    counted per world, and read once at the end: worlds with missing rows are restored to the start of their
-    steps, all arrays grow, and these worlds are stepped again.
+    A step of a world is a function of its model, state, parameters and a workspace, and no Python code runs
+    between the launches of a step. Arrays have a fixed length while worlds are stepped. If they are too
+    short, the missing rows are counted per world, and the counts are read once at the end: these worlds are
+    restored to the start of the step that failed, all arrays grow, and the worlds are stepped again.
 
     Attributes:
         arrays: Model and state of all bodies.
         contact_arrays: Shapes, contacts and user constraints.
         status: Result of the last step of each world, (worlds, columns); see `carom.layouts.status`.
-        due: Substeps of each of the steps of a call.
+        due: Number of substeps of each step of a call.
         changes: Number of times that launches were renewed.
         growths: Number of times that arrays were replaced by longer ones.
         run_prepared: A step of one substep of all worlds, after `prepare`, at minimum cost. Then `recover`
@@ -77,12 +77,12 @@ class Engine:
         self._steppers = self._interpreters
         self._make_program: ProgramMaker = self.step_program
         self.run_prepared: Callable[[], None] = self._steppers[0].run
-        # What an interpreter would do after an error, for a step of a single launch that runs without one.
+        # Launches after an error, for a step of a single launch, which runs without an interpreter.
         self._abandon: list[Launch] = []
         self._plan: Plan | None = None
-        # The plan before, where only constraints have changed since.
+        # The previous plan, if only constraints have changed since.
         self._plan_before: Plan | None = None
-        # What the launches of steps were made for, and over.
+        # The plan and the structs of the current launches of steps.
         self._loaded_for: tuple[Any, ...] | None = None
         self._watched = False
         self.growths = 0
@@ -91,7 +91,7 @@ class Engine:
 
     @property
     def workspace(self) -> Workspace:
-        """That of the first thread, which queries use as well."""
+        """The workspace of the first thread, which queries use as well."""
         return self._workspaces[0]
 
     @property
@@ -100,25 +100,25 @@ class Engine:
         return can_collide(self.arrays, self.contact_arrays) if self._plan is None else self._plan.touching
 
     def changed(self) -> None:
-        """Renew the launches before the next step: arrays have moved, or what can happen has changed."""
+        """Renew the launches before the next step: arrays have moved, or other parts of a step are needed."""
         self._plan = self._plan_before = None
         self._loaded_for = None
         self._detection_ready = False
         self.changes += 1
 
     def constraints_changed(self) -> None:
-        """Look at the launches before the next step: the constraints have changed, and nothing else."""
+        """Check the launches before the next step: the constraints have changed, and nothing else."""
         self._plan_before = self._plan or self._plan_before
         self._plan = None
 
     # Structs
 
     def structs(self) -> KernelStructs:
-        """Structs over the present arrays, by the name kernels give them, for one thread."""
+        """Structs over the current arrays, by the names of kernel arguments, for one thread."""
         return self._bind([self.workspace])[0]
 
     def update_settings(self, parameters: EngineParameters) -> None:
-        """Update the settings for kernels, also those in existing launches."""
+        """Update the settings of kernels, also in existing launches."""
         if self._settings.update(parameters, self.arrays, self.contact_arrays):
             for workspace in self._workspaces:
                 workspace.structs.changed("settings")
@@ -137,16 +137,16 @@ class Engine:
     # Steps
 
     def prepare(self, *, watched: bool = False) -> None:
-        """Make the launches of a step for the present bodies and constraints.
+        """Make the launches of a step for the current bodies and constraints.
 
         Args:
-            watched: A function is called after every substep.
+            watched: Whether a function is called after every substep.
         """
         self._watched = watched
         plan = self._find_plan()
         bound = self._bind(self._workspaces)
         loading_for = (plan, *(struct for structs in bound for struct in structs.values()))
-        # Structs are the same as long as the arrays are.
+        # Structs are the same objects until arrays are replaced.
         if self._loaded_for == loading_for:
             return
         self._loaded_for = None
@@ -165,7 +165,7 @@ class Engine:
         self.changed()
 
     def _find_plan(self) -> Plan:
-        """What steps have to look for now."""
+        """Find out which parts of a step are needed now."""
         if self._plan_before is not None:
             touching, sleeping = self._plan_before.touching, self._plan_before.sleeping
         else:
@@ -181,7 +181,7 @@ class Engine:
         """Perform steps of some worlds.
 
         Args:
-            due: Substeps of each step, `MOST_STEPS` at most.
+            due: Number of substeps of each step; at most `MOST_STEPS` steps.
             worlds: Numbers of the worlds, shape (n,); None for all.
         """
         if self._plan is None:
@@ -195,7 +195,7 @@ class Engine:
         """Perform one substep of a step of all worlds; the first begins it, the last ends it.
 
         Returns:
-            False if arrays were too short: the worlds are at the start of the step, which has to be repeated.
+            False if arrays were too short: the worlds are back at the start of the step; repeat the step.
         """
         self.due[0] = due
         self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
@@ -217,7 +217,7 @@ class Engine:
             self.run(self._steppers, short, resumed=1, **scalars)
 
     def detect(self) -> None:
-        """Find all contacts for the present coordinates of all worlds, without a step."""
+        """Find all contacts at the current coordinates of all worlds, without a step."""
         self._detect()
         while len(short := self._short_of_room()):
             self._grow(short)
@@ -245,10 +245,10 @@ class Engine:
         self.growths += 1
         self.changed()
 
-    # Depends on the device
+    # Overridden for other devices
 
     def take(self, value: Any) -> Any:
-        """A user's numbers; those on the device of the worlds stay there."""
+        """Convert a user's values for the engine; values on the device of the worlds stay there."""
         return value
 
     def table(self, struct: Any) -> ArrayTable:
@@ -274,8 +274,8 @@ class Engine:
         """A task that runs in all worlds when it is called.
 
         Args:
-            make_launches: Makes its launches over a thread's structs; called again after arrays have moved.
-                Each has an argument `first_world`.
+            make_launches: Makes its launches over a thread's structs; it is called again after arrays have
+                moved. Each launch has an argument `first_world`.
         """
         return Task(self, make_launches, self._make_task_interpreters())
 
@@ -295,8 +295,8 @@ class Engine:
         Args:
             table: "model", "shapes" or "users".
             field: The field in it.
-            rows: Which rows.
-            values: First axis: worlds.
+            rows: The rows to set.
+            values: New values; the first axis is that of worlds.
         """
         self.spread(table, field)
         parameters = self._parameters(table)
@@ -311,17 +311,17 @@ class Engine:
         }[table]
 
     def steps_done(self, worlds: np.ndarray) -> np.ndarray:
-        """Number of steps of the last call that some worlds have done."""
+        """Number of steps that some worlds have completed in the last call."""
         return self.status[worlds, STEPS_DONE]
 
     def sleep_changed(self) -> None:
-        """Let steps look for sleeping bodies again, after a world with some was restored."""
+        """Include sleep in steps again, after a world with sleeping bodies was restored."""
         plan = self._plan or self._plan_before
         if plan is not None and not plan.sleeping and can_sleep(self.arrays):
             self.changed()
 
     def load(self, interpreters: list[Stepper], program: Callable[[KernelStructs], Program]) -> None:
-        """Give a program to the interpreter of each thread, over the structs of that."""
+        """Give a program to the interpreter of each thread, over the structs of that thread."""
         self._load(interpreters, self._bind(self._workspaces), program)
 
     def _load(
@@ -334,7 +334,7 @@ class Engine:
             interpreter.load(program(structs))
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
-        """Run programs on some worlds, None for all; afterwards `run_prepared` can run them."""
+        """Run programs on some worlds, None for all; then restore the settings that `run_prepared` needs."""
         if worlds is None and not scalars and len(interpreters) == 1:
             interpreters[0].run()
             return

@@ -15,13 +15,13 @@ import numpy as np
 from carom.engine.program import Program
 from carom.native.library import library
 
-# Numbers of a program before its launches: address of the first world's status, bytes from one status to
-# the next, and the ends of the five parts.
+# Count of numbers before the launches of a program: address of the first world's status, bytes from one
+# status to the next, and the ends of the five parts.
 _HEADER = 7
-# Numbers of a launch: addresses of the function, the bounds, the arguments, and among these of the world and
-# of the number of substeps, 0 if it has none.
+# Count of numbers of a launch: addresses of the function, of the bounds, of the arguments, and of two of
+# these arguments: the world and the number of substeps, 0 if it has none.
 _PER_LAUNCH = 5
-# More than in any program.
+# More launches than in any program.
 _MOST_LAUNCHES = 32
 
 ALL_SUBSTEPS = 2**31 - 1
@@ -32,16 +32,16 @@ class _Run(ctypes.Structure):
 
     _fields_: ClassVar[Any] = [
         ("program", ctypes.c_void_p),  # the launches, as `Interpreter` writes them
-        ("worlds", ctypes.c_void_p),  # which worlds
-        # Substeps of each step; where it is 0, contacts are found and nothing moves.
+        ("worlds", ctypes.c_void_p),  # indices of the worlds
+        # Substeps of each step; if it is 0, contacts are found and nothing moves.
         ("due", ctypes.c_void_p),
-        ("counter", ctypes.c_void_p),  # place in `worlds` of the next chunk, if threads share them
+        ("counter", ctypes.c_void_p),  # index in `worlds` of the next chunk, if threads share them
         ("world_count", ctypes.c_int32),
         ("step_count", ctypes.c_int32),
-        ("chunk", ctypes.c_int32),  # worlds in it
-        ("resumed", ctypes.c_int32),  # 1: go on after the steps that each world has done already
-        ("first_substep", ctypes.c_int32),  # if it is not 0, a step has begun already
-        ("end_substep", ctypes.c_int32),  # a step ends with its last
+        ("chunk", ctypes.c_int32),  # number of worlds in a chunk
+        ("resumed", ctypes.c_int32),  # 1: continue after the steps that each world has already done
+        ("first_substep", ctypes.c_int32),  # if it is not 0, the step has already begun
+        ("end_substep", ctypes.c_int32),  # the step is ended only after its last substep
     ]
 
 
@@ -49,7 +49,7 @@ class Stepper(Protocol):
     """Executes programs.
 
     Attributes:
-        run: Runs the steps that were asked for.
+        run: Runs the requested steps.
         program: The program loaded last.
     """
 
@@ -70,9 +70,9 @@ class Interpreter(Stepper):
 
     Args:
         status: `State.status_entry`.
-        worlds: Numbers of the worlds; changed in place.
-        due: Substeps of the steps; changed in place.
-        counter: One number that all threads share; None for a single thread.
+        worlds: Indices of the worlds; changed in place.
+        due: Number of substeps of each step; changed in place.
+        counter: An array of one number that all threads share; None for a single thread.
     """
 
     def __init__(
@@ -93,11 +93,11 @@ class Interpreter(Stepper):
             chunk=len(worlds),
             end_substep=ALL_SUBSTEPS,
         )
-        # Its arguments are changed in place, so the function itself never changes.
+        # The arguments are changed in place, so the function itself never changes.
         self.run: Callable[[], None] = partial(library().perform, ctypes.byref(self._asked))
 
     def load(self, program: Program) -> None:  # noqa: D102
-        # If arrays have moved, launches are changed in place, so most changes keep the launches.
+        # Launches are updated in place when arrays move, so they usually stay the same.
         if program == self.program:
             return
         ends = np.cumsum([len(part) for part in program])

@@ -21,7 +21,7 @@ class EngineParameters:
         gravity: [m/s²] in world axes.
         solver_iterations: Maximum number of sweeps over the constraint rows.
         solver_residual_threshold: Sweeps end when no row's squared velocity change exceeds this.
-        erp: Share of a joint limit's or user constraint's error corrected per step.
+        erp: Share of a joint limit's or user constraint's error that is corrected per step.
         contact_erp: The same for penetrations.
         friction_erp: The same for friction anchors.
         global_cfm: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
@@ -78,13 +78,13 @@ class EngineParameters:
         return max(1, self.substeps)
 
     def substeps_due(self, unspent_time: float) -> tuple[int, float]:
-        """Substeps of the next step, and the time that they leave to the one after it [s].
+        """Number of substeps of the next step, and the time that remains for the step after it [s].
 
-        As with Bullet's clock, it is the number that fits into the elapsed time; by rounding it can be one
-        fewer, then one more than set, but never exceeds that.
+        As with Bullet's clock, the number is that which fits into the elapsed time. By rounding it can be one
+        less than `substeps` in a step; it never exceeds `substeps`.
 
         Args:
-            unspent_time: Time left by the steps before [s].
+            unspent_time: Time that remains from earlier steps [s].
         """
         if self.substeps <= 1:
             return 1, 0.0

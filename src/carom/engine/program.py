@@ -39,18 +39,19 @@ SOFT_MOTION = (
     soft_motion_kernel,
     constraints_kernel,
     integration_kernel,
-    # Afterwards, because fixed bases also move by their velocities.
+    # After integration, which also moves fixed bases by their velocities.
     follow_nodes_kernel,
 )
 
 
 class Plan(NamedTuple):
-    """What a step has to handle.
+    """Conditions that determine the parts of a step.
 
     Attributes:
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
-        coupled: Bodies could be coupled by contacts or user constraints.
+        coupled: A step needs its separate stages: bodies could interact or sleep, there are soft bodies, or a
+            function is called after every substep.
         soft: There are soft bodies.
     """
 
@@ -64,11 +65,11 @@ class Program(NamedTuple):
     """The launches of a step of one world, in the order in which they run.
 
     Attributes:
-        begin: At its beginning; for bodies that cannot interact, the whole step.
-        detection: In each substep: collision detection.
-        motion: After that.
-        end: At its end.
-        abandon: Instead of all remaining launches, as soon as the world's status is not `WELL`.
+        begin: At the beginning of the step; for bodies that cannot interact, the whole step.
+        detection: Collision detection, in each substep.
+        motion: After collision detection, in each substep.
+        end: At the end of the step.
+        abandon: Run in place of all remaining launches, as soon as the world's status is not `WELL`.
     """
 
     begin: list[Launch]
@@ -103,7 +104,7 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
 
 
 def detection_program(structs: KernelStructs) -> Program:
-    """The launches that find all contacts for the present coordinates."""
+    """The launches that find all contacts at the current coordinates."""
     return Program(
         begin=[_launch(structs, begin_step_kernel, moves=0)],
         detection=_detection(structs),

@@ -1,4 +1,4 @@
-"""Addresses for quick calls of a world: kernels that update its poses, and its contacts."""
+"""Addresses for quick calls of a world: of kernels that update its poses, and of its contacts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class QuickScene:
 
     def __init__(self) -> None:
         self.record = Scene()
-        # What the addresses point to.
+        # The objects that the addresses point to.
         self._kept: list[Any] = []
 
     def forget(self) -> None:
@@ -77,9 +77,9 @@ class QuickScene:
         """Set the addresses that list contacts.
 
         Args:
-            question: The question, whose arrays are a `ContactReport`.
+            question: The query, whose arrays are a `ContactReport`.
             there: Address of the number of contacts.
-            keep: What this address points to.
+            keep: The object that this address points to.
         """
         report = question.arrays.struct()
         launch = question.launch

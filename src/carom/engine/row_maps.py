@@ -1,4 +1,4 @@
-"""Bodies and links of the rows of the link arrays."""
+"""A map from the rows of link arrays to bodies and links."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,11 +8,11 @@ from carom.native.tables import ArrayTable
 
 
 def row_map_struct(places: Sequence[tuple[int, int]], table: ArrayTable | None = None) -> Any:
-    """A struct of the bodies and links of the rows of the link arrays.
+    """A struct with the body and link of each row of the link arrays.
 
     Args:
         places: Body and link of each row.
-        table: An empty table for them, if there is one.
+        table: An empty table to fill; None for a new one.
     """
     table = table or ArrayTable(Places)
     table.reserve({"place": len(places)})

@@ -1,4 +1,4 @@
-"""The engine's parameters for kernels."""
+"""The parameters of the engine as kernels need them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from carom.model.builder import WorldArrays
 
 
 class EngineSettings:
-    """`Settings`: the parameters of worlds, and how much of their arrays is in use.
+    """The `Settings` of kernels: the parameters of worlds, and the numbers of rows in use.
 
     Attributes:
-        struct: The argument of kernels: always the same struct, whose fields change.
+        struct: The argument of kernels: always the same object, whose fields change.
     """
 
     def __init__(self) -> None:
@@ -32,7 +32,7 @@ class EngineSettings:
             self._gravity = parameters.gravity
         changed = False
         for name, value in _values(parameters, arrays, contact_arrays).items():
-            # Writing a field of a struct takes a hundred times as long as comparing.
+            # Writing a field of a struct takes a hundred times as long as comparing values.
             if self._written.get(name) != value:
                 setattr(self.struct, name, value)
                 self._written[name] = value

@@ -1,4 +1,4 @@
-"""Threads that run native functions side by side."""
+"""Threads that run native functions in parallel."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Threads:
-    """Runs functions that release the interpreter's lock, each in a thread of its own.
+    """Runs functions that release the GIL, each in a thread of its own.
 
     Args:
         count: Number of functions.
@@ -23,7 +23,7 @@ class Threads:
         self._process = os.getpid()
 
     def run(self, functions: Sequence[Callable[[], None]]) -> None:
-        """Run all of them, one in this thread, and return when the last has ended."""
+        """Run all functions, one of them in this thread, and return when all have ended."""
         first, *others = functions
         if not others:
             first()
@@ -31,7 +31,7 @@ class Threads:
         if self._pool is None or self._process != os.getpid():
             from concurrent.futures import ThreadPoolExecutor
 
-            # Threads do not exist in a forked process.
+            # A forked process does not have the threads of its parent.
             self._pool = ThreadPoolExecutor(self._count - 1, "carom-worlds")
             self._process = os.getpid()
         started = [self._pool.submit(function) for function in others]

@@ -21,14 +21,14 @@ class Workspace:
     Nothing in it persists from one step to the next. If worlds are stepped in parallel, each has its own.
 
     Attributes:
-        scratch: For single trees.
-        pairs: Of collision detection.
-        pair_rows: Of the solver.
-        soft_work: Of soft bodies.
-        structs: Structs over these and all other arrays, by the name kernels give them.
+        scratch: Workspace of single trees.
+        pairs: Workspace of collision detection.
+        pair_rows: Workspace of the solver.
+        soft_work: Workspace of soft bodies.
+        structs: Structs over these and all other arrays, by the names of kernel arguments.
 
     Args:
-        world_count: Number of worlds that have rows of their own; 1 if one at a time is stepped.
+        world_count: Number of worlds with rows of their own; 1 if worlds are stepped one at a time.
     """
 
     def __init__(self, world_count: int = 1) -> None:
@@ -39,7 +39,7 @@ class Workspace:
         self.structs: KernelStructs = KernelStructs()
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Resize arrays to the length of the arrays they belong to."""
+        """Grow arrays to the capacity that the other arrays require."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
         self.scratch.reserve(arrays.used)
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
@@ -72,18 +72,18 @@ class Workspace:
             )
 
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:
-        """Rows that collision detection needs, by axis of `Pairs`, except its pairs."""
+        """Number of rows that collision detection needs, by axis of `Pairs`, except its axis `pair`."""
         return scratch_capacity(shape_count, contacts)
 
     def grow(self, pairs: int, *, rows: bool) -> None:
-        """Make room for a number of pairs of shapes, and on request for twice as many rows over two trees."""
+        """Grow the arrays to a number of pairs of shapes; with `rows`, double the number of solver rows."""
         self.pairs.reserve({"pair": pairs})
         if rows:
             capacity = self.pair_rows.capacity
             self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in ("row", "jacobian", "matrix")})
 
     def bind(self, shared: Mapping[str, Any]) -> KernelStructs:
-        """Structs over the present arrays, and over those that all workspaces share."""
+        """Structs over the current arrays of this workspace, and over those that all workspaces share."""
         self.structs.update(
             shared,
             scratch=self.scratch.struct(),

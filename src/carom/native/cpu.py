@@ -1,4 +1,4 @@
-"""The processor's instruction sets, and the cores for this process."""
+"""The processor's instruction sets, and the number of cores for this process."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import platform
 import sys
 
 _LEVEL = "CAROM_CPU_LEVEL"
-# What the levels v3 and v4 of x86-64 have that the ones below have not, as Linux calls it. Whoever has these
-# has the rest of the level.
+# Instruction sets that the levels v3 and v4 of x86-64 add to the level below, by their names in Linux. A
+# processor with these has the rest of the level, too.
 _LINUX_FLAGS = {"v3": {"avx2", "bmi2", "fma", "f16c", "movbe"}, "v4": {"avx512bw", "avx512dq", "avx512vl"}}
 _MACOS_NAMES = {"v3": "hw.optional.avx2_0", "v4": "hw.optional.avx512vl"}
 # PF_AVX2_INSTRUCTIONS_AVAILABLE and PF_AVX512F_INSTRUCTIONS_AVAILABLE.
@@ -24,9 +24,9 @@ def core_count() -> int:
 
 
 def cpu_levels() -> list[str]:
-    """The levels of libraries that run on this processor, the best first.
+    """CPU levels of the libraries that run on this processor, the best first.
 
-    The environment variable `CAROM_CPU_LEVEL` takes the place of all of them.
+    If the environment variable `CAROM_CPU_LEVEL` is set, its value is the only one.
     """
     asked = os.environ.get(_LEVEL)
     if asked:
@@ -42,7 +42,7 @@ def cpu_levels() -> list[str]:
 
 
 def _x86_features() -> dict[str, bool]:
-    """Whether the processor has what v3 and v4 add."""
+    """Whether the processor has the instruction sets of the levels v3 and v4."""
     if sys.platform == "linux":
         flags = _linux_flags()
         return {level: wanted <= flags for level, wanted in _LINUX_FLAGS.items()}

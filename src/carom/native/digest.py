@@ -1,7 +1,7 @@
 """The digest of the sources of the native library.
 
-A library carries the digest of its sources. It fits the sources that are here if they have the same one, so
-it has to be known at every start: it is worked out from the files' contents alone, in a few milliseconds.
+A library contains the digest of its sources. It fits the present sources if they have the same digest, so
+this digest is needed at every start. It is computed from the files' contents alone, in a few milliseconds.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ except ImportError:
     from hashlib import blake2b
 
 _DIGEST_BYTES = 16
-# Kernels and what they share with Python; C and C++; what decides how these are compiled.
+# Kernels, the data structures that they share with Python, C and C++ sources, and the build code.
 _FOLDERS = (
     "carom/kernels",
     "carom/layouts",
@@ -28,10 +28,10 @@ _SUFFIXES = (".c", ".cpp", ".h", ".py")
 
 
 def source_digest(root: Path) -> str:
-    """Digest of all that the native library is compiled from.
+    """Digest of all sources of the native library.
 
     Args:
-        root: The folder that the package `carom` is in.
+        root: The folder that contains the package `carom`.
 
     Returns:
         32 hexadecimal digits; line endings make no difference.

@@ -1,6 +1,6 @@
-"""Which modules have the kernels."""
+"""The modules that contain kernels."""
 
-# Those of the native library.
+# Kernels of the native library.
 KERNEL_MODULES = (
     "carom.kernels.contact.stages",
     "carom.kernels.dynamics.kinematics",
@@ -20,7 +20,7 @@ KERNEL_MODULES = (
     "carom.kernels.solver.sleeping",
     "carom.kernels.solver.stages",
 )
-# Those of steps in fine launches, for GPUs; what takes longest to compile comes first.
+# Kernels of steps in fine launches, for GPUs; those that take longest to compile come first.
 PARALLEL_MODULES = (
     "carom.kernels.parallel.detection",
     "carom.kernels.parallel.contact_rows",
@@ -31,9 +31,9 @@ PARALLEL_MODULES = (
     "carom.kernels.parallel.joint_rows",
     "carom.kernels.parallel.runs",
 )
-# What arrays on a GPU are worked on with between steps.
+# Kernels that work on arrays on a GPU between steps.
 ARRAY_MODULES = ("carom.kernels.arrays.arithmetic",)
-# What a GPU has other kernels for: they take a world through a whole stage.
+# Kernels that take a world through a whole stage; on GPUs there are others for this.
 _WHOLE_WORLDS = {
     "carom.kernels.contact.stages",
     "carom.kernels.dynamics.step",

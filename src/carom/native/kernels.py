@@ -1,7 +1,7 @@
 """The kernels of the native library, by name: `from carom.native.kernels import step_kernel`.
 
-Kernels are written in `carom.kernels`, which nothing that runs on the host imports. A name stands for
-the compiled function; whether there is one shows when it is first used.
+Kernels are written in `carom.kernels`, which code on the host never imports. A name stands for the compiled
+function; a name without a function raises an error only when it is first used.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ _SCALARS: Mapping[str, Any] = {
 
 
 class Kernel:
-    """A compiled kernel: a C function of two addresses, those of its bounds and of its arguments.
+    """A compiled kernel: a C function that takes two addresses, those of its bounds and of its arguments.
 
     Args:
         name: Name of the function in `carom.kernels`.
-        find_library: Finds the library that it is in.
+        find_library: Returns the library that contains it.
     """
 
     def __init__(self, name: str, find_library: Callable[[], Library] = library) -> None:
@@ -36,23 +36,23 @@ class Kernel:
 
     @cached_property
     def indices(self) -> Mapping[str, int]:
-        """Place of each argument, by name."""
+        """Index of each argument, by name."""
         return {name: index for index, (name, _) in enumerate(self._find_library().arguments(self.name))}
 
     @cached_property
     def scalars(self) -> Mapping[int, Any]:
-        """C types of the arguments that are numbers, by place."""
+        """C types of the arguments that are numbers, by index."""
         arguments = self._find_library().arguments(self.name)
         return {index: _SCALARS[kind] for index, (_, kind) in enumerate(arguments) if kind in _SCALARS}
 
     @cached_property
     def function(self) -> Any:
-        """The function; other threads run meanwhile."""
+        """The function; calls release the GIL, so that other threads run meanwhile."""
         return self._find_library().function(self.name)
 
     @cached_property
     def brief_function(self) -> Any:
-        """The function for what takes less time than giving other threads a turn meanwhile."""
+        """The function, called with the GIL held: for kernels that take less time than releasing it."""
         return ctypes.PYFUNCTYPE(None)(self.address)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Kernels with their arguments, ready to run again and again at the least cost: one C call."""
+"""Kernels with packed arguments: running one again costs a single C call."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.native.kernels import Kernel
 
 @functools.cache
 def _bounds(axes: int) -> Any:
-    """The C struct that says how many times a kernel runs along so many axes."""
+    """The C struct with the number of runs of a kernel along each of so many axes."""
     fields = [
         ("shape", ctypes.c_uint32 * axes),
         ("size", ctypes.c_size_t),
@@ -23,10 +23,10 @@ def _bounds(axes: int) -> Any:
 
 
 class Launch:
-    """A kernel with its arguments, ready to run again and again.
+    """A kernel with its packed arguments, which can be run repeatedly.
 
-    Arrays are kept alive, numbers and structs are copied; `replace` changes a number. Calling it returns
-    when the kernel is done.
+    Arrays are kept alive, numbers and structs are copied; `replace` changes an argument. A call returns when
+    the kernel is done.
 
     Attributes:
         kernel: The kernel.
@@ -67,10 +67,10 @@ class Launch:
         setattr(self._packed, f"p{index}", value)
 
     def addresses(self, *scalars: str) -> list[int]:
-        """What another native function needs to run the kernel, as long as this launch is kept.
+        """The addresses that another native function needs to run the kernel; valid while this launch exists.
 
         Args:
-            *scalars: Names of the numbers among the arguments that it will change.
+            *scalars: Names of the numbers among the arguments that the function will change.
 
         Returns:
             Addresses of the function, of its two arguments, and of these numbers; 0 where there is no such
@@ -95,7 +95,7 @@ class Launch:
 
     @property
     def brief_function(self) -> Callable[[], None]:
-        """The same for kernels that take less time than giving other threads a turn meanwhile."""
+        """The same with the GIL held: for kernels that take less time than releasing it."""
         return functools.partial(
             self.kernel.brief_function, ctypes.byref(self._bounds), ctypes.byref(self._packed)
         )
@@ -109,11 +109,11 @@ def _packed_arguments(*types: Any) -> Any:
 
 
 class TreeLaunch:
-    """A kernel one of whose arguments is a tree, ready to run on any: for what is over in a microsecond.
+    """A kernel with a tree among its arguments, which can be run on any tree; for kernels of a microsecond.
 
     Args:
         kernel: The kernel.
-        structs: Structs by the name kernels give them.
+        structs: Structs by the names of the kernel's arguments.
     """
 
     __slots__ = ("_launch", "_place", "_run", "_tree")
@@ -125,7 +125,7 @@ class TreeLaunch:
         self._tree = 0
 
     def addresses(self) -> list[int]:
-        """Addresses of the kernel, its two arguments and the tree; who changes this has to put it back."""
+        """Addresses of the kernel, its two arguments and the tree; a caller must restore the tree's value."""
         return self._launch.addresses("tree")
 
     def __call__(self, tree: int) -> None:
@@ -137,11 +137,10 @@ class TreeLaunch:
 
 
 class KernelStructs(dict[str, Any]):
-    """Structs by the names kernels give them.
+    """Structs by the names of kernel arguments, with a cache of launches.
 
-    It remembers the last launch of each kernel over them, for each choice of its numbers. Making one takes
-    a hundred times as long as running it, and most of what a world's users do between two steps leaves its
-    arrays where they are.
+    The last launch of each kernel is kept, for each choice of its numbers. Making a launch takes a hundred
+    times as long as running it, and most calls between two steps leave a world's arrays where they are.
     """
 
     def __init__(self, **structs: Any) -> None:
@@ -151,7 +150,8 @@ class KernelStructs(dict[str, Any]):
     def launch(self, kernel: Kernel, **scalars: float) -> Launch:
         """A launch of a kernel with these structs and numbers.
 
-        Those made before of the same kernel and numbers become this one, or may keep arguments of the past.
+        An earlier launch of the same kernel with the same numbers is updated and returned. Launches that are
+        not asked for again may keep outdated structs.
         """
         indices = kernel.indices
         arguments = {name: scalars[name] if name in scalars else self[name] for name in indices}
@@ -167,7 +167,7 @@ class KernelStructs(dict[str, Any]):
         return made
 
     def changed(self, name: str) -> None:
-        """Let the launches made before know that fields of a struct have other values now."""
+        """Update the cached launches after the fields of a struct have changed."""
         struct = self.get(name)
         for (kernel, *_), (arguments, made) in self._launches.items():
             if arguments.get(name) is struct:

@@ -1,4 +1,4 @@
-"""The native library: finding the one for this machine, loading it, and data of its kernels."""
+"""The native library: finding the one for this machine, loading it, and descriptions of its kernels."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ _HERE = Path(__file__).parent
 _ROOT = _HERE.parents[1]
 MANIFEST = "manifest.json"
 PACKAGED = _HERE / "libraries"
-"""Where wheels have their libraries."""
-# What compiles them.
+"""The folder of the libraries in wheels."""
+# Packages that compile libraries.
 _COMPILERS = ("warp", "ziglang")
 _loading = threading.Lock()
 
@@ -41,12 +41,12 @@ class Library:
         symbols: Its functions and variables by name.
 
     Raises:
-        NativeLibraryError: It is damaged, for another platform, or made from something else.
+        NativeLibraryError: It is damaged, for another platform, or built from other sources.
     """
 
     def __init__(self, path: Path, digest: str) -> None:
         try:
-            # Calls through it let other threads run.
+            # Calls through it release the GIL, so that other threads run meanwhile.
             self._loaded = ctypes.CDLL(str(path))
             self._kernels: Mapping[str, Any] = json.loads((path.parent / MANIFEST).read_text("utf-8"))[
                 "kernels"
@@ -57,7 +57,7 @@ class Library:
             raise NativeLibraryError(f"{path} cannot be loaded: {problem}. {_cure()}") from None
         if found != digest:
             raise NativeLibraryError(
-                f"{path} was made from other kernels than those that are here. {_cure()}"
+                f"{path} was built from other kernels than those installed here. {_cure()}"
             )
         self.perform.restype = None
         self.path = path
@@ -74,15 +74,15 @@ class Library:
         return function
 
     def maths(self, name: str) -> Any:
-        """The C function that replaces the number at an address by its sine and the like."""
+        """The C function that replaces the number at an address by its sine, or whatever `name` is."""
         function = getattr(self._loaded, f"carom_{name}_of")
         function.restype = None
         return function
 
     def turn(self, kernel: str) -> Any:
-        """The C function of a kernel of `turns.cpp`: takes numbers, room for results, and None.
+        """The C function of a kernel of `turns.cpp`: takes numbers, an array for the results, and None.
 
-        It returns whether there are results for such numbers.
+        It returns whether there are results for these numbers.
         """
         return self.symbols[f"carom_{kernel}"]
 
@@ -94,12 +94,12 @@ class Library:
 
 
 def library() -> Library:
-    """The library for this machine; built first where kernels have been edited.
+    """The library for this machine; it is built first if kernels have been edited.
 
     Raises:
         NativeLibraryError: There is none, and none can be built.
     """
-    # Threads that start at once get the same one.
+    # Threads that start at the same time get the same library.
     with _loading:
         return _library()
 
@@ -112,7 +112,7 @@ def _library() -> Library:
     except NoTarget as problem:
         raise NativeLibraryError(f"{problem}") from None
     offered = cpu_levels()
-    # Those that are no quicker than the one before are there for who asks for them.
+    # Levels that are not in wheels are used only if `CAROM_CPU_LEVEL` names one.
     levels = [level for level in offered if level in target.shipped] or [
         level for level in offered if level in target.levels
     ]
@@ -130,7 +130,7 @@ def _library() -> Library:
             if not can_build:
                 raise
     elif not can_build:
-        raise NativeLibraryError(f"Carom's native library is not here ({packaged[0]}). {_cure()}")
+        raise NativeLibraryError(f"Carom's native library is missing ({packaged[0]}). {_cure()}")
     return Library(_built(target, levels[0], digest), digest)
 
 
@@ -138,7 +138,7 @@ def _built(target: Target, level: str, digest: str) -> Path:
     """The library for a CPU level, from the cache or compiled now."""
     from carom.native.building.cache import cache_folder, is_there, library_place, mark_used
 
-    # What builds it is imported where something has to be built.
+    # The code that builds it is imported only if there is something to build.
     path = library_place(cache_folder(), digest, target.library_name(level))
     if is_there(path):
         mark_used(path.parent)

@@ -1,6 +1,6 @@
-"""Sums of products, matrix products and the like, with the same bits on every machine.
+"""Scalar products, matrix products and the like, with the same bits on every machine.
 
-Products of matrices by `@` are left to a library that adds in the order that suits the processor.
+NumPy computes matrix products by `@` with a library whose order of summation depends on the processor.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 
 
 def product(a: Floats, b: Floats) -> Floats:
-    """Product of matrices, or of stacks of them, with terms added in the order in which they stand.
+    """Product of matrices, or of stacks of them, with terms added in order of their index.
 
     Args:
         a: Shape (..., n, k).
@@ -30,7 +30,7 @@ def product(a: Floats, b: Floats) -> Floats:
 
 
 def dots(a: Floats, b: Floats) -> Floats:
-    """Scalar products of vectors, with terms added in the order in which they stand.
+    """Scalar products of vectors, with terms added in order of their index.
 
     Args:
         a: Shape (..., n).

@@ -1,9 +1,10 @@
 """Quick calls: builtins of CPython whose C code is in the native library.
 
-A builtin of `pybullet` stands for a Python function. For some of them the library has C code that tries the
+A builtin of `pybullet` stands for a Python function. For some of them the library has C code that handles the
 usual case itself, in a fraction of the time, and calls the Python function in all others:
-`native/source/quick_calls.cpp` says how, and has the same structs. The library names nothing of Python's; it
-is told here where CPython has the few functions that it needs, so that one library is for all versions.
+`native/source/quick_calls.cpp` describes how, and has the same structs. The library is not linked against
+Python; this module gives it the addresses of the few functions that it needs, so that one library serves all
+versions.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ MOST_GROUPS = 8
 
 
 REPORT_SCALARS = ("count", "body_a", "link_a", "body_b", "link_b", "time_step")
-"""What the kernel that lists contacts is asked, as it calls it."""
+"""Query of the kernel that lists contacts: the names of its arguments."""
 REPORT_ARRAYS = (
     *("count", "body_a", "body_b", "link_a", "link_b", "point_a", "point_b", "normal", "distance"),
     *("force", "force1", "force2", "direction1", "direction2"),
 )
-"""What it finds: fields of `ContactReport`, without the word for their axis."""
+"""Its results: fields of `ContactReport`, without the word for their axis."""
 
 
 SURFACE = {
@@ -39,13 +40,13 @@ SURFACE = {
     "contact_stiffness": "link_stiffness",
     "contact_damping": "link_contact_damping",
 }
-"""Fields of `LinkDynamics` that quick calls change, and those of `Shapes` that are the same."""
+"""Fields of `LinkDynamics` that quick calls change, with the corresponding fields of `Shapes`."""
 DAMPING = ("tree_linear_damping", "tree_angular_damping")
-"""Fields of `Model` that they change."""
+"""Fields of `Model` that quick calls change."""
 
 
 class Launch(ctypes.Structure):
-    """A kernel that is asked about one tree."""
+    """A kernel that is run for one tree."""
 
     _fields_ = (
         ("function", ctypes.c_void_p),
@@ -76,7 +77,7 @@ class KernelCall(ctypes.Structure):
 
 
 class Placement(ctypes.Structure):
-    """The shapes of all links, and what places them by the present coordinates."""
+    """The shapes of all links, and the kernels that place them at the current coordinates."""
 
     _fields_ = (
         ("place", KernelCall),
@@ -167,7 +168,7 @@ class Joint(ctypes.Structure):
 
 
 class MotorGroup(ctypes.Structure):
-    """Joints that are commanded together, and the kernel that commands them."""
+    """Joints that are commanded together, and the kernel for their commands."""
 
     _fields_ = (
         ("command", KernelCall),
@@ -179,10 +180,9 @@ class MotorGroup(ctypes.Structure):
 
 
 class Body(ctypes.Structure):
-    """Where the state of a body is.
+    """Addresses of the state of a body.
 
-    Its links and boxes are null as long as nobody has asked for one, its moments as long as nobody has
-    changed a mass.
+    `links` and `boxes` are null until they are first needed, `moments` until a mass is first changed.
     """
 
     _fields_ = (
@@ -206,7 +206,7 @@ class Body(ctypes.Structure):
 
 
 class Client(ctypes.Structure):
-    """A world, the bodies in it by number, and the lock that is held while it changes: two methods of it."""
+    """A world, its bodies by number, and two methods of the lock that is held while it changes."""
 
     _fields_ = (
         ("scene", ctypes.c_void_p),
@@ -248,11 +248,11 @@ class Parameter:
     """A parameter of a quick call.
 
     Attributes:
-        name: Its name, interned, as names of parameters are.
-        kind: A letter: `i` integer, `r` number, `3` and `4` so many numbers, `q` quaternion that has a
-            direction, `s` list, tuple or range, `v` any number of numbers or None, `b` number of a
-            body, `c` of a connection, `-` not used.
-        missing: Its numbers where it is left out; NaN for None. None if it has to be there.
+        name: Its name, interned as CPython does with names of parameters.
+        kind: A letter: `i` integer, `r` number, `3` and `4` so many numbers, `q` quaternion whose length is
+            not zero, `s` list, tuple or range, `v` any number of numbers or None, `b` number of a body, `c`
+            of a connection, `-` not used.
+        missing: Default for each of its numbers; NaN for None. None if it is required.
     """
 
     name: str
@@ -266,12 +266,12 @@ class QuickCalls:
     Args:
         symbols: The loaded library.
         calls: Address of the table of calls.
-        clients: Address of that of clients.
-        python: Places of functions, objects and types of Python, by their names.
+        clients: Address of the table of clients.
+        python: Pointers to functions, objects and types of Python, by their names.
 
     Attributes:
-        clients: Addresses of a `Client` each, by number; 0 where Python has to see to the calls.
-        is_paused: Its value is not 0 while Python has to see to all calls that name a connection.
+        clients: Address of a `Client`, by number; 0 if Python has to handle its calls.
+        is_paused: Its value is not 0 while Python has to handle all calls that name a connection.
     """
 
     def __init__(self, symbols: Any, calls: int, clients: int, python: dict[str, ctypes.c_void_p]) -> None:
@@ -290,11 +290,11 @@ class QuickCalls:
         """The address of the C code of a builtin that tries a kernel first.
 
         Args:
-            kernel: Its name in the library, without the prefix.
-            parameters: Those of the Python function, in order.
-            groups: Lengths of the tuples in the result, 0 for numbers among them; none for a result of None.
-                None if the kernel makes the result.
-            flat: The result is its one group.
+            kernel: Its name in the library, without the prefix `carom_`.
+            parameters: The parameters of the Python function, in order.
+            groups: Lengths of the tuples in the result, 0 for a number in place of a tuple; empty if the
+                result is None. None if the kernel makes the result itself.
+            flat: There is one group, and it is the result.
         """
         made = self._calls[self._made]
         function = ctypes.cast(self._symbols[f"carom_{kernel}"], ctypes.c_void_p)
@@ -317,7 +317,7 @@ class QuickCalls:
         return entry(self._made - 1)
 
     def meet_numpy(self) -> None:
-        """Let the arguments be arrays, too, once NumPy has been imported."""
+        """Accept arrays as arguments, too, if NumPy has been imported."""
         numpy = sys.modules.get("numpy")
         for name in ("ndarray", "float64") if numpy else ():
             self._kept.append(getattr(numpy, name))
@@ -325,10 +325,10 @@ class QuickCalls:
 
 
 def quick_calls(vectorcall: int) -> QuickCalls | None:
-    """The quick calls of this process, for who asks first; None for others, and where there are none.
+    """The quick calls of this process, for the first caller; None for others, and if there are none.
 
-    They are for CPython as it usually is: elsewhere objects begin in other ways, or threads run side by side.
-    They point to objects of one interpreter, so the others of the process do without.
+    They need a usual build of CPython: in others the header of objects differs, or threads run in parallel.
+    They point to objects of one interpreter, so other interpreters of the process have none.
 
     Args:
         vectorcall: Address of the function that calls a Python function.

@@ -4,8 +4,8 @@ An `ArrayTable` owns one NumPy array per field. Arrays of the same axis (links, 
 grow together and geometrically, so that adding bodies one by one costs linear time; the struct that kernels
 are given is filled with views of the same memory.
 
-Fields whose arrays have two dimensions have a world axis in front. Where there is one row on it, all
-worlds share that: kernels see it at a stride of zero.
+Fields whose arrays have two dimensions have a world axis in front. If that has a single row, all worlds
+share it: kernels see a stride of zero.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from carom.native.undo import Undo
 from carom.native.zeros import zeros
 
 NUMPY_REAL = np.float64
-"""What kernels reckon with."""
+"""The type of real numbers in kernels."""
 
 _FIRST_CAPACITY = 16
 
 
 def numbers_of(numbers: np.ndarray) -> memoryview[float]:
-    """The memory of an array of numbers: quicker than NumPy for single ones."""
+    """The memory of an array of numbers: access to single numbers is faster than with NumPy."""
     return cast("memoryview[float]", numbers.data)
 
 
@@ -69,8 +69,8 @@ def array_view(array: np.ndarray, axes: int = 1) -> ArrayView:
 
     Args:
         array: The array. Axes behind the first ones are those of its entries.
-        axes: How many axes kernels see: of two the first is the world axis, and where that has one row
-            all worlds are shown it.
+        axes: Number of axes that kernels see. Of two axes the first is the world axis; if it has a single
+            row, all worlds see this row.
     """
     shape, strides = array.shape, array.strides
     view = ArrayView(array.ctypes.data, 0, shape[:axes], strides[:axes], axes)
@@ -99,7 +99,7 @@ def put_array(struct: Any, name: str, values: npt.ArrayLike) -> np.ndarray:
 
 
 def put_zeros(struct: Any, name: str, count: int) -> np.ndarray:
-    """Make a field of a struct an array of so many zeros; see `put_array`."""
+    """Make a field of a struct an array of `count` zeros; see `put_array`."""
     field = fields_of(type(struct))[name]
     return put_array(struct, name, zeros((count, *field.shape), field.scalar))
 
@@ -108,9 +108,9 @@ class ArrayTable:
     """Arrays by name, grouped by axis, those of two dimensions with a leading world axis.
 
     Attributes:
-        numpy: The arrays by the names of their fields. An array of structs is there as one array for
-            each of their fields, named after both: `link_mass` is the field `mass` of `link`.
-        capacity: Rows there are, by axis.
+        numpy: The arrays by the names of their fields. For an array of structs there is one array for each of
+            their fields, named after both: `link_mass` is the field `mass` of `link`.
+        capacity: Number of allocated rows, by axis.
         replacements: Number of times that an array was replaced by another.
     """
 
@@ -127,7 +127,7 @@ class ArrayTable:
             struct: Struct whose fields are all arrays.
             world_count: Length of the world axis.
             entry_views: Fields that show the vectors of another field scalar by scalar.
-            first_capacity: Rows there are on each axis to begin with.
+            first_capacity: Number of rows to allocate on each axis.
         """
         self._struct = struct
         self._entry_views = dict(entry_views or {})
@@ -152,11 +152,11 @@ class ArrayTable:
         return self._new_array((*shape, *field.shape), field.scalar)
 
     def _new_array(self, shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
-        """An array of zeros where those of this table are."""
+        """An array of zeros in the kind of memory that this table uses."""
         return zeros(shape, dtype)
 
     def _replace(self, arrays: Mapping[str, np.ndarray]) -> None:
-        """Put arrays that are ready in the place of others, all at once."""
+        """Replace arrays by others, all at once."""
 
         def put() -> None:
             self._memory.update(arrays)
@@ -184,7 +184,7 @@ class ArrayTable:
         return field.per_world
 
     def bytes_of(self, name: str) -> memoryview[int]:
-        """The memory of a field, for reading a few rows at less cost than NumPy has for one."""
+        """The memory of a field: reading a few rows takes less time than reading one row with NumPy."""
         memory = self._bytes.get(name)
         if memory is None:
             array: Any = self._memory[name]
@@ -196,7 +196,7 @@ class ArrayTable:
 
         Args:
             needed: Rows by axis.
-            growth: An axis that grows becomes at least so many times as long.
+            growth: Least factor by which an axis grows.
         """
         capacity = self.capacity
         for axis, count in needed.items():
@@ -209,7 +209,7 @@ class ArrayTable:
             for axis, count in needed.items()
             if count > capacity.get(axis, count)
         }
-        # All of them are there before the first is put in place: memory may be short, or the user in a hurry.
+        # All are allocated before the first is replaced: memory may be short, or Ctrl-C may interrupt this.
         self._replace(
             {
                 name: self._lengthened(name, grown[field.axis])
@@ -220,7 +220,7 @@ class ArrayTable:
         return True
 
     def _lengthened(self, name: str, capacity: int) -> np.ndarray:
-        """A longer array with the rows of one there is."""
+        """A longer copy of a field's array."""
         old = self._memory[name]
         new = self._allocate(name, capacity)
         if self._fields[name].per_world:
@@ -230,7 +230,7 @@ class ArrayTable:
         return new
 
     def spread(self, name: str, world_count: int) -> bool:
-        """Give each world rows of its own of a field that all have shared; true if they had not."""
+        """Give each world its own rows of a shared field; true if the field was shared before."""
         if self._world_counts[name] == world_count:
             return False
         spread = np.repeat(self._memory[name], world_count, axis=0)
@@ -242,9 +242,9 @@ class ArrayTable:
         """A table with the same content.
 
         Args:
-            world_count: Give each of so many worlds rows of its own, all like those of the first; None for
-                worlds as they are.
-            rows: Of these axes, keep so many rows and no room for more.
+            world_count: Number of worlds, each with a copy of the first world's rows; None for the worlds
+                as they are.
+            rows: Number of rows to keep, by axis, without capacity for more.
         """
         rows = rows or {}
         other = ArrayTable.__new__(ArrayTable)
@@ -267,7 +267,7 @@ class ArrayTable:
         return other
 
     def bytes_per_world(self, rows: Mapping[str, int] | None = None) -> int:
-        """Memory that each world takes with so many rows on some axes [bytes]."""
+        """Memory of each world, given the number of rows on some axes [bytes]."""
         rows = rows or {}
         return sum(
             rows.get(field.axis, self.capacity[field.axis]) * self._memory[name][0, :1].nbytes
@@ -287,10 +287,10 @@ class ArrayTable:
         Args:
             cuts: First row and number of rows, by axis.
             used: Rows in use, by axis.
-            targets: Fields whose values are rows of an axis, and which; they follow those rows.
+            targets: Fields whose values are row numbers, with the axis of these rows; values are updated.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes the rows; it can be called again if it was interrupted.
         """
         moves, freed, values = [], [], []
         for axis, (start, count) in cuts.items():
@@ -299,7 +299,7 @@ class ArrayTable:
                 if start + count < end:
                     moves.append((rows[start : end - count], rows[start + count : end].copy()))
                 freed.append(rows[end - count : end])
-        # Axes whose last rows go: what is before these names no row behind those.
+        # Axes whose last rows are removed. The rows before them do not refer to removed or later rows.
         last = {axis for axis, cut in cuts.items() if sum(cut) == used.get(axis)}
         for name, target in targets.items():
             axis = name.partition("_")[0]
@@ -320,7 +320,7 @@ class ArrayTable:
         return remove
 
     def _rows_along(self, axis: str) -> list[np.ndarray]:
-        """All arrays of an axis, with their rows in front."""
+        """All arrays of an axis, with their row axis first."""
         found = self._by_axis.get(axis)
         if found is None:
             found = [self._rows(name) for name, field in self._fields.items() if field.axis == axis]
@@ -328,18 +328,18 @@ class ArrayTable:
         return found
 
     def clear_beyond(self, used: Mapping[str, int]) -> None:
-        """Set all rows to zero but the first ones of the named axes."""
+        """Set all rows of the named axes to zero, except the first `used` ones."""
         for axis, count in used.items():
             for rows in self._rows_along(axis):
                 rows[count:].fill(0)
 
     def _rows(self, name: str) -> np.ndarray:
-        """An array with its rows in front."""
+        """The array of a field, with its row axis first."""
         array = self._memory[name]
         return array.swapaxes(0, 1) if self._fields[name].per_world else array
 
     def struct(self) -> Any:
-        """A C struct whose fields are views of these arrays: the same one until some are replaced."""
+        """A C struct whose fields are views of these arrays: the same object until arrays are replaced."""
         if self._made is None:
             self._made = self._make_struct()
         return self._made
@@ -355,7 +355,7 @@ class ArrayTable:
         return struct
 
     def _shown(self) -> dict[str, np.ndarray]:
-        """The arrays of all fields, those included that show others entry by entry."""
+        """The arrays of all fields, including `entry_views`, which show others scalar by scalar."""
         shown = {**self._memory}
         for name, source in self._entry_views.items():
             array = self._memory[source]
@@ -363,7 +363,7 @@ class ArrayTable:
         return shown
 
     def written(self, name: str) -> None:
-        """Let kernels see what has been written to an array, by its name in `numpy`; here they do already."""
+        """Make writes to an array, by its name in `numpy`, visible to kernels; here they already are."""
 
     def clear(self) -> None:
         """Set every entry to zero."""
@@ -372,7 +372,7 @@ class ArrayTable:
 
 
 def _repeated(rows: np.ndarray, count: int) -> np.ndarray:
-    """The same rows so many times. Memory that holds nothing but zeros is not touched, and takes no room."""
+    """The same rows `count` times. If all are zero, the memory is not written to and takes no space."""
     array = zeros((count, *rows.shape), rows.dtype)
     if rows.dtype.names is not None or rows.any():
         array[:] = rows

@@ -8,20 +8,20 @@ from typing import NamedTuple
 
 
 class NoTarget(Exception):
-    """Nothing is built for this platform."""
+    """There is no native library for this platform."""
 
 
 class Target(NamedTuple):
     """A platform.
 
     Attributes:
-        name: As in the library's file name: `x86_64-linux`.
-        triple: What Zig calls it.
-        levels: CPU levels by name, with what Zig calls them, the oldest first.
-        prefix: How file names of its libraries begin.
-        suffix: How they end.
-        wheel_tags: Platform tags of wheels that its libraries are for.
-        left_out: Levels that are not in wheels, for they are no quicker than the one before.
+        name: Its name in the library's file name, such as `x86_64-linux`.
+        triple: Its name for Zig.
+        levels: CPU levels by name, with their names for Zig, the oldest first.
+        prefix: Beginning of the file names of its libraries.
+        suffix: End of these file names.
+        wheel_tags: Platform tags of the wheels that contain its libraries.
+        left_out: Levels that are not in wheels, because they are no faster than the level before.
     """
 
     name: str
@@ -43,7 +43,8 @@ class Target(NamedTuple):
 
 
 _X86_LEVELS = {"v2": "x86_64_v2", "v3": "x86_64_v3", "v4": "x86_64_v4"}
-# Nothing of libc is needed but what the process has in any case, so that one library is for both libcs.
+# The library needs only functions of libc that every process has loaded, so one library works with both glibc
+# and musl.
 TARGETS = {
     target.name: target
     for target in (
@@ -86,7 +87,7 @@ def this_target() -> Target:
     """The platform that this Python runs on.
 
     Raises:
-        NoTarget: Nothing is built for it.
+        NoTarget: There is no library for it.
     """
     machine = platform.machine().lower()
     machine = _MACHINES.get(machine, machine)

@@ -1,8 +1,8 @@
-"""Trigonometry that is the same bits on every machine: that of the kernels.
+"""Trigonometric functions with the same bits on every machine: the ones that kernels use.
 
-The functions of `math` are those of the platform's C library, and differ in the last bit. Roots and
-`math.hypot` need nothing of that kind: they consist of operations that are rounded correctly. Where `math`
-raises, as for the arcsine of 2, the result here is not a number.
+The functions of `math` are those of the platform's C library, and differ in the last bit. Square roots and
+`math.hypot` need no replacement: they consist of correctly rounded operations. Where `math` raises, as for
+the arcsine of 2, the result here is NaN.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def _applied(name: str, value: float) -> float:
 
 @cache
 def _function(name: str) -> Any:
-    # Imported when a first angle comes: `import pybullet` has none.
+    # Imported at the first call, so that `import pybullet` does not load the library.
     from carom.native.library import library
 
     return library().maths(name)

@@ -1,4 +1,4 @@
-"""Rotations and rigid transforms by numbers, the same bits on every machine: `native/source/turns.cpp`."""
+"""Rotations and rigid transforms, with the same bits on every machine: `native/source/turns.cpp`."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from typing import Any
 
 
 def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
-    """The results of a kernel for some numbers.
+    """The results of a kernel of `turns.cpp`.
 
     Args:
-        kernel: Its name, without the prefix.
-        numbers: As many as it takes.
+        kernel: Its name, without the prefix `carom_`.
+        numbers: Its arguments, as many as it takes.
         count: Number of results.
 
     Returns:
-        These; None if there is no result for such numbers.
+        The results; None if the kernel has none for these numbers.
     """
     results = (ctypes.c_double * count)()
     well = _function(kernel)((ctypes.c_double * len(numbers))(*numbers), results, None)
@@ -26,7 +26,7 @@ def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float
 
 @cache
 def _function(kernel: str) -> Any:
-    # Imported with the first of them: `import pybullet` works nothing out.
+    # Imported at the first call, so that `import pybullet` does not load the library.
     from carom.native.library import library
 
     return library().turn(kernel)

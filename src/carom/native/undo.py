@@ -1,6 +1,6 @@
-"""Changes of several parts that an exception may break off at any line.
+"""Changes of several parts that an exception may interrupt at any line.
 
-Ctrl-C and timers raise exceptions between any two lines of the main thread, and memory may be short anywhere.
+Ctrl-C and timers raise exceptions between any two lines of the main thread, and any allocation may fail.
 """
 
 from __future__ import annotations
@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from types import TracebackType
 
-# An impatient user may break off what mends a broken change, too: so often it is begun again.
+# Ctrl-C may interrupt the repair of an interrupted change as well: maximum number of attempts.
 _PATIENCE = 100
 
 
 class Undo:
-    """What leads back to a whole, noted before each part is changed.
+    """Steps that make data consistent again after an interrupted change; noted before each part is changed.
 
-    A step *sets* a part to its old value, or, if the new value is known already, to the new one. It
-    can be taken again. As a context it takes all steps that are left at the end, the last noted first:
+    A step *sets* a part to its old value, or, if the new value is known already, to the new one. So it can be
+    repeated. As a context manager it performs all remaining steps at the end, the last noted first:
 
         with undo:
             undo.note(step)
@@ -39,8 +39,8 @@ class Undo:
             self._settle_patiently()
 
     def at_once(self, change: Callable[[], None]) -> None:
-        """Make a change that can be made again, to its end even if it is interrupted."""
-        # A context would do it as well, but scripts change parameters at every step.
+        """Make a repeatable change; if it is interrupted, it is completed before the exception goes on."""
+        # The context manager would do this as well, but takes longer, and scripts change parameters often.
         try:
             self._steps.append(change)
             change()
@@ -50,17 +50,17 @@ class Undo:
             raise
 
     def note(self, step: Callable[[], None]) -> None:
-        """Take this step, unless the change is done."""
+        """Add a step, which is performed unless `done` is called."""
         self._steps.append(step)
 
     def settle(self) -> None:
-        """Take the steps that are left. Nothing may be left of an earlier change when another begins."""
+        """Perform the remaining steps. None may be left of an earlier change when another begins."""
         while self._steps:
             self._steps[-1]()
             self._steps.pop()
 
     def _settle_patiently(self) -> None:
-        """Take the steps that are left while an exception is on its way already."""
+        """Perform the remaining steps while an exception is being handled; retry if another one occurs."""
         for _ in range(_PATIENCE):
             try:
                 self.settle()
@@ -69,5 +69,5 @@ class Undo:
                 continue
 
     def done(self) -> None:
-        """The change has been made: forget the steps."""
+        """Discard the steps: the change is complete."""
         self._steps.clear()

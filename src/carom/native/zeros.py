@@ -1,4 +1,4 @@
-"""Memory full of zeros."""
+"""Arrays of zeros, allocated lazily."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
-# Smaller arrays do not get a memory mapping of their own [bytes].
+# Size from which on an array has a memory mapping of its own [bytes].
 _LEAST_MAPPED = 1 << 20
-# Where a process can fork, the memory must not be shared with its children; elsewhere there are no flags.
+# On systems with fork, the memory must not be shared with child processes; on others there are no flags.
 _PRIVATE: dict[str, int] = (
     {"flags": mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS} if hasattr(mmap, "MAP_ANONYMOUS") else {}
 )
 
 
 def zeros(shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
-    """An array of zeros, which takes memory only where something has been written.
+    """An array of zeros, which takes physical memory only where something has been written.
 
-    Large ones come straight from the system and go back there: what comes from the heap of the process may
-    have been used before, and has to be cleared, and so touched, as a whole.
+    Large arrays are mapped from the operating system directly, and returned to it. Memory from the heap of
+    the process may have been used before; then the whole array has to be cleared, which takes all its memory.
     """
     size = prod(shape) * dtype.itemsize
     if size < _LEAST_MAPPED:

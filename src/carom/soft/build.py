@@ -1,4 +1,4 @@
-"""Soft bodies from meshes: checked, and ready for the engine."""
+"""Checking meshes and parameters, and making the specifications of soft bodies from them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LEAST_MASS = 1.0e-30
 """Minimum mass of a soft body [kg]; smaller masses would overflow."""
 FARTHEST = 1.0e6
 """Largest coordinate of a node [m]."""
-# Tetrahedra of less than this share of the cube of their longest edge are flat.
+# Tetrahedra count as flat if six times their volume is less than this share of their size cubed.
 _FLAT = 1.0e-9
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 
@@ -49,21 +49,21 @@ def soft_body(
 
     Args:
         name: Its name.
-        nodes: (n, 3) places at rest [m].
-        cells: Its (m, 2) links, (m, 3) triangles or (m, 4) tetrahedra.
-        mass: Of all nodes together [kg].
-        springs: Springs along the edges of the cells, if there are any.
-        solid: Material of tetrahedra, if they resist deformation.
+        nodes: (n, 3) positions at rest [m].
+        cells: Its (m, 2) edges, (m, 3) triangles or (m, 4) tetrahedra.
+        mass: Total mass of all nodes [kg].
+        springs: Springs along the edges of the cells; None for no springs.
+        solid: Material of tetrahedra; None if they do not resist deformation.
         margin: Distance at which nodes rest on other surfaces [m].
-        friction: Coulomb coefficient, multiplied by that of what it touches.
+        friction: Coulomb coefficient, multiplied by that of the other surface.
         self_collision: Its nodes collide with its own faces.
         seen: (v, 3) vertices and (t, 3) triangles that are drawn instead of its surface.
-        paint: Texture coordinates of what is drawn. The surface of a solid is checkered without.
-        source: The file it comes from, for errors.
+        paint: Texture coordinates of what is drawn; None for a solid's checkered surface, or plain cloth.
+        source: The file it comes from, for error messages.
 
     Raises:
-        DescriptionError: A node is not finite or far away, a cell names a node that does not exist or one
-            twice, or has no volume; all nodes are in one place; or a parameter makes no sense.
+        DescriptionError: A node is not finite or too far away; a cell refers to a node that does not exist,
+            refers to a node twice, or has no volume; all nodes are in one place; or a parameter is invalid.
     """
     _check_parameters(mass, springs, solid, margin, friction, source)
     nodes = np.array(nodes, dtype=np.float64).reshape(-1, 3)
@@ -147,7 +147,7 @@ def _check_parameters(
 
 def _check_nodes(nodes: NDArray[np.float64], cells: NDArray[np.int32], source: Path | None) -> None:
     if not len(nodes) or not len(cells):
-        raise DescriptionError("there is no cell, and so nothing to simulate", file=source)
+        raise DescriptionError("there are no nodes or no cells to simulate", file=source)
     if len(nodes) > MOST_NODES:
         raise DescriptionError(f"{len(nodes)} nodes are more than the {MOST_NODES} accepted", file=source)
     if not (np.abs(nodes) <= FARTHEST).all():
@@ -171,12 +171,12 @@ def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source
 def _springs(
     nodes: NDArray[np.float64], cells: NDArray[np.int32], springs: Springs | None, source: Path | None
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Pairs of nodes, and length, stiffness and damping of the springs between them."""
+    """Pairs of nodes (s, 2), and the length, stiffness and damping of the springs between them (s, 3)."""
     edges = edges_of(cells)
     same = np.flatnonzero(edges[:, 0] == edges[:, 1])
     if len(same):
         raise DescriptionError(f"a cell has node {edges[same[0], 0]} twice", file=source)
-    # Nodes in one place are kept together by springs of no length, as in seams of garments.
+    # Springs of zero length are allowed: they hold nodes in the same place together, as in seams of garments.
     size = float(np.ptp(nodes, axis=0).max())
     if not (np.linalg.norm(nodes[edges[:, 1]] - nodes[edges[:, 0]], axis=1) > SHORT * size).any():
         raise DescriptionError("all corners of its cells are in one place", file=source)

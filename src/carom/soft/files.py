@@ -20,7 +20,7 @@ SURFACES = (".obj",)
 
 
 def is_solid(path: Path) -> bool:
-    """Whether a file of that name holds tetrahedra."""
+    """Whether files with this suffix contain tetrahedra."""
     return path.suffix.lower() in SOLIDS
 
 
@@ -36,23 +36,23 @@ def soft_body_from_file(
     self_collision: bool = False,
     simulated: Path | None = None,
 ) -> BodySpec:
-    """The soft body that a mesh file describes.
+    """The soft body of a mesh file.
 
-    Of an OBJ file the first object is taken; its triangles are cloth, whatever `solid` says.
+    Only the first object of an OBJ file is used; its triangles are cloth, and `solid` is ignored.
 
     Args:
         path: The file, `.obj` or `.vtk`.
         scale: Factor on all lengths.
-        mass: Of all nodes together [kg].
+        mass: Total mass of all nodes [kg].
         springs: Springs along the edges of the cells.
         solid: Material of tetrahedra.
         margin: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient.
         self_collision: Its nodes collide with its own faces.
-        simulated: A file with the mesh that is simulated; that of `path`, an OBJ file, is then only drawn.
+        simulated: A file with the mesh to simulate; the mesh of `path`, an OBJ file, is then only drawn.
 
     Raises:
-        DescriptionError: The file is missing or broken, of another kind, or its mesh cannot be used.
+        DescriptionError: The file is missing, damaged or of another kind, or its mesh cannot be used.
     """
     nodes, cells = mesh_of(path if simulated is None else simulated)
     seen = paint = None
@@ -82,7 +82,7 @@ def mesh_of(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """The nodes of a file, and its triangles or tetrahedra.
 
     Raises:
-        DescriptionError: The file is missing or broken, or of another kind.
+        DescriptionError: The file is missing, damaged or of another kind.
     """
     suffix = path.suffix.lower()
     if suffix in SOLIDS:

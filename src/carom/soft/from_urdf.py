@@ -24,11 +24,11 @@ def urdf_body(
 
     Args:
         path: The file.
-        search: Folders in which it and the files it refers to are searched.
+        search: Folders to search for it and for the files that it refers to.
         scale: Factor on all lengths.
         flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
         fixed_base: Fix the base of a rigid body in the world.
-        older: Soft bodies are those of Bullet's world without deformable bodies.
+        older: Make soft bodies as in PyBullet without a deformable world.
 
     Raises:
         DescriptionError: The file cannot be used.
@@ -51,7 +51,7 @@ def robot_body(
         return assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
     collides = bool(flags & LoadFlags.USE_SELF_COLLISION)
     spec = _deformable_body(robot.deformable, scale=scale, self_collision=collides, older=older)
-    # As in PyBullet the body has the name of the element, and its base has no name.
+    # As in PyBullet, the body has the name of its root link, and its base has no name.
     spec.name, spec.base.name, spec.user_data = robot.links[robot.root].name, "", dict(robot.user_data)
     spec.source = robot.source
     return spec
@@ -91,7 +91,7 @@ def _springs(soft: Deformable) -> Springs | None:
 
 
 def _solid(soft: Deformable) -> NeoHookean | None:
-    """Material of its tetrahedra: the sum of all elements in the file."""
+    """Material of the tetrahedra: the sum of all material elements in the file."""
     from carom.soft.materials import NeoHookean
     from carom.soft.reduced import solid_of_modes
 
@@ -101,7 +101,7 @@ def _solid(soft: Deformable) -> NeoHookean | None:
     if soft.neo_hookean is not None:
         kinds.append(NeoHookean(soft.neo_hookean.mu, soft.neo_hookean.lam, soft.neo_hookean.damping))
     if soft.corotated is not None:
-        # For these energies the parameters are Lamé's.
+        # The parameters of corotated materials are Lamé's.
         kinds.append(NeoHookean.of_lame(soft.corotated.mu, soft.corotated.lam, soft.corotated.damping))
     mu, lam = sum(kind.mu for kind in kinds), sum(kind.lam for kind in kinds)
     if mu == lam == 0.0:

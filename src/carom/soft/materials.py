@@ -11,8 +11,8 @@ class Springs:
 
     Attributes:
         stiffness: [N/m].
-        damping: [N s/m], of springs that bend as well.
-        bending: Stiffness of springs between nodes that have a neighbour in common [N/m]; 0 for none.
+        damping: [N s/m], also of the springs against bending.
+        bending: Stiffness of springs between nodes with a common neighbour [N/m]; 0 for no such springs.
         damps_all_directions: They damp all relative motion of their ends, not only that along the spring.
     """
 
@@ -27,9 +27,9 @@ class NeoHookean:
     """A solid with the energy of Smith, de Goes and Kim (2018), as in Bullet.
 
     Attributes:
-        mu: [Pa]; for small strains the shear modulus is 3/4 of it.
-        lam: [Pa]; for small strains Lamé's first parameter is this minus 5/8 `mu`.
-        damping: Viscosity as a share of these [s].
+        mu: [Pa]; for small strains the shear modulus is 3/4 `mu`.
+        lam: [Pa]; for small strains Lamé's first parameter is `lam` minus 5/8 `mu`.
+        damping: Viscosity divided by these moduli [s].
     """
 
     mu: float
@@ -38,11 +38,11 @@ class NeoHookean:
 
     @classmethod
     def of(cls, youngs_modulus: float, poissons_ratio: float, damping: float = 0.0) -> NeoHookean:
-        """A material that for small strains has that Young's modulus [Pa] and Poisson's ratio."""
+        """A material with this Young's modulus [Pa] and Poisson's ratio for small strains."""
         shear = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
         return cls.of_lame(shear, 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio), damping)
 
     @classmethod
     def of_lame(cls, shear: float, first: float, damping: float = 0.0) -> NeoHookean:
-        """The same by the shear modulus and Lamé's first parameter [Pa]."""
+        """A material with this shear modulus and Lamé's first parameter for small strains [Pa]."""
         return cls(4.0 / 3.0 * shear, first + 5.0 / 6.0 * shear, damping)

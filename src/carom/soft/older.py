@@ -1,4 +1,4 @@
-"""Cloth as in PyBullet without a deformable world: it hardly stretches, for any mass."""
+"""Cloth as in PyBullet without a deformable world: it hardly stretches, whatever its mass."""
 
 from __future__ import annotations
 
@@ -11,30 +11,31 @@ from carom.soft.files import is_solid, mesh_of
 from carom.soft.materials import Springs
 from carom.soft.paint import paint_of_file
 
-# Bullet projects the springs of such cloth 20 times in a step, whatever its mass. At this frequency of a
-# spring between two nodes, 1 m of cloth that hangs from an edge stretches by 0.1 mm; PyBullet's by 0.05 mm.
+# Angular frequency of one node on a spring [rad/s]. Bullet projects the springs of such cloth 20 times in a
+# step, whatever its mass. With this frequency, 1 m of cloth that hangs from an edge stretches by 0.1 mm;
+# PyBullet's stretches by 0.05 mm.
 _FREQUENCY = 720.0
-# Bullet's coefficient for it.
+# Bullet's friction coefficient for such cloth.
 _FRICTION = 0.5
-# Share of critical damping of two nodes.
+# Damping of a spring, divided by the product of node mass and frequency.
 _DAMPING = 0.05
 
 
 def older_cloth_from_file(path: Path, *, scale: float, mass: float, margin: float) -> BodySpec:
-    """The cloth that an OBJ file describes: as stiff along edges and against bending as its mass allows.
+    """The cloth of an OBJ file; its stiffness, along edges and against bending, is proportional to its mass.
 
     Args:
         path: The file.
         scale: Factor on all lengths.
-        mass: Of all nodes together [kg].
+        mass: Total mass of all nodes [kg].
         margin: Distance at which nodes rest on other surfaces [m].
 
     Raises:
-        DescriptionError: The file is missing or broken, holds tetrahedra, or its mesh cannot be used.
+        DescriptionError: The file is missing or damaged, holds tetrahedra, or its mesh cannot be used.
     """
     if is_solid(path):
         raise DescriptionError(
-            "it holds tetrahedra: call resetSimulation(RESET_USE_DEFORMABLE_WORLD) before", file=path
+            "it holds tetrahedra: call resetSimulation(RESET_USE_DEFORMABLE_WORLD) first", file=path
         )
     nodes, triangles = mesh_of(path)
     node_mass = mass / len(nodes) if len(nodes) else mass

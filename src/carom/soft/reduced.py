@@ -1,7 +1,7 @@
 """Reduced deformable bodies, simulated as full solids with the stiffness of their modes.
 
-Bullet moves such bodies by a few modes of vibration, which it reads from files beside the mesh. Here all
-nodes move, so only the stiffness of the material is read from these files.
+Bullet simulates such bodies by a few modes of vibration, which it reads from files beside the mesh. Here all
+nodes move, so only the stiffness of the material is taken from these files.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
     from carom.description.deformable import Deformable
 
 POISSONS_RATIO = 0.3
-"""Of the material; the files do not state it."""
+"""Poisson's ratio of the material, which is not in the files."""
 MODULUS = 100.0
-"""Young's modulus for each unit of stiffness where there are no files of modes [Pa]."""
+"""Young's modulus for each unit of stiffness if there are no files of modes [Pa]."""
 
 _LARGEST = 256 << 20
-# The lowest modes describe the whole shape best, and depend least on single cells.
+# Number of modes used: the lowest ones describe the whole shape best, and depend least on single cells.
 _MODES = 10
 
 
 def solid_of_modes(soft: Deformable) -> NeoHookean:
     """The material of a reduced body.
 
-    Its Young's modulus is the one with which the lowest modes in `modes.bin` have the energy of strain that
-    `K_r_diag_mat.bin` says, times the scale of stiffness; with the mass that the body has in place of that in
-    `M_diag_mat.bin` it then vibrates as fast.
+    With its Young's modulus the lowest modes in `modes.bin` have the strain energy that `K_r_diag_mat.bin`
+    specifies. The modulus is then multiplied by the scale of stiffness, and by the ratio of the body's mass
+    to that in `M_diag_mat.bin`, so that the mass does not change the frequencies.
 
     Raises:
         DescriptionError: The mesh or a file of modes cannot be used.
@@ -57,7 +57,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
     data, _ = read_bounded(path, _LARGEST)
     count = int(np.frombuffer(data[:4], "<u4")[0]) if len(data) >= 4 else 0
     if not count or len(data) < 4 + 8 * count:
-        raise DescriptionError("it is cut off, or no file of modes", file=path)
+        raise DescriptionError("it is truncated, or not a file of modes", file=path)
     numbers = np.frombuffer(data, "<f8", count, 4)
     if not np.isfinite(numbers).all():
         raise DescriptionError("a number is not finite", file=path)
@@ -72,13 +72,13 @@ def _modulus(mesh: Path, stiffness: NDArray[np.float64], modes: NDArray[np.float
         raise DescriptionError("reduced deformable bodies are made of tetrahedra, in VTK files", file=mesh)
     count = min(_MODES, len(stiffness), len(modes) // max(1, nodes.size))
     if not count:
-        raise DescriptionError("its modes are of another mesh", file=mesh)
+        raise DescriptionError("its modes belong to another mesh", file=mesh)
     edges = np.swapaxes(nodes[tetras][:, 1:] - nodes[tetras][:, :1], 1, 2)
     volume = np.abs(determinants(edges)) / 6.0
     if not volume.min() > 0.0:
         raise DescriptionError(f"tetrahedron {int(volume.argmin())} has no volume", file=mesh)
     inverse = inverses(edges)
-    # Of a solid with a Young's modulus of 1 Pa.
+    # Lamé parameters of a solid with a Young's modulus of 1 Pa.
     shear = 0.5 / (1.0 + POISSONS_RATIO)
     first = 2.0 * shear * POISSONS_RATIO / (1.0 - 2.0 * POISSONS_RATIO)
     energy = 0.0
@@ -88,5 +88,5 @@ def _modulus(mesh: Path, stiffness: NDArray[np.float64], modes: NDArray[np.float
         traces = np.trace(strain, axis1=1, axis2=2)
         energy += float((volume * (2.0 * shear * (strain**2).sum(axis=(1, 2)) + first * traces**2)).sum())
     if not (energy > 0.0 and stiffness[:count].min() >= 0.0):
-        raise DescriptionError("its modes do not change its shape, or have negative stiffness", file=mesh)
+        raise DescriptionError("its modes do not deform it, or have negative stiffness", file=mesh)
     return float(stiffness[:count].sum()) / energy

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from carom.native.products import determinants, dots
 
-# A cube's corners, numbered by bits x, y, z, as six tetrahedra around the diagonal from 0 to 7.
+# Six tetrahedra of a cube, around the diagonal from corner 0 to 7. Bits 0, 1, 2 of a corner are its x, y, z.
 _IN_CUBE = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
 
 
@@ -15,11 +15,11 @@ def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[NDArray[np.
     """A rectangle in the plane z = 0, centred on the origin.
 
     Args:
-        size: Along x and y [m].
-        cells: How many along each.
+        size: Lengths along x and y [m].
+        cells: Number of cells along x and y.
 
     Returns:
-        ((n, 3) nodes, x fastest; (f, 3) triangles that look along z, two for each cell).
+        ((n, 3) nodes, x fastest; (f, 3) triangles with normals along z, two for each cell).
     """
     nx, ny = cells[0] + 1, cells[1] + 1
     x, y = np.meshgrid(np.linspace(-0.5, 0.5, nx) * size[0], np.linspace(-0.5, 0.5, ny) * size[1])
@@ -36,8 +36,8 @@ def box(
     """A cuboid of tetrahedra centred on the origin, six in each cell.
 
     Args:
-        size: Along x, y and z [m].
-        cells: How many along each.
+        size: Lengths along x, y and z [m].
+        cells: Number of cells along x, y and z.
 
     Returns:
         ((n, 3) nodes, x fastest; (t, 4) tetrahedra of positive volume).
@@ -55,7 +55,7 @@ def box(
 
 
 def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A ball of tetrahedra around the origin, made from a cube of cells by rounding its layers.
+    """A ball of tetrahedra around the origin: a cube of cells whose cubic layers are mapped to spheres.
 
     Returns:
         ((n, 3) nodes; (t, 4) tetrahedra of positive volume).
@@ -68,7 +68,7 @@ def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int
 
 
 def oriented(nodes: NDArray[np.float64], tetras: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Tetrahedra with two corners exchanged where their volume is negative."""
+    """The same tetrahedra, with two corners swapped in those of negative volume."""
     corners = nodes[tetras]
     volumes = determinants(corners[:, 1:] - corners[:, :1])
     turned = tetras.copy()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-# Number of cells with the nearest centres to a vertex, among which its cell is searched.
+# The cell of a vertex is searched among this number of cells, those whose centres are nearest to it.
 _CANDIDATES = 8
 # Number of vertices handled at a time, to save memory.
 _CHUNK = 256
@@ -16,12 +16,12 @@ def bind(
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """The nodes that each vertex follows, and their weights.
 
-    A vertex keeps its place in the cell that it is in, or nearest to; outside of all cells that cell is
-    extrapolated, as in Bullet.
+    A vertex keeps its barycentric coordinates in the cell that contains it. A vertex outside of all cells is
+    extrapolated from the nearest cell, as in Bullet.
 
     Args:
-        vertices: (v, 3) places at rest [m].
-        nodes: (n, 3) places at rest [m].
+        vertices: (v, 3) positions at rest [m].
+        nodes: (n, 3) positions at rest [m].
         cells: (m, 3) triangles or (m, 4) tetrahedra.
 
     Returns:
@@ -45,7 +45,7 @@ def bind(
 
 
 def _weights(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Barycentric coordinates of points, or of their feet on triangles: (..., 3 or 4)."""
+    """Barycentric coordinates of points, or of their projections onto triangles: (..., 3 or 4)."""
     edges = np.swapaxes(corners[..., 1:, :] - corners[..., :1, :], -1, -2)
     offset = points - corners[..., 0, :]
     others = (np.linalg.pinv(edges) @ offset[..., None])[..., 0]

@@ -10,7 +10,7 @@ _FACES = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
 
 
 def edges_of(cells: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Pairs of corners of the same cell, each once, the lower first, sorted.
+    """Edges of cells: pairs of nodes of the same cell, each once, the lower first, sorted.
 
     Args:
         cells: (m, k) corners of triangles or tetrahedra.
@@ -24,7 +24,9 @@ def edges_of(cells: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 def bending_pairs(edges: NDArray[np.int32], node_count: int) -> NDArray[np.int32]:
-    """Pairs of nodes with a common neighbour that are not neighbours, for bending springs as in Bullet.
+    """Pairs of nodes with a common neighbour that are not neighbours themselves, for springs against bending.
+
+    Bullet has the same springs.
 
     Args:
         edges: (e, 2) pairs of neighbours.

@@ -10,7 +10,7 @@ from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 
 @func
 def turned_about_z(rotation: Quaternion, angle: real) -> Quaternion:
-    """A rotation after a turn about its own z axis."""
+    """A rotation followed by a rotation about its own z axis by `angle` [rad]."""
     s = wp.sin(0.5 * angle)
     c = wp.cos(0.5 * angle)
     return Quaternion(
@@ -33,8 +33,8 @@ def z_axis(rotation: Quaternion) -> Vector3:
 
 @func
 def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
-    """Find the frames of all joints of a chain."""
-    # What the next joint most often hangs on stays at hand.
+    """Forward kinematics: compute the frames of all joints of a chain."""
+    # The frame of the last joint stays in local variables: most often it is the parent of the next joint.
     last_position = Vector3(0.0, 0.0, 0.0)
     last_rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
     for joint in range(sizes.joints):
@@ -72,7 +72,7 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
 
 @func
 def end_position(chain: Chain, search: Search, end: Int32) -> Vector3:
-    """Where an end is."""
+    """Position of an end in the frame of the base [m]."""
     joint = chain.end_joint[end]
     position = chain.end_offset[end]
     if joint >= 0:
@@ -82,7 +82,7 @@ def end_position(chain: Chain, search: Search, end: Int32) -> Vector3:
 
 @func
 def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
-    """The turn that takes one rotation to another: axis times angle, at most π."""
+    """The rotation vector from one rotation to another: axis times angle, at most π."""
     turn = target * wp.quat_inverse(start)
     axis = Vector3(turn[0], turn[1], turn[2])
     cosine = turn[3]
@@ -106,7 +106,7 @@ class Errors:
 
 @func
 def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Errors:
-    """Fill `block_error` with the ways from the ends to their targets; returns how long these are."""
+    """Fill `block_error` with the vectors from the ends to their targets; returns their lengths."""
     distance = real(0.0)
     angle = real(0.0)
     squares = real(0.0)
@@ -142,7 +142,7 @@ def write_column(search: Search, entry: Int32, oriented: Int32, linear: Vector3,
 
 @func
 def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, oriented: Int32):
-    """Find how the joints, in their present frames, move the ends."""
+    """Compute the Jacobian of the ends from the current joint frames."""
     stride = 1 + oriented
     blocks = stride * sizes.ends
     zero = Vector3(0.0, 0.0, 0.0)
@@ -182,7 +182,7 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
 
 @func
 def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
-    """The quaternion at `q` after turning by the rotation vector `rate`, in its own axes."""
+    """The quaternion at `q` after a rotation by the rotation vector `rate`, in its own axes."""
     angle = wp.length(rate)
     scale = real(0.5)
     if angle > 1.0e-9:
@@ -194,7 +194,7 @@ def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
 
 @func
 def advance(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, result: Reals):
-    """Move every joint by `dof_step`."""
+    """Add the steps of all dofs to the positions `start` and write the positions to `result`."""
     for dof in range(sizes.dofs):
         coordinate = chain.dof_coordinate[dof]
         if coordinate >= 0:

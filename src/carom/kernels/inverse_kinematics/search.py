@@ -1,9 +1,9 @@
 """The search for joint positions at which the ends of a chain reach their targets.
 
-It follows PyBullet's iteration first, so that where that arrives the result is the same. Where it does
-not arrive, where the angles are still off or a limit is violated, it may go on from there by the method of
-Levenberg and Marquardt within the limits, which converges quadratically; stuck in a local minimum it
-starts again from poses around the present one, ever farther away.
+PyBullet's iteration comes first, so that the result is the same if it converges. If it does not converge, or
+leaves errors of angles or violated limits, the search may continue from there with the Levenberg-Marquardt
+method within the limits, which converges quadratically. In a local minimum it restarts from random poses
+around the initial one, at increasing distances.
 """
 
 import warp as wp
@@ -24,24 +24,25 @@ from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel,
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
 from carom.layouts.codes import SPHERICAL
 
-# A step of this size changes nothing any more.
+# Iteration ends when the largest change of a joint is smaller than this.
 _NO_STEP = real(1e-14)
 _LEAST_THRESHOLD = real(1e-9)
-# Damping by the sum of squared errors, and what remains of it at the target.
+# Damping relative to the sum of squared errors, and the damping that remains at the target.
 _DAMPING_BY_ERROR = real(0.5)
 _LEAST_DAMPING = real(1e-8)
 _TRIES = wp.constant(6)
-# So many steps of so little progress mean a local minimum.
+# A local minimum is assumed after this many steps (_SLOW_STEPS), each with at least this share
+# (_LITTLE_PROGRESS) of the squared errors of the step before.
 _LITTLE_PROGRESS = real(0.999)
 _SLOW_STEPS = wp.constant(3)
-# Tolerance [m], at least, where there is `patience`: called in each step, the search comes nearer each time.
+# Least tolerance [m] with `patience`: a search that is repeated in each time step gets nearer each time.
 _NEAR = real(0.02)
-# Minimum number of poses to try with limits: often only another pose of the arm is within them.
+# Minimum number of poses to try with limits: often only a very different pose of the arm is within them.
 _WITHIN_LIMITS = wp.constant(300)
-# Hysteresis: another pose that does not arrive either must have at most this share of the squared errors,
-# lest an arm that is asked in each step jumps for little.
+# Hysteresis: a restart that does not reach the target either is taken only if its squared errors are at most
+# this share of the best, so that repeated searches do not make an arm jump for a small gain.
 _WORTH_A_JUMP = real(0.8)
-# Share of the joints' ranges within which the first new start is drawn.
+# Share of the joints' ranges within which the first restart is drawn.
 _FIRST_SPREAD = real(0.05)
 
 
@@ -55,7 +56,7 @@ def follow(
     iterations: Int32,
     threshold: real,
 ):
-    """PyBullet's iteration: the last step is that after the one that came close enough."""
+    """PyBullet's iteration. It measures errors before each step, so it does one more step at the target."""
     blocks = (1 + oriented) * sizes.ends
     iteration = Int32(0)
     while iteration < iterations:
@@ -77,7 +78,7 @@ def follow(
 
 @func
 def keep_limits(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals) -> Int32:
-    """Move joints into their limits; returns whether any was outside."""
+    """Clamp joint positions to their limits; returns 1 if any was outside."""
     changed = Int32(0)
     for dof in range(sizes.dofs):
         coordinate = chain.dof_coordinate[dof]
@@ -100,19 +101,19 @@ def descend(
     threshold: real,
     errors: Errors,
 ):
-    """Walk down from `coordinate_now` to where the errors are least, or below the threshold.
+    """Minimise the errors from `coordinate_now` on, until they are below the threshold or progress is slow.
 
     Args:
-        sizes: The numbers of links, joints and so on.
-        chain: The chain; its joints are placed.
-        search: The question; its errors are measured.
-        oriented: 1 if the ends are to be turned as well.
+        sizes: The numbers of joints, ends and so on.
+        chain: The chain.
+        search: The targets and options, with joint frames and errors at `coordinate_now`.
+        oriented: 1 if the ends have target orientations as well.
         budget: Maximum number of poses to try.
-        threshold: Distance and angle that are close enough.
-        errors: Those at `coordinate_now`.
+        threshold: Tolerance of distances [m] and angles [rad].
+        errors: The errors at `coordinate_now`.
 
     Returns:
-        The errors at the end, and how many poses were tried.
+        The errors at the end, and the number of poses tried.
     """
     blocks = (1 + oriented) * sizes.ends
     tried = Int32(0)
@@ -141,7 +142,7 @@ def descend(
                 copy(sizes.coordinates, search.coordinate_trial, search.coordinate_now)
             else:
                 growth *= 8.0
-                # The errors of the next try are those of the pose it starts from.
+                # The next attempt starts from this pose again and needs its errors.
                 place(sizes, chain, search, search.coordinate_now)
                 measure_errors(sizes, chain, search, oriented)
         if better == 0:
@@ -151,7 +152,7 @@ def descend(
 
 @func
 def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed: Int32):
-    """A new start in `coordinate_now`, within a share of the joints' ranges around the first one."""
+    """Draw a new start, `coordinate_now`, within a share of the joints' ranges around `coordinate_start`."""
     copy(sizes.coordinates, search.coordinate_start, search.coordinate_now)
     random = wp.rand_init(seed)
     for column in range(sizes.columns):
@@ -180,7 +181,7 @@ def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed:
 
 @func
 def take_targets(sizes: ChainSizes, search: Search):
-    """See the given targets from the base."""
+    """Convert the given targets to the frame of the base."""
     origin = Vector3(search.base_pose[0], search.base_pose[1], search.base_pose[2])
     base = Quaternion(search.base_pose[3], search.base_pose[4], search.base_pose[5], search.base_pose[6])
     for end in range(sizes.ends):
@@ -201,19 +202,19 @@ def inverse_kinematics_kernel(
     threshold: real,
     patience: real,
 ):
-    """Leave in `coordinate_best` the joint positions found.
+    """Search for joint positions and write them to `coordinate_best`.
 
     Args:
-        sizes: The numbers of links, joints and so on.
+        sizes: The numbers of joints, ends and so on.
         chain: The chain.
-        search: The question.
-        oriented: 1 if the ends are to be turned as well.
-        step_kind: What follows PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
+        search: The targets and options.
+        oriented: 1 if the ends have target orientations as well.
+        step_kind: Method of PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
         bounded: 1 if there are limits.
-        iterations: Most steps of PyBullet's iteration.
-        further: How many poses may be tried after that; with limits `_WITHIN_LIMITS` at least.
-        threshold: Distance [m] and angle [rad] that are close enough.
-        patience: PyBullet's result is taken, arrived or not, if it leaves at most this share of the distance.
+        iterations: Maximum number of steps of PyBullet's iteration.
+        further: Number of poses that may be tried after that; with limits at least `_WITHIN_LIMITS`.
+        threshold: Tolerance of distances [m] and angles [rad].
+        patience: PyBullet's result is taken, converged or not, if at most this share of the distance is left.
     """
     take_targets(sizes, search)
     for column in range(sizes.columns):
@@ -242,7 +243,8 @@ def inverse_kinematics_kernel(
     if errors.distance <= bearable and outside == 0:
         return
 
-    # PyBullet's iteration ends by distances alone. Where it has ended, only smaller angles count as better.
+    # PyBullet's iteration checks distances only. If they are within tolerance (`content`), its result is
+    # replaced only by one whose angles are within tolerance as well.
     content = errors.distance <= goal and outside == 0
     best = errors.squares
     if step_kind == DAMPED:

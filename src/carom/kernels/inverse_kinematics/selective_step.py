@@ -1,8 +1,8 @@
-"""Selectively damped least squares: a step that damps each direction of the task by itself.
+"""Selectively damped least squares: each singular direction of the Jacobian has its own damping.
 
-After Buss and Kim, "Selectively damped least squares for inverse kinematics" (2005): the Jacobian is
-taken apart into singular directions, and the part of the step that belongs to one is bounded by how far
-the ends move for it compared with how far the single joints move them.
+After Buss and Kim, "Selectively damped least squares for inverse kinematics" (2005): by the singular value
+decomposition of the Jacobian, a step has one part for each singular vector. The bound of a part depends on
+the ratio of the motion of the ends to the sum of the motions that the single joints cause.
 """
 
 import warp as wp
@@ -17,7 +17,7 @@ _NEGLIGIBLE = real(1e-20)
 
 @func
 def diagonalise_rows(search: Search, rows: Int32):
-    """Put the eigenvalues of `spectrum_matrix` on its diagonal, and the eigenvectors into columns."""
+    """Diagonalise `spectrum_matrix` by Jacobi rotations; eigenvectors are columns of `spectrum_vectors`."""
     a = search.spectrum_matrix
     sweep = Int32(0)
     while sweep < _MOST_SWEEPS:
@@ -38,7 +38,7 @@ def diagonalise_rows(search: Search, rows: Int32):
 
 @func
 def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
-    """The Jacobi rotation that clears the entries (p, q) and (q, p)."""
+    """Apply the Jacobi rotation that makes the entries (p, q) and (q, p) zero."""
     a = search.spectrum_matrix
     v = search.spectrum_vectors
     entry = a[p * rows + q]
@@ -68,7 +68,7 @@ def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
 
 @func
 def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
-    """Fill `dof_step`; returns its largest part."""
+    """Selectively damped step of all dofs; returns its largest component."""
     rows = 3 * blocks
     a = search.spectrum_matrix
     v = search.spectrum_vectors
@@ -98,7 +98,7 @@ def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int3
 
 @func
 def direction_block(search: Search, blocks: Int32, block: Int32, direction: Int32) -> Vector3:
-    """Three entries of an eigenvector."""
+    """The three entries of an eigenvector that belong to a block of the errors."""
     rows = 3 * blocks
     first = 3 * block * rows + direction
     v = search.spectrum_vectors
@@ -107,7 +107,7 @@ def direction_block(search: Search, blocks: Int32, block: Int32, direction: Int3
 
 @func
 def add_direction(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32, direction: Int32):
-    """Add the part of a step that belongs to one singular direction."""
+    """Add the part of the step along one singular vector."""
     singular = wp.sqrt(search.spectrum_matrix[direction * 3 * blocks + direction])
     along = real(0.0)
     end_motion = real(0.0)
@@ -135,7 +135,7 @@ def add_direction(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32
 
 @func
 def direction_share(search: Search, blocks: Int32, column: Int32, direction: Int32) -> real:
-    """Singular value times the entry of a joint in the singular vector of the joints."""
+    """Singular value times the entry of a column in the right singular vector."""
     total = real(0.0)
     for block in range(blocks):
         part = direction_block(search, blocks, block, direction)

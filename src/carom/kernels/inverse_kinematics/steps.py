@@ -1,7 +1,8 @@
-"""Steps of the joints towards targets that are out of reach of a linear step, or near singular poses.
+"""Damped steps of the joints towards targets that may be far away, or near singular poses.
 
-A step solves (J W Jᵀ + μ) y = e and is W Jᵀ y: the least one, as the weights W measure
-it, that takes the ends some way towards their targets, and the further the smaller the damping μ.
+A step is W Jᵀ y, where y solves (J W Jᵀ + μ) y = e, with Jacobian J, errors e, weights W and damping μ. It is
+the smallest step, in the norm of the weights, that moves the ends part of the way to their targets; the
+smaller the damping, the farther.
 """
 
 import math
@@ -13,8 +14,7 @@ from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, real
 
 # No joint turns by more than this in one step.
 MAX_STEP = real(math.pi / 4.0)
-# Gains of the pull towards rest poses and of the push back into the limits, and the damping that goes
-# with them: PyBullet's.
+# PyBullet's values: gains towards rest poses and back into the limits, and the damping of null-space steps.
 _REST_GAIN = real(0.001)
 _LIMIT_GAIN = real(10.0)
 _NULL_SPACE_DAMPING = real(0.36)
@@ -22,7 +22,7 @@ _NULL_SPACE_DAMPING = real(0.36)
 
 @func
 def jacobian_times(search: Search, blocks: Int32, column: Int32, factor: real):
-    """Subtract from `block_solution` what a freedom does to the ends."""
+    """Subtract from `block_solution` a column of the Jacobian times a factor."""
     for block in range(blocks):
         search.block_solution[block] -= search.entry_jacobian[column * blocks + block] * factor
 
@@ -30,7 +30,7 @@ def jacobian_times(search: Search, blocks: Int32, column: Int32, factor: real):
 @func
 def response(search: Search, blocks: Int32, column: Int32) -> real:
     """One entry of the transposed Jacobian times `block_solution`."""
-    # Most questions are about one end.
+    # Most searches are for the position of one end.
     if blocks == 1:
         return wp.dot(search.entry_jacobian[column], search.block_solution[0])
     entry = column * blocks
@@ -51,7 +51,7 @@ def start_from_errors(search: Search, blocks: Int32):
 
 @func
 def weighted_product(sizes: ChainSizes, search: Search, blocks: Int32, i: Int32, k: Int32) -> Matrix3:
-    """The block (i, k) of J W Jᵀ without the columns that are held."""
+    """The block (i, k) of J W Jᵀ, without the columns that are held."""
     total = Matrix3()
     for column in range(sizes.columns):
         if search.column[column].held == 0:
@@ -96,7 +96,7 @@ def solve_for_pairs(sizes: ChainSizes, search: Search, damping: real):
 
 @func
 def solve_blocks(sizes: ChainSizes, search: Search, blocks: Int32, damping: real):
-    """Replace `block_solution` by (J W Jᵀ + damping)⁻¹ times it, leaving out the columns that are held."""
+    """Multiply `block_solution` by (J W Jᵀ + damping)⁻¹, without the columns of J that are held."""
     if blocks == 1:
         solve_for_points(sizes, search, damping)
         return
@@ -105,7 +105,7 @@ def solve_blocks(sizes: ChainSizes, search: Search, blocks: Int32, damping: real
         return
     a = search.square_matrix
     x = search.block_solution
-    # LDLᵀ by blocks; the diagonal holds the inverse pivots.
+    # Block LDLᵀ factorisation; the diagonal holds the inverse pivots.
     for i in range(blocks):
         pivot = weighted_product(sizes, search, blocks, i, i) + wp.diag(Vector3(damping, damping, damping))
         for k in range(i):
@@ -144,7 +144,7 @@ def limit_step(sizes: ChainSizes, search: Search) -> real:
 
 @func
 def damped_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
-    """Damped least squares as in PyBullet, a damping for each joint; returns the step's largest part."""
+    """Damped least squares as in PyBullet, with a damping for each joint; returns the largest component."""
     start_from_errors(search, blocks)
     solve_blocks(sizes, search, blocks, real(1.0))
     for column in range(sizes.columns):
@@ -160,7 +160,7 @@ def null_space_step(
 ) -> real:
     """Null-space step as in PyBullet: towards rest poses, and back into limits, without moving the ends.
 
-    Returns its largest part.
+    Returns the step's largest component.
     """
     for dof in range(sizes.dofs):
         pull = real(0.0)
@@ -189,9 +189,9 @@ def null_space_step(
 def bounded_step(
     sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, blocks: Int32, damping: real
 ):
-    """A step that keeps within the limits.
+    """A step that stays within the joint limits.
 
-    Joints that it would take beyond a limit are held there, and the others do their share.
+    Joints that it would move beyond a limit are held there, and the step is computed again for the others.
     """
     for column in range(sizes.columns):
         search.column[column].held = 0

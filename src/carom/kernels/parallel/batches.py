@@ -1,4 +1,4 @@
-"""A whole step of trees that nothing ties together, over batches of them and worlds."""
+"""A whole step of trees that cannot interact, parallel over batches of trees and worlds."""
 
 import warp as wp
 
@@ -13,7 +13,7 @@ from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT
 
 @func
 def scratch_of_batch(model: Model, scratch: Scratch, root: Int32) -> Scratch:
-    """The scratch arrays with the rows of a batch in place of all rows."""
+    """The scratch arrays, with rows restricted to those of a batch."""
     first = MAX_ROWS_PER_CONSTRAINT * model.tree[root].first_constraint
     own = Scratch()
     own = scratch

@@ -20,9 +20,9 @@ def island_contacts_kernel(
     pair_rows: PairRows,
     work: IslandWork,
 ):
-    """Write the contacts of each island for which that has still to be done.
+    """Write the contacts of each island whose contacts are not written yet.
 
-    One whose rows do not fit is given up, as is the step of its world.
+    An island whose rows do not fit is given up, and with it the step of its world.
     """
     root, world = wp.tid()
     if is_called_off(state, world):

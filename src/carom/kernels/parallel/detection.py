@@ -1,7 +1,7 @@
 """Collision detection in finer launches than `collide`, for devices with thousands of threads.
 
-Shapes are placed, and the candidates of pairs are found, side by side. Neighbouring threads have the same
-shape, or the pair of the same number, in neighbouring worlds.
+Shapes are placed in parallel, and so are the contact candidates of pairs found. Neighbouring threads have the
+same shape, or the pair of the same number, in neighbouring worlds.
 """
 
 import warp as wp
@@ -44,7 +44,7 @@ def world_pairs_kernel(
     pairs: Pairs,
     pair_work: PairWork,
 ):
-    """Pairs of shapes whose bounds meet, in each world; the contacts there are, are put aside."""
+    """Find the pairs of shapes whose bounds meet, in each world; keep a copy of the last contacts."""
     world = wp.tid()
     if state.status_entry[world, STATUS] != WELL:
         return
@@ -58,7 +58,7 @@ def world_pairs_kernel(
 
 @func
 def first_after(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index4, equal: Int32) -> Int32:
-    """As `manifold.skip_contacts`, by halving what is left."""
+    """The same as `manifold.skip_contacts`, by binary search."""
     low = first + 0
     high = end + 0
     while low < high:
@@ -74,7 +74,7 @@ def first_after(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Inde
 def pair_candidates_kernel(
     shapes: Shapes, state: State, contacts: Contacts, pairs: Pairs, pair_work: PairWork
 ):
-    """Candidates of each pair; a worker looks at one pair after the other."""
+    """Find the contact candidates of each pair; a worker handles one pair after the other."""
     worker = wp.tid()
     own = pairs_of_worker(pairs, pair_work, worker)
     worlds = pair_work.pair_found.shape[0]
@@ -101,7 +101,7 @@ def pair_candidates_kernel(
 def world_contacts_kernel(
     shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, pair_work: PairWork
 ):
-    """Contacts of the candidates of all pairs, in each world; see `collide.make_contacts`."""
+    """Make contacts of the candidates of all pairs, in each world; see `collide.make_contacts`."""
     world = wp.tid()
     if state.status_entry[world, STATUS] != WELL:
         return

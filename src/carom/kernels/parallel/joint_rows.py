@@ -1,4 +1,4 @@
-"""The rows of motors, limits and user constraints, and what comes of all rows, over islands and worlds."""
+"""Rows of motors, limits and user constraints, and the results of all rows, over islands and worlds."""
 
 import warp as wp
 
@@ -36,7 +36,7 @@ def island_rows_kernel(
     pair_rows: PairRows,
     work: IslandWork,
 ):
-    """Begin the search for the impulses of each island."""
+    """Begin to solve each island: write its rows of motors, limits and user constraints."""
     root, world = wp.tid()
     if is_called_off(state, world) or state.tree_island[world, root] != root:
         return
@@ -68,7 +68,7 @@ def island_impulses_kernel(
     pair_rows: PairRows,
     work: IslandWork,
 ):
-    """Report how the search went in each island, and the impulses found."""
+    """Store the impulses of each island, and its numbers of rows and sweeps and its residual."""
     root, world = wp.tid()
     if is_called_off(state, world):
         return

@@ -1,4 +1,4 @@
-"""Laying out the workspace of a world's islands, one after the other."""
+"""Dividing the workspace of a world among its islands."""
 
 import warp as wp
 
@@ -59,7 +59,7 @@ def room_for_contacts(
 ) -> Window:
     """Maximum room for the contacts of an island.
 
-    The rows of articulated manifold block are written one after the other in the same place.
+    All articulated manifold blocks write their rows to the same place, one block after the other.
     """
     room = Window()
     temporary = Int32(0)
@@ -100,7 +100,7 @@ def lay_out_islands(
     work: IslandWork,
     world: Int32,
 ):
-    """Give each island a window of its own, by the order of their roots."""
+    """Give each island a window of its own, in the order of their roots."""
     free = Window()
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:

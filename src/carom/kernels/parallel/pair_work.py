@@ -1,4 +1,4 @@
-"""What pairs of shapes need to be looked at side by side."""
+"""Workspace for the narrow phase of several pairs of shapes in parallel."""
 
 import warp as wp
 
@@ -6,7 +6,7 @@ from carom.kernels.structs import Pairs, PairWork
 from carom.kernels.types import Index4Rows, Int32, Vector3Rows, Vector4Rows, Vector8Rows, func
 from carom.layouts.parallel import MOST_CANDIDATES
 
-# One row in place of every world's.
+# C++ for a view of an array in which all worlds share the row of a worker: the stride over worlds is zero.
 _ROW = """
     auto own = pool;
     own.data = &wp::index(pool, worker, 0);
@@ -17,31 +17,31 @@ _ROW = """
 
 @wp.func_native(_ROW)
 def own_indices(pool: Index4Rows, worker: Int32) -> Index4Rows:
-    """The row of a worker, shown to every world."""
+    """The row of a worker, as the row of every world."""
     ...
 
 
 @wp.func_native(_ROW)
 def own_vectors3(pool: Vector3Rows, worker: Int32) -> Vector3Rows:
-    """The row of a worker, shown to every world."""
+    """The row of a worker, as the row of every world."""
     ...
 
 
 @wp.func_native(_ROW)
 def own_vectors4(pool: Vector4Rows, worker: Int32) -> Vector4Rows:
-    """The row of a worker, shown to every world."""
+    """The row of a worker, as the row of every world."""
     ...
 
 
 @wp.func_native(_ROW)
 def own_vectors8(pool: Vector8Rows, worker: Int32) -> Vector8Rows:
-    """The row of a worker, shown to every world."""
+    """The row of a worker, as the row of every world."""
     ...
 
 
 @func
 def pairs_of_worker(pairs: Pairs, work: PairWork, worker: Int32) -> Pairs:
-    """The arrays of collision detection with a worker's room for the search in a pair."""
+    """The arrays of collision detection, with a worker's own workspace for a pair."""
     own = Pairs()
     own = pairs
     own.candidate_terms = own_vectors8(work.worker_candidates, worker)
@@ -58,7 +58,7 @@ def pairs_of_worker(pairs: Pairs, work: PairWork, worker: Int32) -> Pairs:
 
 @func
 def pairs_with_candidates(pairs: Pairs, work: PairWork, i: Int32) -> Pairs:
-    """The arrays of collision detection with the candidates that have been found for a pair."""
+    """The arrays of collision detection, with the candidates of a pair."""
     own = Pairs()
     own = pairs
     own.candidate_terms = work.candidate_terms[:, MOST_CANDIDATES * i : MOST_CANDIDATES * (i + 1)]

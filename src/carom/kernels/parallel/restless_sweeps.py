@@ -1,4 +1,4 @@
-"""The sweeps over the rows of islands that move, over islands and worlds."""
+"""The sweeps over the rows of moving islands, parallel over islands and worlds."""
 
 import warp as wp
 
@@ -12,7 +12,7 @@ from carom.kernels.types import kernel
 def restless_sweeps_kernel(
     settings: Settings, state: State, scratch: Scratch, pair_rows: PairRows, work: IslandWork
 ):
-    """Solve each island that moves, or could not be solved as one at rest."""
+    """Solve each island that moves, or that did not converge as one at rest."""
     root, world = wp.tid()
     if is_called_off(state, world):
         return

@@ -31,7 +31,7 @@ def finish_kernel(state: State, contacts: Contacts, pairs: Pairs, run: RunWork):
     world = wp.tid()
     if went_wrong(state, world):
         restore_contacts(contacts, pairs, world)
-        # Whichever thread is the last, it is a 1.
+        # Several threads may write this; all write 1.
         run.trouble[0] = Int32(1)
     elif state.status_entry[world, STATUS] == WELL:
         state.status_entry[world, STEPS_DONE] += 1

@@ -1,4 +1,4 @@
-"""The sweeps over the rows of islands, over islands and worlds."""
+"""The sweeps over the rows of islands, parallel over islands and worlds."""
 
 import warp as wp
 
@@ -26,7 +26,7 @@ def sweep(
     visits: Int32,
     resting: Int32,
 ) -> real:
-    """Relax the rows of an island until they hardly change; returns what is left: see `sweep_island`."""
+    """Relax the rows of an island until they hardly change; returns the residual, see `sweep_island`."""
     residual, sweeps = sweep_island(
         settings,
         scratch_of_island(scratch, work, world, root),
@@ -47,7 +47,7 @@ def sweep(
 def resting_sweeps_kernel(
     settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, work: IslandWork
 ):
-    """Solve each island at rest; if one cannot be solved so, its contacts are written again, from nothing."""
+    """Solve each island at rest; if it does not converge, its contacts are rewritten with zero impulses."""
     root, world = wp.tid()
     if is_called_off(state, world):
         return
@@ -57,7 +57,7 @@ def resting_sweeps_kernel(
         or work.tree_progress[world, root].resting == 0
     ):
         return
-    # It has no motors, limits or user constraints to visit.
+    # An island at rest has no motors, limits or user constraints to visit.
     residual = sweep(settings, scratch, pair_rows, work, world, root, 0, 1)
     work.tree_progress[world, root].outcome = Int32(SOLVED)
     if residual > settings.residual_threshold:

@@ -1,4 +1,4 @@
-"""Stages of a step over trees and worlds, and those over worlds alone between them."""
+"""Stages of a step that are parallel over trees and worlds, and those over worlds alone between them."""
 
 import warp as wp
 
@@ -32,7 +32,7 @@ from carom.layouts.status import STATUS, WELL
 def begin_tree(
     model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, tree: Int32, moves: Int32
 ):
-    """Keep the start of the step; see `step_ends.begin_step_kernel`."""
+    """Save the state at the start of the step; see `step_ends.begin_step_kernel`."""
     if tree == 0:
         pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
     keep_start(model, state, scratch, world, tree)
@@ -42,10 +42,10 @@ def begin_tree(
 
 @kernel
 def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs, moves: Int32):
-    """Begin the step of each tree, and of each world with its first.
+    """Begin the step of each tree; the thread of a world's first tree begins the step of the world.
 
-    `moves` is 0 where nothing but contacts are to be found. What `parallel.runs.ask_kernel` called off, and
-    what went wrong in a step before, has no part in it.
+    `moves` is 0 if only contacts are to be found. Worlds that `parallel.runs.ask_kernel` left out, and worlds
+    with an error in an earlier step, are skipped.
     """
     tree, world = wp.tid()
     if not is_called_off(state, world):
@@ -71,7 +71,7 @@ def world_islands_kernel(
     pair_rows: PairRows,
     work: IslandWork,
 ):
-    """Group the trees of each world into islands, and give each of these its part of the workspace."""
+    """Group the trees of each world into islands, and give each island its part of the workspace."""
     world = wp.tid()
     if is_called_off(state, world):
         return
@@ -83,7 +83,7 @@ def world_islands_kernel(
 def tree_free_motion_kernel(
     settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, work: IslandWork
 ):
-    """Velocities of each tree after a substep if there were no constraints."""
+    """Compute the velocities that each tree would have after a substep without constraints."""
     tree, world = wp.tid()
     if is_called_off(state, world):
         return
@@ -104,7 +104,7 @@ def tree_motion_kernel(
     users: UserConstraints,
     work: IslandWork,
 ):
-    """New velocities and positions of each tree."""
+    """Compute the new velocities and positions of each tree."""
     tree, world = wp.tid()
     if is_called_off(state, world):
         return
@@ -116,7 +116,7 @@ def tree_motion_kernel(
 
 @func
 def note_first_fault(settings: Settings, state: State, faults: IntRows, world: Int32):
-    """Let the world know of the first of its trees that has a fault, if it is well."""
+    """Set the status of a world without errors to the fault of its first faulty tree."""
     for tree in range(settings.tree_count):
         if state.status_entry[world, STATUS] == WELL:
             state.status_entry[world, STATUS] = faults[world, tree]
@@ -124,7 +124,7 @@ def note_first_fault(settings: Settings, state: State, faults: IntRows, world: I
 
 @kernel
 def faults_kernel(settings: Settings, state: State, work: IslandWork):
-    """After a substep: whether a world has to go back to where the step began, and because of which tree."""
+    """After a substep: find the worlds that have to return to the start of the step, with the faulty tree."""
     world = wp.tid()
     note_first_fault(settings, state, work.tree_free_fault, world)
     note_first_fault(settings, state, work.tree_motion_fault, world)
@@ -132,7 +132,7 @@ def faults_kernel(settings: Settings, state: State, work: IslandWork):
 
 @kernel
 def end_kernel(model: Model, state: State, scratch: Scratch, moves: Int32):
-    """End the step of each tree, or go back to where it began; `moves` is as in `begin_kernel`."""
+    """End the step of each tree, or return to its start; `moves` is as in `begin_kernel`."""
     tree, world = wp.tid()
     if went_wrong(state, world):
         abandon_tree(model, state, scratch, world, tree)

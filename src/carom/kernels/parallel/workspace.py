@@ -1,7 +1,8 @@
 """Workspace for solving the islands of a world in parallel: each has its own part.
 
-Where islands are solved one after the other, each writes its rows from the first on. Side by side they get
-windows: the arrays of `Scratch` and `PairRows` that begin where those of the island before end.
+If islands are solved one after the other, each writes its rows from the start of the arrays. In parallel each
+has a *window*: parts of the arrays of `Scratch` and `PairRows` that begin where those of the previous island
+end.
 """
 
 import warp as wp
@@ -12,11 +13,11 @@ from carom.kernels.warp_types import warp_type
 from carom.layouts import parallel
 from carom.layouts.status import LEFT_OUT, STATUS, WELL
 
-# What a window has parts of: rows over one tree, rows to visit, units, manifold blocks, rows over two trees,
-# their blocks, the blocks of articulated manifold blocks, and contact terms.
+# Parts of a window: rows over one tree, rows to visit, units, manifold blocks, rows over two trees, blocks of
+# their Jacobians, matrix blocks of articulated manifold blocks, and contact terms.
 ROW, VISIT, UNIT, MANIFOLD_BLOCK, PAIR_ROW, JACOBIAN, MATRICES, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
 
-# How far an island is: its contacts have still to be written; all its rows are; they did not fit.
+# Stage of an island: its contacts are not written yet; all its rows are written; its rows did not fit.
 UNWRITTEN, WRITTEN, GIVEN_UP = 0, 1, 2
 
 Window = warp_type(parallel.Window)
@@ -24,13 +25,13 @@ Window = warp_type(parallel.Window)
 
 @func
 def is_called_off(state: State, world: Int32) -> bool:
-    """Whether a world has no part in the step, or only waits for its end, to go back to where it began."""
+    """Whether a world is left out of the step, or had an error and will return to the start of the step."""
     return state.status_entry[world, STATUS] != WELL
 
 
 @func
 def went_wrong(state: State, world: Int32) -> bool:
-    """Whether a world is to go back to where the step began: something was not finite, or did not fit."""
+    """Whether a world has to return to the start of the step: values were not finite, or arrays too short."""
     status = state.status_entry[world, STATUS]
     return status != WELL and status != LEFT_OUT
 
@@ -43,7 +44,7 @@ def window_end(work: IslandWork, world: Int32, root: Int32, part: Int32, capacit
 
 @func
 def scratch_of_island(scratch: Scratch, work: IslandWork, world: Int32, root: Int32) -> Scratch:
-    """The scratch arrays with the rows of an island in place of all rows."""
+    """The scratch arrays, with rows restricted to those of an island."""
     first = work.tree_window[world, root][ROW]
     own = Scratch()
     own = scratch
@@ -53,7 +54,7 @@ def scratch_of_island(scratch: Scratch, work: IslandWork, world: Int32, root: In
 
 @func
 def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, root: Int32) -> PairRows:
-    """The solver's arrays over two trees with an island's window in place of the whole."""
+    """The solver's arrays over two trees, restricted to an island's window."""
     first = work.tree_window[world, root]
     own = PairRows()
     own = pair_rows
@@ -96,7 +97,7 @@ def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, roo
 
 @func
 def state_of_tree(state: State, faults: IntRows, tree: Int32) -> State:
-    """The state with a place of the tree's own for faults; later the first tree that has one can be told."""
+    """The state with a separate entry for a tree's faults, so that the first faulty tree can be reported."""
     own = State()
     own = state
     own.status_entry = faults[:, tree : tree + 1]

@@ -1,4 +1,4 @@
-"""Touches and anchors within a small step: their effect on nodes and links."""
+"""Touches and anchors within a small step: their impulses on nodes and links."""
 
 import warp as wp
 
@@ -10,21 +10,23 @@ from carom.kernels.structs import PairRows, Scratch, SoftModel, SoftWork, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
-# Share of a gap that was there at the start of a small step that is closed within a second; as much as an
-# error reduction of 0.2 in each of 240 steps.
+# Rate at which a position error from before the small step is removed [1/s]: as with an error reduction of
+# 0.2 in each of 240 steps per second.
 _RECOVERY = real(48.0)
-# The same of a node between two shapes. They are held together by what answers pushes only afterwards, so it
-# is the share that is closed within a substep that tells how hard they can press without meeting.
+# The same for a node between two shapes. The motors and contacts that press the shapes together react to
+# pushes only after the substep of the soft bodies. So the share of the error that is removed within a
+# substep determines how hard the shapes can press without meeting.
 _PINCHED_RECOVERY = real(200.0)
-# Product of the normals of two touches from which on they face each other.
+# Two touches face each other if the dot product of their normals is less than this.
 _FACING = real(-0.5)
-# Determinant of what two impulses do, relative to what each does, from which on nothing gives way.
+# Determinant of the inverse masses of two touches, relative to the product of the diagonal, up to which the
+# matrix counts as singular.
 _SINGULAR = real(1.0e-9)
 
 
 @func
 def other_row(row: Int32, axis: Int32) -> Int32:
-    """The row along another axis of a touch; -1 if it has none."""
+    """The row of a touch or anchor along an axis, 0 to 2, given its first row; -1 if it has no rows."""
     if row < 0:
         return row
     return row + axis
@@ -35,9 +37,9 @@ def lacking(
     scratch: Scratch, pair_rows: PairRows, state: State, work: SoftWork, world: Int32, node: Int32,
     touch: Int32, recovery: real, h: real,
 ) -> real:  # fmt: skip
-    """How much farther from a shape a node has to be at the end of a small step [m]; negative: it is clear.
+    """How much too near a shape a node is at the end of a small step [m]; negative: it is clear of it.
 
-    What overlapped at the start of the small step may go on to, but for a share, `recovery` [1/s] times `h`.
+    Of an overlap at the start of the small step only a share has to be removed: `recovery` [1/s] times `h`.
     """
     row = work.touch_row[world, touch]
     normal = work.touch_normal[world, touch]
@@ -62,7 +64,7 @@ def push_touch(
     push: real,
     h: real,
 ):
-    """Push a node off a shape with an impulse [N s], and let friction hold it within Coulomb's cone."""
+    """Push a node off a shape with an impulse [N s], and apply friction within Coulomb's cone."""
     if push > 0.0:
         row = work.touch_row[world, touch]
         normal = work.touch_normal[world, touch]
@@ -86,7 +88,7 @@ def relax_touch(
     touch: Int32,
     h: real,
 ):
-    """Keep a node outside of a shape by the impulse that leaves it lacking nothing."""
+    """Keep a node outside of a shape by the impulse that makes `lacking` zero."""
     mass = soft.node_inverse_mass[node]
     weight = mass + row_mass(pair_rows, world, work.touch_row[world, touch])
     lack = lacking(scratch, pair_rows, state, work, world, node, touch, _RECOVERY, h)
@@ -108,8 +110,8 @@ def relax_pinched(
 ):
     """Keep a node outside of two shapes that face each other.
 
-    Both impulses are found at once. One after the other they would never be larger than what stops the node
-    alone, however hard the shapes are pressed together: a light node could not keep two heavy links apart.
+    Both impulses are solved for together. One after the other, each would only be large enough to stop the
+    node, however hard the shapes are pressed together: a light node could not keep two heavy links apart.
     """
     mass = soft.node_inverse_mass[node]
     weight_a = mass + row_mass(pair_rows, world, work.touch_row[world, a])
@@ -117,7 +119,7 @@ def relax_pinched(
     cross = mass * wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
     determinant = weight_a * weight_b - cross * cross
     if determinant <= _SINGULAR * weight_a * weight_b:
-        # Neither gives way.
+        # Neither shape can be moved.
         relax_touch(scratch, pair_rows, soft, state, work, world, node, a, h)
         relax_touch(scratch, pair_rows, soft, state, work, world, node, b, h)
     else:
@@ -175,7 +177,10 @@ def relax_friction(
 
 @func
 def facing(work: SoftWork, world: Int32, first: Int32, count: Int32) -> Int32:
-    """Which two of up to three touches face each other: the one that is not among them, or -1 for none."""
+    """Find two of up to three touches that face each other; returns the number of the third.
+
+    That is 2 if there are only two touches, and -1 if no two face each other.
+    """
     if count == 2:
         if wp.dot(work.touch_normal[world, first], work.touch_normal[world, first + 1]) < _FACING:
             return 2
@@ -204,7 +209,7 @@ def relax_touches(
     body: Int32,
     h: real,
 ):
-    """Relax all touches of a body, one after the other, but for those of a node between two shapes."""
+    """Relax all touches of a body, one after the other; two that face each other are relaxed together."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
         start = TOUCHES_PER_NODE * node
@@ -230,7 +235,7 @@ def relax_anchors(
     world: Int32,
     h: real,
 ):
-    """Hold nodes at points of links."""
+    """Hold anchored nodes at their points of links."""
     for anchor in range(soft.count_soft[ANCHORS]):
         node = soft.anchor[anchor].node
         row = work.anchor_row[world, anchor]
@@ -263,7 +268,7 @@ def moved_on(
     axes: Matrix3,
     h: real,
 ) -> Vector3:
-    """How far a point of a link moves in a small step; rows push it along the columns of `axes`."""
+    """Displacement of a point of a link in a small step [m]; its rows act along the columns of `axes`."""
     motion = velocity + Vector3(0.0, 0.0, 0.0)
     if row >= 0:
         for axis in range(3):
@@ -281,7 +286,7 @@ def move_touches(
     body: Int32,
     h: real,
 ):
-    """Let the points where nodes touch go along with their links for a small step."""
+    """Move the points of touches with their links for a small step."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
         for touch in range(TOUCHES_PER_NODE * node, TOUCHES_PER_NODE * node + work.node_touches[world, node]):
@@ -297,7 +302,7 @@ def move_touches(
 def move_anchors(
     scratch: Scratch, pair_rows: PairRows, soft: SoftModel, work: SoftWork, world: Int32, h: real
 ):
-    """Let the points that hold nodes go along with their links for a small step."""
+    """Move the points of anchors with their links for a small step."""
     for anchor in range(soft.count_soft[ANCHORS]):
         work.anchor_point[world, anchor] += moved_on(
             scratch, pair_rows, world, work.anchor_row[world, anchor], work.anchor_velocity[world, anchor],

@@ -1,7 +1,7 @@
-"""Internal friction of soft bodies: what springs and tetrahedra do to the velocities of nodes.
+"""Internal damping of soft bodies: springs and tetrahedra change the velocities of nodes.
 
-A force -D v acts for a small step of length h. Scaled by a / (a + h b), where a is the power v D v it takes
-and b the sum of the squared forces by the masses, it never turns motion round, however large D is.
+A force -D v acts for a small step of length h. It is scaled by a / (a + h b), where a is the dissipated power
+v D v, and b the sum of squared forces divided by masses. So it never reverses motion, however large D is.
 """
 
 import warp as wp
@@ -16,7 +16,7 @@ _SHORTEST = real(1.0e-12)
 
 @func
 def damp_springs(soft: SoftModel, state: State, world: Int32, body: Int32, h: real):
-    """Slow the ends of each spring of a body against each other."""
+    """Damp the relative motion of the ends of each spring of a body."""
     first = soft.soft[body].first_spring
     for spring in range(first, first + soft.soft[body].spring_count):
         damping = soft.spring[spring].damping
@@ -36,10 +36,10 @@ def damp_springs(soft: SoftModel, state: State, world: Int32, body: Int32, h: re
 
 @func
 def damp_tetras(soft: SoftModel, state: State, world: Int32, body: Int32, h: real):
-    """Slow the change of shape of each tetrahedron of a body.
+    """Damp the deformation of each tetrahedron of a body.
 
-    The stress is that of a viscous solid: `damping` times what mu and lam make of the rate of the strain
-    (FᵀF - 1) / 2, twice that for shear. Turning as a whole is no strain and is not slowed.
+    The stress is that of a viscous solid, `damping` (2 mu R + lam tr(R) 1), where R is the rate of the Green
+    strain (FᵀF - 1) / 2. Rotation as a whole is no strain and is not damped.
     """
     share = soft.soft[body].damping
     mu = soft.soft[body].mu * share

@@ -1,12 +1,12 @@
 """Elastic forces as displacements, one spring or tetrahedron after the other.
 
-A substep consists of *small steps*. In each, nodes move on freely, and every spring and tetrahedron moves
-its corners by what its force does. As long as a small step is short for it, that is the force where the nodes
-were at its start: symplectic Euler, which keeps energy and is at rest exactly where forces balance. Otherwise
-it is implicit in time: extended position-based dynamics (XPBD; Macklin, Müller, Chentanez, 2016) with one
-sweep for each of many small steps (Macklin et al., "Small Steps in Physics Simulation", 2019). For an energy
-k C² / 2 that is the impulse along grad C of -k C h / (1 + k h² w), w being the inverse mass that C sees. It
-gives way where it cannot follow, and never overshoots.
+A substep consists of *small steps*. In each, nodes first move freely, and then the force of every spring and
+tetrahedron moves its nodes. If the small step is short enough for the stiffness, the force is that at the
+positions at the start of the small step: symplectic Euler, which conserves energy and is at rest exactly
+where forces balance. Otherwise the force is implicit in time: extended position-based dynamics (XPBD;
+Macklin, Müller, Chentanez, 2016) with one sweep for each of many small steps (Macklin et al., "Small Steps in
+Physics Simulation", 2019). For an energy k C² / 2 the impulse along grad C is -k C h / (1 + k h² w), where w
+is the effective inverse mass of C. This never overshoots; elements too stiff for the step act softer.
 """
 
 import warp as wp
@@ -17,16 +17,18 @@ from carom.kernels.types import Index4, Int32, Matrix3, Vector3Rows, func, real
 
 # Shorter springs have no direction [m].
 _SHORTEST = real(1.0e-12)
-# Stiffness by inertia of a tetrahedron, k h² w, from which on its stress is implicit: if it is deformed.
+# Ratio of stiffness to inertia of a tetrahedron, k h² w, above which its stress is implicit. Only deformed
+# ones get there.
 _EXPLICIT = real(0.6)
-# Phase of the fastest vibration around a spring or tetrahedron that a small step can follow [rad]: with a
-# margin to 2, where symplectic Euler ends, for what is deformed and therefore stiffer.
+# Largest phase, in one small step, of the fastest vibration around a spring or tetrahedron at rest for which
+# its force is explicit [rad]. Symplectic Euler is stable up to 2; the margin is for deformed ones, which are
+# stiffer.
 _LONGEST_PHASE = real(1.1)
 
 
 @func
 def relax_springs(soft: SoftModel, state: State, work: SoftWork, world: Int32, body: Int32, h: real):
-    """Move the ends of each spring of a body by what its force does in a small step of `h` [s]."""
+    """Move the ends of each spring of a body by the effect of its force in a small step of `h` [s]."""
     first = soft.soft[body].first_spring
     for spring in range(first, first + soft.soft[body].spring_count):
         a = soft.spring[spring].a
@@ -47,7 +49,7 @@ def relax_springs(soft: SoftModel, state: State, work: SoftWork, world: Int32, b
 
 @func
 def edges(places: Vector3Rows, world: Int32, four: Index4) -> Matrix3:
-    """The edges of a tetrahedron from its first node, as columns, by where nodes are."""
+    """The edges of a tetrahedron from its first node, as columns; or their rates, given velocities."""
     origin = places[world, four[0]]
     p = places[world, four[1]] - origin
     q = places[world, four[2]] - origin
@@ -57,7 +59,7 @@ def edges(places: Vector3Rows, world: Int32, four: Index4) -> Matrix3:
 
 @func
 def cofactors(f: Matrix3) -> Matrix3:
-    """Derivative of the determinant of a matrix by its entries."""
+    """Cofactors of a matrix: the derivative of its determinant with respect to its entries."""
     first = column(f, 0)
     second = column(f, 1)
     third = column(f, 2)
@@ -78,12 +80,12 @@ def relax_tetra(
     bulk_gain: real,
     implicit: bool,
 ) -> bool:
-    """Move the corners of a tetrahedron by what its stress does in a small step.
+    """Move the corners of a tetrahedron by the effect of its stress in a small step.
 
     Args:
         soft: The soft bodies.
-        state: Where their nodes are.
-        places: Where they are taken to be for the stress.
+        state: The positions of their nodes, which are changed.
+        places: Positions of the nodes from which the stress is computed.
         world: The world.
         tetra: The tetrahedron.
         shear_gain: mu, times its volume and the square of the small step.
@@ -91,7 +93,7 @@ def relax_tetra(
         implicit: Whether the stress is that at the end of the small step.
 
     Returns:
-        False if it is too stiff for what is not implicit; nothing has moved then.
+        False if it is too stiff for explicit stress; nothing has moved then.
     """
     four = soft.tetra[tetra].nodes
     inverse = soft.tetra[tetra].inverse
@@ -101,7 +103,7 @@ def relax_tetra(
     squares = wp.ddot(f, f)
     shear = wp.sqrt(squares - wp.log(squares + 1.0))
     shear_scale = (1.0 - 1.0 / (squares + 1.0)) / shear
-    # Gradients by the corners are columns of these; that by the first is what is missing to zero.
+    # The columns are gradients with respect to nodes 1 to 3. All four gradients add up to zero.
     to_edges = wp.transpose(inverse)
     shear_gradient = (f * to_edges) * shear_scale
     bulk_gradient = cofactor * to_edges
@@ -144,19 +146,19 @@ def relax_tetra(
 
 @func
 def relax_tetras(soft: SoftModel, state: State, work: SoftWork, world: Int32, body: Int32, h: real):
-    """Move the corners of each tetrahedron of a body by what its stress does in a small step of `h` [s].
+    """Move the corners of each tetrahedron of a body by the effect of its stress in a small step of `h` [s].
 
-    The energy is the stable Neo-Hookean one of Smith, de Goes and Kim (2018), which Bullet has: with the
-    gradient F of the deformation, J = det F and I = tr FᵀF,
+    The energy is the stable Neo-Hookean one of Smith, de Goes and Kim (2018), as in Bullet: with the
+    deformation gradient F, J = det F and I = tr FᵀF,
 
         mu/2 (I - 3) - mu/2 log(I + 1) + lam/2 (J - 1 - 3/4 mu/lam)².
 
     Its two parts are the squares of sqrt(I - log(I + 1)) and of the rest. At rest they are in balance, so
     they have to be relaxed together, as in Macklin and Müller (2021): two equations for each tetrahedron.
 
-    One sweep over stiff ones comes to rest far from where forces balance. So where a small step is too long
-    for what is around a tetrahedron at rest, its stiffness is what the step can follow; only the deformed
-    are implicit.
+    With implicit stress, one sweep over stiff tetrahedra comes to rest far from where forces balance. So if a
+    small step is too long for the vibrations around a tetrahedron at rest, its stiffness is reduced until the
+    step is short enough; only deformed tetrahedra are implicit.
     """
     first = soft.soft[body].first_tetra
     for tetra in range(first, first + soft.soft[body].tetra_count):

@@ -1,4 +1,4 @@
-"""What links get to know of soft bodies besides their pushes: who wakes up, and what sensors feel."""
+"""Effects of soft bodies on trees besides impulses: waking up, and the readings of force-torque sensors."""
 
 import warp as wp
 
@@ -11,7 +11,7 @@ from carom.layouts.soft import ANCHORS, BODIES, TOUCHES_PER_NODE
 
 @func
 def wake(model: Model, state: State, world: Int32, tree: Int32):
-    """Have a tree that is asleep take part from the next substep on, unless it may not wake up."""
+    """Wake a sleeping tree from the next substep on, unless it may not wake up."""
     if model.tree[tree].can_wake != 0:
         state.tree_wants_sleep[world, tree] = 0
         state.tree_idle_time[world, tree] = 0.0
@@ -30,9 +30,9 @@ def wake_touched(
     tree: Int32,
     dt: real,
 ):
-    """Wake a tree up that a node reaches within a substep at a speed at which the tree would not sleep.
+    """Wake a sleeping tree if a node reaches it within a substep, faster than its sleep threshold.
 
-    Soft bodies at rest let what they touch sleep.
+    Trees that touch soft bodies at rest stay asleep.
     """
     if tree >= 0 and model.tree[tree].dof_count > 0 and is_asleep(state, world, tree):
         velocity = state.node_velocity[world, node]
@@ -44,7 +44,7 @@ def wake_touched(
 
 @func
 def wake_held(model: Model, state: State, soft: SoftModel, world: Int32):
-    """Wake trees up that hold nodes of soft bodies in motion."""
+    """Wake sleeping trees that are anchored to soft bodies in motion."""
     for anchor in range(soft.count_soft[ANCHORS]):
         tree = soft.anchor[anchor].tree
         if model.tree[tree].dof_count > 0 and is_asleep(state, world, tree):
@@ -69,7 +69,7 @@ def report_push(
     point: Vector3,
     force: Vector3,
 ):
-    """Add a force at a point of a link to what the sensors of its tree feel."""
+    """Add a force at a point of a link to the readings of its tree's force-torque sensors."""
     if tree >= 0 and model.tree[tree].sensor_count > 0:
         add_link_force(state, scratch, world, link, point, force)
 

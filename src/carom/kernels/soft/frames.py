@@ -1,4 +1,4 @@
-"""The pose and the velocity of a soft body as a whole, which the tree that stands for it has."""
+"""Pose and velocity of a soft body as a whole: those of the tree that represents it."""
 
 import warp as wp
 
@@ -7,16 +7,16 @@ from carom.kernels.maths.rotation import column
 from carom.kernels.structs import Model, SoftModel, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Transform, Vector3, func, real
 
-# Turns are found by iteration, which starts from the last one: at most so often, until it turns by less.
+# Rotations are found by iteration from the last one: most iterations, and the angle that ends them [rad].
 _MOST_TURNS = 20
 _LEAST_TURN = real(1.0e-10)
-# Keeps what has no extent from being turned, or divided by.
+# Avoids division by zero if all nodes are in one place or on a line.
 _TINY = real(1.0e-12)
 
 
 @func
 def counts(soft: SoftModel, node: Int32) -> real:
-    """1 for a node that moves, 0 for one that is held in the world: that has no mass."""
+    """Weight of a node: 1 if it moves, 0 if it is fixed in the world and has no mass."""
     return wp.where(soft.node_inverse_mass[node] > 0.0, real(1.0), real(0.0))
 
 
@@ -26,7 +26,7 @@ def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
 
     Args:
         start: A rotation near it.
-        matrix: Sum of the products of positions and of the positions at rest.
+        matrix: Sum of the outer products of positions and positions at rest.
     """
     q = wp.normalize(start)
     turning = Int32(0)
@@ -49,7 +49,7 @@ def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
 
 @func
 def report_nodes(state: State, soft: SoftModel, world: Int32, body: Int32):
-    """Report a node whose place or velocity is not finite as the fault of its body."""
+    """Report a body as faulty if the position or velocity of a node is not finite."""
     first = soft.soft[body].first_node
     total = Vector3(0.0, 0.0, 0.0)
     for node in range(first, first + soft.soft[body].node_count):
@@ -59,10 +59,10 @@ def report_nodes(state: State, soft: SoftModel, world: Int32, body: Int32):
 
 @func
 def follow_nodes(model: Model, state: State, soft: SoftModel, world: Int32, body: Int32):
-    """Put the tree that stands for a body where its nodes are, and let it move as they do.
+    """Set the pose and velocity of the tree that represents a body from its nodes.
 
-    Its position is their centre of mass, its orientation the rotation that takes the shape at rest nearest
-    to theirs.
+    The position is the centre of mass of the nodes. The orientation is the rotation that brings the shape at
+    rest nearest to their positions.
     """
     first = soft.soft[body].first_node
     last = first + soft.soft[body].node_count

@@ -1,4 +1,4 @@
-"""The place of a shape's surface that is nearest to a point."""
+"""The point of a shape's surface that is nearest to a point."""
 
 import warp as wp
 
@@ -16,13 +16,13 @@ from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE
 
 _TINY = real(1.0e-12)
-# Two triangles are equally near up to this [m].
+# Largest difference of distances at which two triangles count as equally near [m].
 _SAME = real(1.0e-9)
 
 
 @func
 def away_from(offset: Vector3, otherwise: Vector3) -> Vector3:
-    """Unit vector along an offset; `otherwise` where that has no length."""
+    """Unit vector along an offset; `otherwise` if the offset has no length."""
     length = wp.length(offset)
     if length > _TINY:
         return offset / length
@@ -31,7 +31,7 @@ def away_from(offset: Vector3, otherwise: Vector3) -> Vector3:
 
 @func
 def sign_of(value: real) -> real:
-    """1 or -1."""
+    """-1 for negative values, 1 for all others."""
     return wp.where(value < 0.0, real(-1.0), real(1.0))
 
 
@@ -79,7 +79,7 @@ def on_cylinder(radius: real, half: real, point: Vector3):
 
 @func
 def on_segment(a: Vector3, b: Vector3, point: Vector3) -> Vector3:
-    """The place of a segment nearest to a point."""
+    """The point of a segment nearest to a point."""
     along = b - a
     share = wp.dot(point - a, along) / maximum(wp.dot(along, along), _TINY * _TINY)
     return a + along * minimum(maximum(share, 0.0), 1.0)
@@ -87,9 +87,9 @@ def on_segment(a: Vector3, b: Vector3, point: Vector3) -> Vector3:
 
 @func
 def nearest_beside(a: Vector3, b: Vector3, point: Vector3, normal: Vector3, best: Vector3, least: real):
-    """The nearest place so far of a face, once one edge more has been looked at, and how far away it is.
+    """The nearest point of a face found so far and its distance, updated with the edge from a to b.
 
-    Only edges that the point is beyond count; -1 is how far away it is as long as there was none.
+    Only edges that the point is outside of count. The distance is -1 as long as there was none.
     """
     nearest = best
     distance = least
@@ -104,7 +104,7 @@ def nearest_beside(a: Vector3, b: Vector3, point: Vector3, normal: Vector3, best
 
 @func
 def on_face(shapes: Shapes, face: Int32, point: Vector3, height: real) -> Vector3:
-    """The place of a polyhedron's face nearest to a point `height` above its plane, in the shape frame."""
+    """The point of a polyhedron's face nearest to a point `height` above its plane, in the shape frame."""
     plane = shapes.face_plane[face]
     normal = Vector3(plane[0], plane[1], plane[2])
     best = point - normal * height
@@ -136,7 +136,8 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
             distance = height
             normal = outward
     if distance > 0.0 and distance <= max_distance:
-        # Beside the highest face another one, or an edge, is nearest.
+        # If the point is not right above the face with the largest height, the nearest point may be on an
+        # edge or on another face.
         least = real(1.0e18)
         for face in range(first, last):
             plane = shapes.face_plane[face]
@@ -153,7 +154,7 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
 
 @func
 def on_triangle(corners: Matrix3, point: Vector3, normal: Vector3) -> Vector3:
-    """The place of a triangle, its corners as columns, nearest to a point."""
+    """The point of a triangle, its corners as columns, nearest to a point."""
     best = point - normal * wp.dot(point - column(corners, 0), normal)
     least = real(-1.0)
     for corner in range(3):
@@ -167,7 +168,7 @@ def on_triangle(corners: Matrix3, point: Vector3, normal: Vector3) -> Vector3:
 def on_surface(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
     """Signed distance of a point from a mesh or height field, and the normal there, in the shape frame.
 
-    What is behind the nearest triangle is inside. A distance beyond `max_distance` means nothing.
+    A point behind the nearest triangle is inside. A distance beyond `max_distance` has no meaning.
     """
     around = Vector3(max_distance, max_distance, max_distance)
     region = region_of(shapes, shape, point - around, point + around)
@@ -185,7 +186,8 @@ def on_surface(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real)
         offset = point - on_triangle(corners, point, outward)
         apart = wp.length(offset)
         side = wp.dot(offset, outward)
-        # Of two triangles at whose common edge the point is, the one that it faces tells the side.
+        # If the nearest point is on an edge of two triangles, the one that faces the point more directly
+        # decides the side.
         if apart < least - _SAME or (apart <= least + _SAME and wp.abs(side) > facing):
             least = minimum(apart, least)
             facing = wp.abs(side)
@@ -203,11 +205,11 @@ def nearest_on_shape(
 
     Args:
         shapes: All shapes.
-        pairs: Where they are.
+        pairs: Their poses.
         world: The world.
         shape: The shape.
         point: The point in world axes [m].
-        max_distance: Distances beyond this mean nothing but that they are larger [m].
+        max_distance: A result beyond this distance is not exact, only larger than this [m].
     """
     frame = pairs.shape_frame[world, shape]
     local = wp.transpose(frame) * (point - pairs.shape_position[world, shape])

@@ -1,8 +1,8 @@
-"""Nodes of soft bodies near their faces: of other bodies, and of their own.
+"""Collisions between nodes and faces of soft bodies: of different bodies, and of one with itself.
 
-Once for each substep nodes are put into the cells of a grid, and each face finds those near it. A node
-remembers the nearest faces and on which side of them it is; within the small steps it stays there, at a
-distance.
+Once in each substep nodes are sorted into the cells of a grid, and the nodes near each face are found. For
+each node the nearest faces are stored, with the side on which the node is. In the small steps the node is
+kept on that side, at a distance from the face.
 """
 
 import warp as wp
@@ -15,11 +15,13 @@ from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
 from carom.layouts.soft import BODIES, BUCKETS, FACES_PER_NODE
 
 _TINY = real(1.0e-12)
-# Faces that go across more cells have been torn apart; looking through all of these would take forever.
+# Faces that extend over more cells are skipped: their corners have flown apart, and a search of so many
+# cells would take too long.
 _WIDEST = real(32.0)
-# What moves across more cells in a substep may be seen too late.
+# Longest motion in a substep that the search allows for, in cells. A faster contact may be found too late.
 _FARTHEST = real(4.0)
-# Faces go on a little beyond their edges, so that a node right above a node is above some face.
+# Least barycentric coordinate at which a node is above a face. It is negative, which extends faces a little
+# beyond their edges, so that a node right above another node is above some face.
 _BESIDE = real(-0.05)
 # Factors of the coordinates of a cell in its hash: large primes, as in Teschner et al. (2003).
 _HASH_X, _HASH_Y, _HASH_Z = wp.constant(73856093), wp.constant(19349663), wp.constant(83492791)
@@ -27,20 +29,20 @@ _HASH_X, _HASH_Y, _HASH_Z = wp.constant(73856093), wp.constant(19349663), wp.con
 
 @func
 def cell_of(place: real, size: real) -> Int32:
-    """The cell along one axis that holds a place."""
+    """Index along one axis of the cell that contains a coordinate."""
     return Int32(wp.clamp(wp.floor(place / size), -1.0e6, 1.0e6))
 
 
 @func
 def bucket_of(x: Int32, y: Int32, z: Int32) -> Int32:
-    """Where the nodes of a cell are listed."""
+    """The bucket that lists the nodes of a cell."""
     mixed = (x * _HASH_X) ^ (y * _HASH_Y) ^ (z * _HASH_Z)
     return mixed & (BUCKETS - 1)
 
 
 @func
 def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size: real) -> real:
-    """Put the nodes of all bodies into the cells of a grid; returns the greatest speed of any [m/s]."""
+    """Sort the nodes of all bodies into the cells of a grid; returns the greatest speed of a node [m/s]."""
     top_speed = real(0.0)
     for bucket in range(BUCKETS):
         work.bucket_first[world, bucket] = -1
@@ -59,7 +61,7 @@ def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size
 
 @func
 def grid_size(soft: SoftModel, state: State, world: Int32) -> real:
-    """Size of the cells: the mean extent of the faces, and their reach on both sides [m]."""
+    """Size of the cells [m]: mean length of the faces' first edges, plus four times the largest thickness."""
     total = real(0.0)
     count = real(0.0)
     thickness = real(0.0)
@@ -78,7 +80,7 @@ def grid_size(soft: SoftModel, state: State, world: Int32) -> real:
 def may_near(
     shapes: Shapes, model: Model, settings: Settings, soft: SoftModel, body: Int32, other: Int32
 ) -> bool:
-    """Whether the nodes of one body are kept off the faces of another, or of itself."""
+    """Whether the nodes of one body collide with the faces of another, or with its own."""
     if body == other:
         return soft.soft[body].self_collision != 0
     a = model.tree[soft.soft[body].tree].first_link
@@ -111,7 +113,7 @@ def face_normal(corners: Matrix3) -> Vector3:
 def note_face(
     soft: SoftModel, work: SoftWork, world: Int32, node: Int32, face: Int32, side: real, distance: real
 ):
-    """Let a node remember a face, unless it knows enough that are nearer."""
+    """Store a face among the nearest faces of a node, unless there is no room and all of them are nearer."""
     first = FACES_PER_NODE * node
     count = work.node_faces[world, node]
     place = first + count
@@ -133,7 +135,7 @@ def note_face(
 
 @func
 def near_at_rest(soft: SoftModel, node: Int32, face: Int32, reach: real) -> bool:
-    """Whether a node of the same body is this near a face when nothing pulls at either."""
+    """Whether a node is nearer than `reach` [m] to a face of its own body in the shape at rest."""
     nodes = soft.face_nodes[face]
     p = soft.node_rest[nodes[0]]
     q = soft.node_rest[nodes[1]]
@@ -156,10 +158,10 @@ def look_at_node(
     max_distance: real,
     closed: bool,
 ):
-    """Let a node remember a face that it is near.
+    """Store a face for a node that is within `max_distance` [m] of it.
 
-    Of a closed surface the inside is known, so that a node that got there is put out again. Within a body,
-    nodes that the mesh has nearer to a face than they are kept from it may be there.
+    The inside of a closed surface is known, so a node that got there is pushed out again. Nodes of the same
+    body are left out if they are nearer to the face at rest than the distance at which nodes are kept off it.
     """
     point = state.node_position[world, node]
     offset = point - on_triangle(corners, point, normal)
@@ -185,7 +187,7 @@ def find_neighbours(
     work: SoftWork,
     world: Int32,
 ):
-    """Note which faces nodes are near: of other soft bodies, and of their own where that is asked for."""
+    """Find the faces near each node: of other soft bodies, and of its own if that has self-collision."""
     size = grid_size(soft, state, world)
     top_speed = list_nodes(soft, state, work, world, size)
     for body in range(soft.count_soft[BODIES]):
@@ -205,7 +207,7 @@ def find_neighbours(
                     wp.length(state.node_velocity[world, nodes[2]]),
                 ),
             )
-            # A node may come towards it as fast as any moves.
+            # The nodes that approach the face may be as fast as the fastest of all.
             reach = minimum((fastest + top_speed) * settings.time_step, _FARTHEST * size)
             max_distance = 2.0 * soft.soft[body].thickness + reach
             lower = lower_corner(lower_corner(a, b), c) - Vector3(max_distance, max_distance, max_distance)
@@ -236,7 +238,7 @@ def find_neighbours(
 
 @func
 def weights_at(corners: Matrix3, point: Vector3) -> Vector3:
-    """Barycentric coordinates of the foot of a point on the plane of a triangle; negative ones outside."""
+    """Barycentric coordinates of a point's projection onto a triangle's plane; some are negative outside."""
     a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
     ab = Vector3(corners[0, 1], corners[1, 1], corners[2, 1]) - a
     ac = Vector3(corners[0, 2], corners[1, 2], corners[2, 2]) - a
@@ -260,7 +262,7 @@ def relax_neighbour(
     near: Int32,
     h: real,
 ):
-    """Keep a node on its side of a face, at a distance, with friction between them."""
+    """Keep a node on its side of a face, at least the thickness away, with friction between them."""
     nodes = soft.face_nodes[work.near_face[world, near]]
     body = soft.soft[work.node_body[world, node]]
     other = soft.soft[work.node_body[world, nodes[0]]]
@@ -280,7 +282,7 @@ def relax_neighbour(
                 total += weights[i] * weights[i] * soft.node_inverse_mass[nodes[i]]
                 before -= work.node_before[world, nodes[i]] * weights[i]
             if total > 0.0:
-                # What was too near at the start of the small step parts slowly.
+                # An overlap that existed at the start of the small step is removed slowly.
                 start = minimum(wp.dot(normal, before) - thickness, 0.0)
                 push = normal * (minimum(start * 0.99 - gap, thickness) / total)
                 if start * 0.99 < gap:
@@ -315,7 +317,7 @@ def relax_neighbours(
     body: Int32,
     h: real,
 ):
-    """Keep the nodes of a body off the faces they are near, one after the other."""
+    """Keep the nodes of a body off the faces near them, one contact after the other."""
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
         for near in range(FACES_PER_NODE * node, FACES_PER_NODE * node + work.node_faces[world, node]):

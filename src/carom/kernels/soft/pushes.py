@@ -1,9 +1,9 @@
-"""What soft bodies do to trees: their pushes as rows of the solver's kind, applied as soon as they are found.
+"""Pushes: impulses of soft bodies on trees, as rows like the solver's, applied as soon as they are found.
 
-Soft bodies move after free motion and before the constraints of trees. They see links move on as they did at
-the start of the substep, because what holds a link (motors, contacts, limits) most likely will go on to;
-what they push is in `delta_velocity` meanwhile, and is added to the velocities in the end. So the solver
-answers the pushes of a substep in that substep.
+Soft bodies move after the free motion of trees and before their constraints. A link is assumed to keep the
+velocity that it had at the start of the substep, because whatever holds it (motors, contacts, limits) most
+likely continues to do so. Changes of velocity by pushes are collected in `delta_velocity`, and added to the
+velocities in the end. So the solver reacts to the pushes of a substep in the same substep.
 """
 
 import warp as wp
@@ -27,7 +27,7 @@ from carom.layouts.status import STATUS, WELL
 
 @func
 def keep_velocities(settings: Settings, model: Model, state: State, work: SoftWork, world: Int32):
-    """Remember the velocities of all trees at the start of a substep."""
+    """Save the velocities of all trees at the start of a substep."""
     for tree in range(settings.tree_count):
         first = model.tree[tree].first_dof
         for dof in range(first, first + model.tree[tree].dof_count):
@@ -36,7 +36,7 @@ def keep_velocities(settings: Settings, model: Model, state: State, work: SoftWo
 
 @func
 def exchange_velocities(settings: Settings, model: Model, state: State, work: SoftWork, world: Int32):
-    """Exchange the velocities of all trees for those at the start of the substep, or back."""
+    """Swap the velocities of all trees with the saved ones; a second call swaps them back."""
     for tree in range(settings.tree_count):
         first = model.tree[tree].first_dof
         for dof in range(first, first + model.tree[tree].dof_count):
@@ -47,7 +47,7 @@ def exchange_velocities(settings: Settings, model: Model, state: State, work: So
 
 @func
 def can_be_pushed(model: Model, state: State, world: Int32, tree: Int32, link: Int32) -> bool:
-    """Whether pushes at a link of a tree change anything now; nothing moves the world, tree -1."""
+    """Whether pushes can move a link: it has degrees of freedom and is awake. Tree -1 is the world."""
     if tree < 0:
         return False
     return model.link[link].nearest_dof >= 0 and not is_asleep(state, world, tree)
@@ -63,7 +63,7 @@ def make_ready(
     world: Int32,
     tree: Int32,
 ):
-    """Have the inverse mass matrix of a tree that nothing else pushes."""
+    """Compute a tree's inverse mass matrix, once in a substep, unless free motion has already done so."""
     if work.tree_ready[world, tree] == 0:
         work.tree_ready[world, tree] = 1
         if not may_be_pushed(model, pair_rows, world, tree):
@@ -111,7 +111,7 @@ def add_push_rows(
         place: Next free row, next free block, 0, 0.
 
     Returns:
-        The same after them; its third number is 1 if there was no room.
+        `place` after these rows; its third number is 1 if there was no room.
     """
     row = place[0]
     block = place[1]
@@ -133,7 +133,7 @@ def add_push_rows(
 
 @func
 def row_mass(pair_rows: PairRows, world: Int32, row: Int32) -> real:
-    """Inverse mass that a push along a row meets [1/kg]; none for row -1, of what does not move."""
+    """Effective inverse mass along a row [1/kg]; 0 for row -1, that of an immovable link."""
     if row < 0:
         return 0.0
     return pair_rows.row_terms[world, row][ROW_INVERSE_MASS]
@@ -141,7 +141,7 @@ def row_mass(pair_rows: PairRows, world: Int32, row: Int32) -> real:
 
 @func
 def row_velocity(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32) -> real:
-    """Velocity along a row that pushes have given it so far [m/s]."""
+    """Change of velocity along a row by all pushes so far [m/s]; 0 for row -1."""
     if row < 0:
         return 0.0
     return row_velocity_change(
@@ -151,7 +151,7 @@ def row_velocity(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32
 
 @func
 def push_along(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, impulse: real):
-    """Push along a row [N s]."""
+    """Apply an impulse along a row [N s]; no effect for row -1."""
     if row >= 0:
         push_row(
             scratch, pair_rows, world, pair_rows.row_place[world, row],
@@ -161,7 +161,7 @@ def push_along(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, 
 
 @func
 def take_over_pushes(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
-    """Add what trees have been pushed to their velocities."""
+    """Add the changes of velocity by pushes to the velocities of trees."""
     for tree in range(settings.tree_count):
         if model.tree[tree].dof_count > 0 and not is_asleep(state, world, tree):
             if state.status_entry[world, STATUS] == WELL:

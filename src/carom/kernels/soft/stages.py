@@ -1,4 +1,4 @@
-"""The stages of a step of soft bodies, a kernel for each."""
+"""The stages of a step of soft bodies, one kernel for each."""
 
 import warp as wp
 
@@ -27,8 +27,8 @@ from carom.kernels.types import Index4, Int32, Vector3, func, kernel, real
 from carom.layouts.soft import BODIES
 from carom.layouts.status import OVERFLOW, STATUS
 
-# The fastest vibration goes through at most so much of its phase in a small step [rad], as long as there
-# are not too many.
+# Largest phase of the fastest vibration in one small step [rad], as long as the number of small steps stays
+# within its limit.
 _PHASE = real(1.0)
 _LEAST_STEPS = 4
 _MOST_STEPS = 128
@@ -36,13 +36,13 @@ _MOST_STEPS = 128
 
 @func
 def node_end(soft: SoftModel, body: Int32) -> Int32:
-    """The row behind the nodes of a body."""
+    """The row after the last node of a body."""
     return soft.soft[body].first_node + soft.soft[body].node_count
 
 
 @func
 def small_steps(soft: SoftModel, dt: real) -> Int32:
-    """How many small steps a substep of `dt` [s] consists of."""
+    """Number of small steps in a substep of `dt` [s]."""
     frequency = real(0.0)
     for body in range(soft.count_soft[BODIES]):
         frequency = maximum(frequency, soft.soft[body].frequency)
@@ -67,7 +67,7 @@ def move_freely(
 
 @func
 def take_velocities(soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32, h: real):
-    """The velocities of nodes are what they have moved in a small step."""
+    """Set the velocities of nodes from their displacements in a small step of `h` [s]."""
     for node in range(soft.soft[body].first_node, node_end(soft, body)):
         moved = state.node_position[world, node] - soft_work.node_before[world, node]
         state.node_velocity[world, node] = moved / h
@@ -75,7 +75,7 @@ def take_velocities(soft: SoftModel, state: State, soft_work: SoftWork, world: I
 
 @func
 def have_neighbours(soft: SoftModel) -> bool:
-    """Whether nodes could be near faces of soft bodies that they do not belong to."""
+    """Whether nodes may collide with faces: there are several soft bodies, or one has self-collision."""
     count = soft.count_soft[BODIES]
     found = count > 1
     for body in range(count):
@@ -97,7 +97,7 @@ def take_small_steps(
     world: Int32,
     neighbours: bool,
 ):
-    """Move all soft bodies through a substep, as trees move on and are pushed."""
+    """Move all soft bodies through a substep; trees keep their velocities, except for pushes by nodes."""
     count = small_steps(soft, settings.time_step)
     h = settings.time_step / real(count)
     for _step in range(count):
@@ -120,7 +120,7 @@ def take_small_steps(
 
 @kernel
 def begin_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_world: Int32):
-    """Keep where nodes are at the start of a step."""
+    """Save the positions and velocities of nodes at the start of a step."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
         for node in range(soft.soft[body].first_node, node_end(soft, body)):
@@ -132,7 +132,7 @@ def begin_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_
 def keep_velocities_kernel(
     settings: Settings, model: Model, state: State, soft_work: SoftWork, first_world: Int32
 ):
-    """Keep the velocities of trees at the start of a substep."""
+    """Save the velocities of trees at the start of a substep."""
     keep_velocities(settings, model, state, soft_work, first_world + wp.tid())
 
 
@@ -174,7 +174,7 @@ def soft_motion_kernel(
             settings, model, shapes, scratch, pair_rows, soft, state, soft_work, world, neighbours
         )
         report_pushes(settings, shapes, model, state, scratch, soft, soft_work, world)
-    # Before what they have pushed is found not to be finite either.
+    # Reported before the trees that faulty nodes have pushed are found to be not finite as well.
     for body in range(soft.count_soft[BODIES]):
         report_nodes(state, soft, world, body)
     exchange_velocities(settings, model, state, soft_work, world)
@@ -193,7 +193,7 @@ def find_touches_kernel(
     soft_work: SoftWork,
     world: Int32,
 ):
-    """Find which nodes are near which shapes at their present places; asked for between steps."""
+    """Find the nodes near each shape at their current positions; for queries between steps."""
     place_shapes(shapes, state, settings, pairs, world)
     for body in range(soft.count_soft[BODIES]):
         find_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
@@ -201,7 +201,7 @@ def find_touches_kernel(
 
 @kernel
 def end_soft_kernel(soft: SoftModel, state: State, first_world: Int32):
-    """Forces on nodes last until a step is complete."""
+    """Clear the users' forces on nodes after a complete step."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
         for node in range(soft.soft[body].first_node, node_end(soft, body)):
@@ -210,7 +210,7 @@ def end_soft_kernel(soft: SoftModel, state: State, first_world: Int32):
 
 @kernel
 def abandon_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_world: Int32):
-    """Restore the nodes from the start of the step; forces are cleared after a step that failed."""
+    """Restore the nodes as they were at the start of the step; clear their forces if the step failed."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
         for node in range(soft.soft[body].first_node, node_end(soft, body)):

@@ -1,4 +1,4 @@
-"""The directions in which a touch pushes."""
+"""The directions of a touch's impulses."""
 
 import warp as wp
 
@@ -7,7 +7,7 @@ from carom.kernels.types import Matrix3, Vector3, func
 
 @func
 def tangents(normal: Vector3) -> Matrix3:
-    """A unit vector and two across it, as columns."""
+    """A unit normal and two unit tangents, as columns; all three are orthogonal."""
     aside = Vector3(1.0, 0.0, 0.0)
     if wp.abs(normal[0]) > 0.7:
         aside = Vector3(0.0, 1.0, 0.0)

@@ -1,4 +1,4 @@
-"""Which nodes are near which shapes, and which are anchored: found once for each substep."""
+"""Touches (nodes near shapes) and anchors, with their rows over trees: written once in each substep."""
 
 import warp as wp
 
@@ -25,7 +25,7 @@ from carom.kernels.structs import (
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
-# Nodes this far from resting are looked at whatever their speed, as a share of the margin.
+# Distance beyond the margin at which nodes of any speed have touches, as a share of the margin.
 _AHEAD = real(1.0)
 
 
@@ -51,7 +51,7 @@ def point_velocity(
 def may_meet(
     shapes: Shapes, model: Model, settings: Settings, soft: SoftModel, body: Int32, shape: Int32
 ) -> bool:
-    """Whether the nodes of a soft body touch a shape at all."""
+    """Whether collision filters let the nodes of a soft body touch a shape."""
     own = model.tree[soft.soft[body].tree].first_link
     link = shapes.shape_link[shape]
     wanted = pair_filter(shapes, settings, own, link)
@@ -62,7 +62,7 @@ def may_meet(
 
 @func
 def body_bounds(soft: SoftModel, state: State, world: Int32, body: Int32, dt: real):
-    """Bounds of where the nodes of a body may be within a substep, its margin not counted."""
+    """Bounding box of the nodes of a body throughout a substep, without the margin."""
     first = soft.soft[body].first_node
     lower = state.node_position[world, first]
     upper = lower + Vector3(0.0, 0.0, 0.0)
@@ -76,7 +76,10 @@ def body_bounds(soft: SoftModel, state: State, world: Int32, body: Int32, dt: re
 
 @func
 def keep_nearest(work: SoftWork, world: Int32, first: Int32, count: Int32, distance: real) -> Int32:
-    """The place for one more touch of a node: the next free, or that of one farther away; -1 for none."""
+    """The row for one more touch of a node: the next free one, or that of the farthest touch.
+
+    It is -1 if there is no free row and no touch is farther away than `distance` [m].
+    """
     if count < TOUCHES_PER_NODE:
         return first + count
     place = Int32(-1)
@@ -103,9 +106,9 @@ def find_node_touches(
     dt: real,
     closing: real,
 ):
-    """Note the nodes of a body that a shape may touch within a substep.
+    """Store touches for the nodes of a body that may reach a shape within a substep.
 
-    Of a touch `touch_offset` is the distance until all have been found.
+    Until `write_touches`, `touch_offset` is the distance of the node from the shape [m].
     """
     margin = soft.soft[body].margin
     first = soft.soft[body].first_node
@@ -140,7 +143,7 @@ def find_node_touches(
 def shape_speed(
     shapes: Shapes, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, shape: Int32
 ) -> real:
-    """Bound of the speed of the points of a shape [m/s]."""
+    """Upper bound of the speeds of a shape's points [m/s]."""
     link = shapes.shape_link[shape]
     if not can_be_pushed(model, state, world, tree, link):
         return 0.0
@@ -171,7 +174,7 @@ def find_touches(
     world: Int32,
     body: Int32,
 ):
-    """Note which shapes the nodes of a body may touch within a substep."""
+    """Find the shapes that the nodes of a body may touch within a substep."""
     dt = settings.time_step
     margin = soft.soft[body].margin
     first = soft.soft[body].first_node
@@ -209,7 +212,7 @@ def write_touches(
     body: Int32,
     place: Index4,
 ) -> Index4:
-    """Write the touches that have been found for a body, with rows over the trees that they push.
+    """Complete the touches that have been found for a body, with rows over the trees that they push.
 
     Returns:
         Next free row, next free block, 1 if there was no room, 0.
@@ -255,7 +258,7 @@ def write_anchors(
     world: Int32,
     place: Index4,
 ) -> Index4:
-    """Write what holds nodes at links; returns as `write_touches`."""
+    """Write the anchors, with rows over the trees that they push; returns the same as `write_touches`."""
     for anchor in range(soft.count_soft[ANCHORS]):
         tree = soft.anchor[anchor].tree
         link = soft.anchor[anchor].link

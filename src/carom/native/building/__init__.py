@@ -1,1 +1,1 @@
-"""Building the native library: Warp makes C++ of the kernels, and Zig a shared library of that."""
+"""Building the native library: Warp translates kernels to C++, and Zig compiles that to a shared library."""

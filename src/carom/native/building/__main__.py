@@ -1,4 +1,4 @@
-"""`python -m carom.native.building`: build the native library and say where it is."""
+"""`python -m carom.native.building`: build the native library and print its path."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def main(arguments: list[str] | None = None) -> int:
         "--level", action="append", help="a CPU level, more than once for several; if not given, all"
     )
     parser.add_argument("--output", type=Path, help="copy libraries and manifest to this folder")
-    parser.add_argument("--quiet", action="store_true", help="say nothing of the progress")
+    parser.add_argument("--quiet", action="store_true", help="do not show progress")
     asked = parser.parse_args(arguments)
     try:
         target = TARGETS[asked.target] if asked.target else this_target()

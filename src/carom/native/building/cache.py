@@ -1,6 +1,7 @@
 """The cache of built files, so that nothing is built twice.
 
-Every start in a clone comes here to find its library: what only building needs is imported when that begins.
+Every start in a clone uses this module to find its library, so modules that only building needs are imported
+in functions.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ _LOCK_SECONDS = 0.1
 
 
 def cache_folder() -> Path:
-    """The folder for libraries, objects and generated code; it need not be there yet.
+    """The folder for libraries, objects and generated code; it may not exist yet.
 
-    `CAROM_CACHE_PATH` names another one.
+    The environment variable `CAROM_CACHE_PATH` overrides it.
     """
     named = os.environ.get("CAROM_CACHE_PATH")
     if named:
@@ -39,7 +40,7 @@ def cache_folder() -> Path:
 
 
 def _is_of_use(folder: Path) -> bool:
-    """Whether there can be a cache: in a folder that can be written, or has libraries already."""
+    """Whether a folder can be the cache: it is writable, or already contains libraries."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
     return os.access(folder, os.W_OK | os.X_OK) or (folder / _LIBRARIES).is_dir()
@@ -47,7 +48,7 @@ def _is_of_use(folder: Path) -> bool:
 
 @functools.cache
 def _temporary_folder() -> Path:
-    """The cache of who has no home to write to: one for all processes, unless others could write to it."""
+    """The cache without a writable home: shared by all processes, unless other users could write to it."""
     import tempfile
 
     if os.name != "nt":
@@ -61,17 +62,17 @@ def _temporary_folder() -> Path:
 
 
 def library_place(cache: Path, digest: str, name: str) -> Path:
-    """Where a library is kept that was made from the sources of a digest; it need not be there yet."""
+    """Path of the library that is built from the sources with a digest; it may not exist yet."""
     return cache / _LIBRARIES / digest / name
 
 
 def is_there(library: Path) -> bool:
-    """Whether a library and its manifest are there."""
+    """Whether a library and its manifest exist."""
     return library.exists() and (library.parent / MANIFEST).exists()
 
 
 def mark_used(entry: Path) -> None:
-    """Note that something in the cache is of use now.
+    """Set the time at which an entry of the cache was last used.
 
     Args:
         entry: A file or folder directly in one of the cache's folders.
@@ -82,10 +83,10 @@ def mark_used(entry: Path) -> None:
 
 
 def content_key(*contents: bytes | str) -> str:
-    """A name for what is made from contents.
+    """A name for a file that is built from some contents.
 
     Args:
-        *contents: The contents, in an order that matters.
+        *contents: The contents; another order gives another name.
     """
     from hashlib import blake2b
 
@@ -114,26 +115,26 @@ def work_folder(cache: Path) -> Iterator[Path]:
 def keep(made: Path, kept: Path) -> None:
     """Move a file or folder into the cache atomically.
 
-    Another process may have put the same there meanwhile.
+    Another process may have put the same file there meanwhile.
 
     Args:
         made: The file or folder.
-        kept: Its place.
+        kept: Its path in the cache.
     """
     kept.parent.mkdir(parents=True, exist_ok=True)
     try:
         os.replace(made, kept)
     except OSError:
-        # Folders are not replaced; nor are, on Windows, files that are in use.
+        # Existing folders cannot be replaced; on Windows nor can files that are in use.
         if not kept.exists():
             raise
 
 
 @contextlib.contextmanager
 def alone(cache: Path) -> Iterator[None]:
-    """Wait until no other process builds with this cache, and keep others waiting meanwhile.
+    """Lock the cache for a build: wait until no other process builds with it, and make others wait.
 
-    The lock is released when its process ends, in any way.
+    The lock is released whenever its process ends.
 
     Args:
         cache: The cache folder.
@@ -145,7 +146,7 @@ def alone(cache: Path) -> Iterator[None]:
 
 
 def _lock(descriptor: int) -> None:
-    """Lock a file, trying again and again so that an interrupt is obeyed."""
+    """Lock a file, by repeated attempts, so that Ctrl-C works meanwhile."""
     while True:
         try:
             if sys.platform == "win32":

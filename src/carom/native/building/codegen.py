@@ -1,10 +1,10 @@
-"""The kernels as C++, and what there is to know about them as JSON.
+"""Translate the kernels to C++, and write a manifest of them as JSON.
 
-Run as a program in a process of its own, for it needs Warp:
+This runs as a program in a process of its own, because it imports Warp:
 `python -m carom.native.building.codegen DIGEST FOLDER MODULE...`.
 
-Warp generates the same C++ that it would compile itself. What it is not asked for here is left out: adjoints,
-comments with line numbers, names that depend on the content.
+Warp generates the same C++ that it would compile itself, except for parts that are not needed here: adjoints,
+comments with line numbers, and names that depend on the content.
 """
 
 from __future__ import annotations
@@ -32,14 +32,15 @@ from carom.native.building.manifest import (
 # Code is generated for blocks of one thread, which makes a kernel a plain C function.
 _BLOCK_SIZE = 1
 _COMMENT = re.compile(r"^[ \t]*//.*\n", re.MULTILINE)
-# Room for tiles, which a kernel would clear in memory that all threads share.
+# Memory for tiles. No kernel uses it, but each would clear it, in memory that all threads share.
 _TILE_ROOM = re.compile(
     r"^ *wp::tile_shared_storage_t tile_mem;\n#if defined\(WP_ENABLE_TILES_IN_STACK_MEMORY\)\n.*\n#endif\n",
     re.MULTILINE,
 )
 
 
-# What structs have for adjoints is seen from outside, and several modules have the same structs.
+# Functions for adjoints of structs have external linkage, and several modules have the same structs; so they
+# are made static.
 _SEEN = re.compile(r"^(?=CUDA_CALLABLE )", re.MULTILINE)
 
 
@@ -59,15 +60,15 @@ class _ForwardBuilder(ModuleBuilder):
 
 
 def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
-    """Write a `.cpp` for each module, and the manifest of all.
+    """Write a `.cpp` file for each module, and one manifest for all.
 
     Args:
         modules: Names of Python modules with kernels.
-        digest: What the manifest says that they were made from.
-        folder: Where to write.
+        digest: Digest of the sources, for the manifest.
+        folder: Folder for these files.
 
     Raises:
-        KernelClash: Two of them have a kernel of the same name.
+        KernelClash: Two modules have a kernel of the same name.
     """
     kernels: dict[str, dict[str, Any]] = {}
     structs: dict[str, dict[str, Any]] = {}
@@ -106,7 +107,7 @@ def _generate_module(name: str) -> tuple[str, list[Any]]:
     source = _SEEN.sub("static ", source)
     kernels = list(builder.kernels)
     if count != len(kernels):
-        raise RuntimeError(f"{name}: this version of Warp lays out kernels in another way than 1.19")
+        raise RuntimeError(f"{name}: this version of Warp generates kernels in another form than 1.19")
     return '#include "prelude.h"\n' + source.replace("WP_API", "CAROM_EXPORT"), kernels
 
 

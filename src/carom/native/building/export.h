@@ -1,4 +1,4 @@
-// What the library shows to those who load it: `extern "C" CAROM_EXPORT void f(...) { ... }`.
+// Marks symbols that the library exports: `extern "C" CAROM_EXPORT void f(...) { ... }`.
 #pragma once
 
 #if defined(_WIN32)

@@ -1,13 +1,14 @@
 """Compiler flags.
 
-The same sources have to give the same bits on every platform and CPU level. So nothing here lets a compiler
-round differently: no contraction of products and sums, no reordering, no processor of the machine that
-builds. And it must not know what sines are, or it would work out some of them by the libm of that machine.
+The same sources have to give the same bits on every platform and CPU level. So no flag lets a compiler round
+differently: products and sums are not fused or reordered, and code is not tuned to the machine that builds.
+Maths functions have names that the compiler does not know; otherwise it would evaluate some calls by the libm
+of that machine.
 """
 
 from __future__ import annotations
 
-# Functions that a libm has and processors do not. They are called by names of our own; see `libm`.
+# Functions of a libm that are not processor instructions. They get names of our own; see `libm`.
 MATHS = (
     "sin",
     "cos",
@@ -39,7 +40,7 @@ _ALL = (
     "-fno-sanitize=all",
     *_RENAMED,
 )
-# For kernels and hand-written C++: `<stdint.h>` is there, and no other header.
+# For kernels and hand-written C++: the only standard header is `<stdint.h>`.
 CPP_FLAGS = (
     "-std=c++17",
     "-fno-exceptions",
@@ -47,10 +48,9 @@ CPP_FLAGS = (
     "-nostdlibinc",
     *_ALL,
 )
-# For the libm. Where there are fused products, it would use them.
+# For the libm, which would otherwise use fused products on processors that have them.
 C_FLAGS = ("-std=c99", "-nostdlibinc", "-ffreestanding", "-U__FP_FAST_FMA", *_ALL)
-# By how names of libraries end. Windows unwinds stacks by tables, and Warp's headers expect words of
-# Microsoft's.
+# By suffix of the library. Windows unwinds stacks by tables, and Warp's headers use Microsoft's keywords.
 PLATFORM_FLAGS = {
     ".so": ("-fPIC", "-fno-asynchronous-unwind-tables"),
     ".dylib": ("-fPIC", "-fno-asynchronous-unwind-tables"),

@@ -1,4 +1,4 @@
-"""Running programs side by side, so that an interrupt ends them all at once."""
+"""Running programs in parallel; an interrupt ends all of them at once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from carom.native.building.zig import BuildError
 from carom.native.cpu import core_count
 
 _POLL_SECONDS = 0.05
-# Of what a compiler said; errors come first, and what follows from them by the hundred.
+# Maximum length of a compiler's output in messages: the first errors matter, hundreds may follow from them.
 _MOST_CHARACTERS = 3000
 
 
@@ -25,9 +25,9 @@ class Job:
     """A program to run.
 
     Attributes:
-        name: What it is about, for messages.
+        name: Its name in messages.
         command: The program and its arguments.
-        done: Called when it has ended well.
+        done: Called when it has succeeded.
     """
 
     name: str
@@ -38,12 +38,12 @@ class Job:
 def run_all(
     jobs: Sequence[Job], environment: Mapping[str, str], progress: Callable[[int, int], None]
 ) -> None:
-    """Run programs, as many at a time as there are cores, in this order.
+    """Run programs, as many at a time as there are cores, started in this order.
 
     Args:
         jobs: The programs.
-        environment: Environment variables that they get.
-        progress: Called repeatedly with the number of finished jobs, and of all jobs.
+        environment: Their environment variables.
+        progress: Called repeatedly with the number of finished jobs and the number of all jobs.
 
     Raises:
         BuildError: A job failed; the others are stopped. The message has its output.
@@ -85,7 +85,7 @@ def _start(job: Job, environment: Mapping[str, str]) -> tuple[Job, subprocess.Po
         stdin=subprocess.DEVNULL,
         stdout=output,
         stderr=subprocess.STDOUT,
-        # Compilers start processes of their own; as one group all of them can be ended.
+        # Compilers start processes of their own; as a process group all of them can be ended.
         start_new_session=os.name == "posix",
     )
     return job, process, output

@@ -1,8 +1,8 @@
-"""Maths functions of our own, the same bits on every platform.
+"""Maths functions of our own, with the same bits on every platform.
 
-They are musl's, whose sources come with Zig (but for the outermost layer of sine, cosine and tangent),
-compiled with the flags of the kernels and linked into the library under names of our own. Only those are
-taken that are called.
+They are musl's, whose sources come with Zig, except for the outermost layer of sine, cosine and tangent. They
+are compiled with the flags of the kernels and linked into the library under names of our own; only functions
+that are called are included.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ _HERE = Path(__file__).parent / "libm"
 
 
 def called_functions(objects: Iterable[Path]) -> set[str]:
-    """Which maths functions object files refer to.
+    """The maths functions that object files refer to.
 
     Args:
-        objects: Object files of any format: all have the names of symbols in them, each ended by a zero.
+        objects: Object files of any format: all contain the names of symbols, each followed by a zero byte.
     """
     contents = [path.read_bytes() for path in objects]
     return {name for name in MATHS if any(f"{PREFIX}{name}\0".encode() in content for content in contents)}
@@ -61,7 +61,7 @@ def maths_sources(functions: Iterable[str], zig_library: Path) -> list[Path]:
 
 
 def include_folders(zig_library: Path) -> list[Path]:
-    """Where the sources find their headers, first those of our own.
+    """The folders of the sources' headers, our own first.
 
     Args:
         zig_library: The `lib` folder of Zig.

@@ -42,7 +42,7 @@ _HERE = Path(__file__).parent
 
 @dataclass(frozen=True)
 class _Build:
-    """What all parts of one build need."""
+    """Data that all parts of one build need."""
 
     root: Path
     modules: tuple[str, ...]
@@ -67,11 +67,11 @@ def build(
     """Build the native library, or find it in the cache.
 
     Args:
-        root: The folder that the package `carom` is in.
-        target: For which platform.
-        level: For which of its CPU levels.
-        progress: Progress display; None for none.
-        modules: Python modules whose kernels are in it.
+        root: The folder that contains the package `carom`.
+        target: The platform.
+        level: One of the platform's CPU levels.
+        progress: Stream for progress display; None for none.
+        modules: Python modules whose kernels are included.
         cache: Cache folder; None for `cache_folder()`.
 
     Returns:
@@ -91,7 +91,7 @@ def build(
             if not is_there(library):
                 line = ProgressLine(progress)
                 try:
-                    # What Zig keeps depends on nothing of ours.
+                    # Zig's cache does not depend on our sources, so all builds share it.
                     zig = find_zig(cache_folder() / "zig")
                     _make(
                         _Build(root, tuple(modules), target, level, digest, cache, zig, _warp_folder(), line),
@@ -120,12 +120,12 @@ def _make(parts: _Build, library: Path) -> None:
 
 
 def build_all(root: Path, target: Target, progress: TextIO | None = sys.stderr) -> list[Path]:
-    """Build, or take from the cache, the contents of a wheel.
+    """Build, or take from the cache, the libraries of a wheel.
 
     Args:
-        root: The folder that the package `carom` is in.
-        target: For which platform.
-        progress: Progress display; None for none.
+        root: The folder that contains the package `carom`.
+        target: The platform.
+        progress: Stream for progress display; None for none.
 
     Returns:
         A library for each CPU level that is shipped, and their manifest.
@@ -140,7 +140,7 @@ def build_all(root: Path, target: Target, progress: TextIO | None = sys.stderr) 
 
 def _generated_code(parts: _Build) -> Path:
     """The folder with the kernels as C++, and their manifest."""
-    # How code is generated is in the digest as well.
+    # The digest also covers the code generator.
     key = content_key(parts.digest, (parts.warp / "config.py").read_bytes(), *parts.modules)
     folder = parts.cache / "code" / key
     if folder.is_dir():
@@ -151,7 +151,7 @@ def _generated_code(parts: _Build) -> Path:
         code.mkdir()
         environment = {
             **os.environ,
-            # The kernels of this root, whatever is installed, with the numbers that the library is for.
+            # The kernels of this root, whatever version of Carom is installed.
             "PYTHONPATH": str(parts.root),
             "WARP_CACHE_PATH": str(work / "warp"),
         }
@@ -197,7 +197,7 @@ def _objects(
     includes: list[Path],
     work: Path,
 ) -> list[Path]:
-    """Objects of sources, compiled where the cache has them not."""
+    """Object files of sources, compiled if they are not in the cache."""
     flags = (*flags, *PLATFORM_FLAGS[parts.target.suffix])
     header_files = [path for folder in includes for path in sorted(folder.glob("*.h"))]
     headers = content_key(*(path.read_bytes() for path in header_files))
@@ -232,7 +232,7 @@ def _warp_folder() -> Path:
     folders = list(package.submodule_search_locations or ()) if package else []
     if not folders:
         raise BuildError(
-            "the native library is made from what NVIDIA Warp generates, which is not installed here: "
+            "the native library is built from code that NVIDIA Warp generates, but Warp is not installed: "
             f"run {sys.executable} -m pip install 'carom[build]'"
         )
     version = re.search(
@@ -240,7 +240,7 @@ def _warp_folder() -> Path:
     )
     if version is None or not version[1].startswith("1.19."):
         raise BuildError(
-            "the native library is made from what NVIDIA Warp 1.19 generates; installed here is "
-            f"{version[1] if version else 'another version'}"
+            "the native library is built from code that NVIDIA Warp 1.19 generates; the installed version is "
+            f"{version[1] if version else 'unknown'}"
         )
     return Path(folders[0])

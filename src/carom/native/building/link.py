@@ -1,4 +1,4 @@
-"""Objects to one shared library."""
+"""Linking object files to a shared library."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from carom.native.building.zig import Zig
 from carom.native.targets import Target
 
-# Nothing of what a platform's C library has is taken, so that a library needs no certain one.
+# The library is not linked against a C library, so that it does not depend on a certain version.
 _FLAGS = {
     ".so": ("-shared", "-nostdlib", "-Wl,--gc-sections", "-Wl,--build-id=none", "-Wl,-z,relro", "-Wl,-z,now"),
     ".dylib": ("-dynamiclib", "-Wl,-dead_strip"),
@@ -17,14 +17,14 @@ _FLAGS = {
 
 
 def link_command(zig: Zig, target: Target, level: str, objects: Sequence[Path], output: Path) -> list[str]:
-    """The command that makes the library.
+    """The command that links the library.
 
     Args:
-        zig: What links.
-        target: For which platform.
-        level: For which of its CPU levels.
-        objects: Object files; their order counts for the bytes of the library.
-        output: The library, in an empty folder: linkers leave other files beside it.
+        zig: The linker.
+        target: The platform.
+        level: One of the platform's CPU levels.
+        objects: Object files; the bytes of the library depend on their order.
+        output: Path of the library, in an empty folder: linkers leave other files beside it.
     """
     flags = [*_FLAGS[target.suffix], "-g0", "-s"]
     if target.suffix == ".so":

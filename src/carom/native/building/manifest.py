@@ -1,8 +1,7 @@
-"""What calls of the kernels have to know: symbols, arguments, and where the fields of structs lie.
+"""Data for calls of kernels: symbols, arguments, and the offsets of the fields of structs.
 
-The layouts are those of C with scalars of four and eight bytes, each at a multiple of its size, which is what
-every platform has that Carom is built for. Assertions in the generated C++ keep a library with others from
-being built.
+The layouts are those of C with scalars of four and eight bytes, each at a multiple of its size. All platforms
+of Carom have them. Assertions in the generated C++ make a build with other layouts fail.
 """
 
 from __future__ import annotations
@@ -32,11 +31,11 @@ class LayoutClash(Exception):
 
 
 def kernel_entry(kernel: Any, module: str) -> Layout:
-    """What to say about a kernel.
+    """The entry of a kernel in the manifest.
 
     Args:
         kernel: The kernel, built.
-        module: The Python module it is in.
+        module: The Python module that contains it.
 
     Returns:
         `symbol`, `module`, `dimensions` of its launch, `arguments` (name, type and offset of each, in order),
@@ -65,7 +64,7 @@ def struct_layouts(kernels: Iterable[Any]) -> dict[str, Layout]:
         By name: `fields` (name, type and offset of each, in order), and `size` in bytes.
 
     Raises:
-        LayoutClash: Two of them have the same name.
+        LayoutClash: Two different structs have the same name.
     """
     layouts: dict[str, Layout] = {}
     for struct in _structs(kernels):
@@ -90,7 +89,7 @@ def merge_layouts(into: dict[str, Layout], layouts: dict[str, Layout]) -> None:
 
 
 def fixed_layouts(dimensions: Iterable[int]) -> dict[str, Layout]:
-    """Layouts of what Warp itself declares: arrays, and the bounds of launches.
+    """Layouts of structs that Warp itself declares: arrays, and the bounds of launches.
 
     Args:
         dimensions: Numbers of dimensions of launches.
@@ -106,13 +105,13 @@ def fixed_layouts(dimensions: Iterable[int]) -> dict[str, Layout]:
 
 
 def layout_assertions(kernels: Iterable[Any]) -> str:
-    """C++ that compiles only where all layouts are as the manifest says.
+    """C++ that compiles only if all layouts are those of the manifest.
 
     Args:
         kernels: Kernels of one module.
 
     Returns:
-        Assertions, to stand after the generated C++.
+        Assertions, to be appended to the generated C++.
     """
     kernels = sorted(kernels, key=lambda kernel: kernel.key)
     lines = []
@@ -127,7 +126,7 @@ def layout_assertions(kernels: Iterable[Any]) -> str:
 
 
 def type_name(kind: Any) -> str:
-    """How the manifest spells a type.
+    """Name of a type in the manifest.
 
     Args:
         kind: A Warp type.

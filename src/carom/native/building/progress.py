@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import TextIO
 
-# On a terminal the line is written over; elsewhere, in a log, there is one now and then.
+# Intervals between updates: on a terminal the line is overwritten, in a log each update is a new line.
 _TERMINAL_SECONDS = 0.25
 _LOG_SECONDS = 5.0
 
@@ -14,7 +14,7 @@ class ProgressLine:
     """Shows the progress of a build.
 
     Args:
-        stream: Where to; None for nowhere.
+        stream: The stream to write to; None for no output.
     """
 
     def __init__(self, stream: TextIO | None = None) -> None:
@@ -24,11 +24,11 @@ class ProgressLine:
         self._length = 0
 
     def show(self, doing: str, *, now: bool = False) -> None:
-        """Show what is being done, at intervals.
+        """Show the current activity, at most once in an interval.
 
         Args:
-            doing: `compiling kernels 7/16`.
-            now: At once.
+            doing: The activity, such as `compiling kernels 7/16`.
+            now: Show it at once.
         """
         time_now = time.monotonic()
         wait = _TERMINAL_SECONDS if self._terminal else _LOG_SECONDS
@@ -44,7 +44,7 @@ class ProgressLine:
         self._stream.flush()
 
     def end(self) -> None:
-        """Leave the line as it is and begin another."""
+        """End the line, so that later output begins on a new one."""
         if self._stream is not None and self._length:
             self._stream.write("\n")
             self._stream.flush()

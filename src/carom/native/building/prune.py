@@ -1,4 +1,4 @@
-"""Keeping the cache small: what nothing has used for long is removed, the oldest first."""
+"""Keeping the cache small: entries that have not been used for long are removed, the oldest first."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def prune(cache: Path, most_bytes: int = _MOST_BYTES) -> None:
 
     Args:
         cache: The cache folder; no other build may use it meanwhile.
-        most_bytes: How large libraries, code and objects may be together.
+        most_bytes: Maximum total size of libraries, code and objects.
     """
     now = time.time()
     entries = [
@@ -42,7 +42,7 @@ def _size(entry: Path) -> int:
 
 
 def _remove(entry: Path) -> None:
-    # On Windows a library that a process has loaded stays until another build.
+    # On Windows a library that a process has loaded cannot be removed; it stays until another build.
     if entry.is_dir():
         shutil.rmtree(entry, ignore_errors=True)
     else:

@@ -1,4 +1,4 @@
-"""Running Zig: C and C++ to objects, objects to libraries, for any platform from any other."""
+"""Running Zig, which compiles and links C and C++ for any platform on any other."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class BuildError(Exception):
 
 @dataclass(frozen=True)
 class Zig:
-    """A Zig.
+    """An installed Zig.
 
     Attributes:
         program: The executable.
         library: Its `lib` folder.
-        version: What it says it is.
-        cache: Where it keeps what it needs again.
+        version: Its version.
+        cache: The folder for its cache.
     """
 
     program: Path
@@ -40,15 +40,15 @@ class Zig:
 
         Args:
             language: `cc` or `c++`.
-            target: For which platform.
-            level: For which of its CPU levels.
-            arguments: What the compiler is told besides.
+            target: The platform.
+            level: One of the platform's CPU levels.
+            arguments: Further arguments of the compiler.
         """
         processor = ["-target", target.triple, f"-mcpu={target.levels[level]}"]
         return [str(self.program), language, *processor, *map(str, arguments)]
 
     def environment(self) -> dict[str, str]:
-        """Environment variables that it runs with."""
+        """Environment variables for running it."""
         cache = str(self.cache)
         return {**os.environ, "ZIG_GLOBAL_CACHE_DIR": cache, "ZIG_LOCAL_CACHE_DIR": cache}
 
@@ -57,10 +57,10 @@ def find_zig(cache: Path) -> Zig:
     """The Zig that is installed as the Python package `ziglang`.
 
     Args:
-        cache: Where it may keep files.
+        cache: The folder for its cache.
 
     Raises:
-        BuildError: There is none.
+        BuildError: It is not installed, or does not run.
     """
     package = util.find_spec("ziglang")
     folders = list(package.submodule_search_locations or ()) if package else []

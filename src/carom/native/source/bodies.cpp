@@ -10,17 +10,17 @@ namespace {
 
 enum { WORLD_FRAME = 2, LINK_FRAME = 1 };
 enum { POSE = 7, SPATIAL = 6 };
-// Numbers of the state of a link, and links that are asked for at once; more are left to Python.
+// Numbers in the state of a link, and the maximum number of links in one call; more are left to Python.
 enum { LINK_NUMBERS = 3 * POSE + SPATIAL, MOST_LINKS = 32 };
 
-const double ROUNDING = 1e-15;  // of the squared length of a unit quaternion
+const double ROUNDING = 1e-15;  // rounding error of the squared length of a unit quaternion
 
 bool is_given(double number) { return number == number; }
 
 bool has_link(const Body& body, double link) { return -1.0 <= link && link < body.link_count; }
 
 void run(const Launch& launch, int64_t tree) {
-    // The host keeps in mind which tree it asked for last.
+    // The host relies on the tree that it set last.
     const int32_t before = *launch.tree;
     *launch.tree = static_cast<int32_t>(tree);
     launch.function(launch.bounds, launch.arguments);
@@ -32,7 +32,7 @@ struct Pose {
     Quaternion orientation;
 };
 
-// Of the inertial frame of a link, -1 for the base.
+// Pose of the inertial frame of a link; -1 is the base.
 Pose pose_of(const Body& body, int64_t link) {
     if (link < 0)
         return {vector_at(body.position), canonical(quaternion_at(body.position + 3))};
@@ -47,21 +47,21 @@ void push(const Body& body, int64_t link, Vector force, Vector torque) {
 
 }  // namespace
 
-// Body, connection.
+// Arguments: body, connection.
 CAROM_QUICK(base_pose) {
     const Pose pose = pose_of(*call->body, -1);
     put(put(out, pose.position), pose.orientation);
     return 2;
 }
 
-// Body, connection.
+// Arguments: body, connection.
 CAROM_QUICK(base_velocity) {
     const double* velocity = call->body->velocity;
     put(put(out, vector_at(velocity + 3)), vector_at(velocity));
     return 2;
 }
 
-// Body, link, force, position, frame, connection.
+// Arguments: body, link, force, position, frame, connection.
 CAROM_QUICK(apply_force) {
     const Body& body = *call->body;
     const double frame = in[8];
@@ -78,7 +78,7 @@ CAROM_QUICK(apply_force) {
     return 1;
 }
 
-// Body, link, torque, frame, connection.
+// Arguments: body, link, torque, frame, connection.
 CAROM_QUICK(apply_torque) {
     const Body& body = *call->body;
     const double frame = in[5];
@@ -92,7 +92,7 @@ CAROM_QUICK(apply_torque) {
     return 1;
 }
 
-// Body, position, orientation, connection.
+// Arguments: body, position, orientation, connection.
 CAROM_QUICK(place_base) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
@@ -101,7 +101,7 @@ CAROM_QUICK(place_base) {
         return 0;
     const Quaternion q = quaternion_at(in + 4);
     const double squared = dot(q, q);
-    // A pose that was read and is written back stays the same to the last digit.
+    // A pose that was read and is written back stays exactly the same.
     const double scale = __builtin_fabs(squared - 1.0) < ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
     for (int i = 0; i < SPATIAL; ++i)
         body.velocity[i] = 0.0;
@@ -112,7 +112,7 @@ CAROM_QUICK(place_base) {
     return 1;
 }
 
-// Body, linear velocity, angular velocity, connection.
+// Arguments: body, linear velocity, angular velocity, connection.
 CAROM_QUICK(set_base_velocity) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
@@ -125,12 +125,12 @@ CAROM_QUICK(set_base_velocity) {
         put(body.velocity + 3, vector_at(in + 1));
     if (is_given(in[4]))
         put(body.velocity, vector_at(in + 4));
-    // PyBullet's getLinkState is up to date from here on.
+    // As in PyBullet, getLinkState returns current poses after this call.
     run(scene.find_poses, body.tree);
     return 1;
 }
 
-// Body, joint, position, velocity, connection.
+// Arguments: body, joint, position, velocity, connection.
 CAROM_QUICK(reset_joint) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
@@ -148,7 +148,7 @@ CAROM_QUICK(reset_joint) {
 
 namespace {
 
-// Brings up to date what links are asked for; false if it is not known how.
+// Updates the requested data of links; false if data for this are missing.
 bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
     const Body& body = *call.body;
     const Scene& scene = *call.client->scene;
@@ -161,7 +161,7 @@ bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
     return true;
 }
 
-// A tuple of three numbers, of four, of three, and so on, but for velocities, which are three numbers each.
+// A tuple of tuples: positions (3 numbers) and orientations (4) in turn, three times; then velocities (3 numbers each).
 PyObject* tuple_of_poses(const double* numbers, int count) {
     PyObject* tuple = python.PyTuple_New(count);
     for (int i = 0; tuple && i < count; ++i) {
@@ -177,7 +177,7 @@ PyObject* tuple_of_poses(const double* numbers, int count) {
     return tuple;
 }
 
-// Writes the groups of numbers that make the state of a link; returns how many there are.
+// Writes the state of a link as groups of numbers; returns the number of groups.
 int put_link_state(double* out, const Body& body, int64_t index, bool with_velocity) {
     const Link& link = body.links[index];
     const Pose pose = pose_of(body, index);
@@ -196,7 +196,7 @@ int put_link_state(double* out, const Body& body, int64_t index, bool with_veloc
 
 }  // namespace
 
-// Body, link, whether to find velocities, whether to find poses, connection.
+// Arguments: body, link, whether to compute velocities, whether to compute poses, connection.
 CAROM_QUICK(link_state) {
     const Body& body = *call->body;
     const bool with_velocity = in[2] != 0.0;
@@ -205,7 +205,7 @@ CAROM_QUICK(link_state) {
     return put_link_state(out, body, static_cast<int64_t>(in[1]), with_velocity);
 }
 
-// Body, whether to find velocities, whether to find poses, connection; a sequence of links.
+// Arguments: body, whether to compute velocities, whether to compute poses, connection; a sequence of links.
 extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call* call) {
     const Body& body = *call->body;
     const bool with_velocity = in[1] != 0.0;
@@ -229,7 +229,7 @@ extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call
     int groups = 0;
     for (intptr_t i = 0; i < count; ++i)
         groups = put_link_state(numbers[i], body, links[i], with_velocity);
-    // From here on the body may be gone: new tuples let Python collect garbage, which may do anything.
+    // From here on the body may be gone: making a tuple can start garbage collection, which may run any code.
     PyObject* states = python.PyTuple_New(count);
     for (intptr_t i = 0; states && i < count; ++i) {
         PyObject* state = tuple_of_poses(numbers[i], groups);

@@ -1,4 +1,4 @@
-// Boxes around links: a kernel of quick calls.
+// Bounding boxes of links: a kernel of quick calls.
 
 #include "export.h"
 #include "quick_calls.h"
@@ -14,7 +14,7 @@ Vector magnitudes(Vector v) { return {__builtin_fabs(v.x), __builtin_fabs(v.y), 
 
 }  // namespace
 
-// Body, link, connection.
+// Arguments: body, link, connection.
 extern "C" CAROM_EXPORT int carom_link_box(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
     if (!body.boxes || !(-1.0 <= in[1] && in[1] < body.link_count))

@@ -1,4 +1,4 @@
-// Contacts as tuples of Python: what quick calls of contacts make.
+// Contacts as Python tuples: the results of quick calls that list contacts.
 
 #include "export.h"
 #include "quick_calls.h"
@@ -6,7 +6,7 @@
 
 namespace {
 
-// More are found by Python, which lets other threads run meanwhile.
+// Larger numbers of contacts are left to Python, which lets other threads run meanwhile.
 enum { MOST_CONTACTS = 64 };
 
 struct Contact {
@@ -54,7 +54,7 @@ PyObject* tuple_of(const Contact& contact) {
 
 }  // namespace
 
-// First body, second body, link of the first, of the second, connection.
+// Arguments: first body, second body, link of the first, link of the second, connection.
 extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const Call* call) {
     const ContactReport& report = call->client->scene->report;
     double seconds;
@@ -77,7 +77,7 @@ extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const C
     Contact contacts[MOST_CONTACTS];
     for (int32_t i = 0; i < found; ++i)
         contacts[i] = contact_at(report, i);
-    // From here on the report may be gone: new tuples let Python collect garbage, which may do anything.
+    // From here on the report may be gone: making a tuple can start garbage collection, which may run any code.
     Row rows(found);
     for (int32_t i = 0; rows.tuple && i < found; ++i)
         rows.add(tuple_of(contacts[i]));

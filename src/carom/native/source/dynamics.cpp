@@ -1,11 +1,11 @@
-// Changing how links touch, how heavy they are, and how bodies are damped: a kernel of quick calls.
+// Changing contact properties and masses of links, and the damping of bodies: a kernel of quick calls.
 
 #include "export.h"
 #include "quick_calls.h"
 
 namespace {
 
-// Places of the arguments of `changeDynamics`, vectors taking three.
+// Indices of the arguments of `changeDynamics` among the numbers; a vector is three numbers.
 enum {
     BODY,
     LINK,
@@ -33,11 +33,12 @@ const int OF_BODY[] = {LINEAR_DAMPING, ANGULAR_DAMPING};
 
 bool is_given(double number) { return number == number; }
 
-// Whether an argument other than those above is what it is by default.
+// Whether an argument has its default.
 bool is_left_out(const double* in, int place) {
     return !is_given(in[place]) || in[place] == (place == LOWER_LIMIT ? 1.0 : -1.0);
 }
 
+// Whether an argument is given that only Python handles.
 bool has_others(const double* in) {
     for (int place = FRICTION_ANCHOR; place <= SLEEP_THRESHOLD; ++place)
         if ((place < INERTIA || place > INERTIA + 2) && !is_left_out(in, place))
@@ -45,7 +46,7 @@ bool has_others(const double* in) {
     return false;
 }
 
-// Whether one of some arguments is given.
+// Whether any of some arguments is given.
 template <int count>
 bool has_one(const double* in, const int (&places)[count]) {
     for (int place : places)
@@ -54,7 +55,7 @@ bool has_one(const double* in, const int (&places)[count]) {
     return false;
 }
 
-// Lets the host know of what it keeps as well; false if memory is short.
+// Sets an attribute of the host's copy of these properties; false if memory is short.
 bool tell(PyObject* dynamics, PyObject* name, PyObject* value) {
     const bool well = value && !python.PyObject_SetAttr(dynamics, name, value);
     if (!well)
@@ -87,9 +88,8 @@ bool is_held(const Scene& scene, const Body& body) {
     return !is_free;
 }
 
-// Changes the mass of a link, or its moments of inertia alone; false if Python has to see to it, which it has to
-// where a base is freed or held, and where something follows from masses. Fills the tuple, an empty one of three
-// items, with the moments.
+// Changes the mass of a link, or its moments of inertia alone; false if Python has to handle it: if a base is fixed or
+// freed, or if there are data derived from masses. Fills `tuple`, a new one of three items, with the moments.
 bool change_mass(const double* in, const Scene& scene, const Body& body, PyObject* dynamics, PyObject* tuple) {
     const int64_t link = static_cast<int64_t>(in[LINK]), row = body.first_link + link + 1;
     const bool has_mass = in[MASS] >= 0.0, has_inertia = is_given(in[INERTIA]);
@@ -144,15 +144,15 @@ bool change(const double* in, const Client& client, const Body& body, PyObject* 
 
 }  // namespace
 
-// The arguments of `changeDynamics`. Python sees to all but masses, moments of inertia, friction, restitution, softness
-// and damping, and to calls that mix what belongs to a link with what belongs to the body.
+// Arguments: those of `changeDynamics`. Python handles all but masses, moments of inertia, friction, restitution,
+// contact stiffness and damping, and calls that change properties of a link together with damping of the body.
 extern "C" CAROM_EXPORT int carom_change_dynamics(const double* in, double* out, const Call* call) {
     const bool of_mass = in[MASS] >= 0.0 || is_given(in[INERTIA]), of_body = has_one(in, OF_BODY);
     if (has_others(in) || ((of_mass || has_one(in, OF_SURFACE)) && of_body))
         return 0;
     if ((in[CONTACT_STIFFNESS] >= 0.0) != (in[CONTACT_DAMPING] >= 0.0))
         return 0;
-    // A new tuple lets Python collect garbage, which may do anything: the body is looked up after that.
+    // The body is looked up after making the tuple, which can start garbage collection, which may run any code.
     PyObject* moments = of_mass ? python.PyTuple_New(3) : nullptr;
     if (of_mass && !moments) {
         python.PyErr_Clear();

@@ -24,8 +24,8 @@ bool are_those_of(const MotorGroup& group, PyObject* indices) {
 
 }  // namespace
 
-// Body, mode, connection; joints, positions, velocities, forces and two kinds of gains. Python sees to joints that are
-// not those commanded last, and to modes that are not common.
+// Arguments: body, mode, connection; then sequences: joints, positions, velocities, forces, position gains, velocity
+// gains. Python handles joints other than those commanded last, and uncommon modes.
 extern "C" CAROM_EXPORT int carom_command_motors(const double* in, double* out, const Call* call) {
     const MotorGroup* group = call->body->motors;
     const double mode = in[1];

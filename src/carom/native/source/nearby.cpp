@@ -1,19 +1,19 @@
-// What is near: kernels of quick calls about the present bounds and distances of shapes.
+// Nearest points and overlaps: quick calls that use the current bounds and distances of shapes.
 
 #include "export.h"
 #include "rows.h"
 
 namespace {
 
-// More is left to Python, which lets other threads run meanwhile.
+// Larger numbers are left to Python, which lets other threads run meanwhile.
 enum { MOST_SHAPES = 256, MOST_PAIRS = 64 };
 enum { PLACED = 1, PLANE = 4, ANY_LINK = -2 };
-// A distance that counts as none.
+// Greatest search distance, which stands for all larger ones [m].
 const double FAR = 1e30;
 
 void run(const KernelCall& call) { call.function(call.bounds, call.arguments); }
 
-// Copies numbers; returns whether a bit is another.
+// Copies numbers; returns whether any bit has changed.
 bool copy(double* to, const double* from, int64_t count) {
     uint64_t differences = 0;
     for (int64_t i = 0; i < count; ++i) {
@@ -26,7 +26,7 @@ bool copy(double* to, const double* from, int64_t count) {
     return differences != 0;
 }
 
-// Places shapes by the present coordinates; false if it is not known how.
+// Places shapes at the current coordinates; false if data for this are missing.
 bool place(Placement& at) {
     if (!at.place.function || at.shape_count > MOST_SHAPES)
         return false;
@@ -41,7 +41,7 @@ bool place(Placement& at) {
         return false;
     const bool moved = copy(at.placed_at, at.positions, at.position_count);
     if (moved || *at.readiness < PLACED || at.changes != changes) {
-        // After a step these are the poses at the start of its last substep, and getters count on that.
+        // After a step these are the poses at the start of its last substep, which other functions have to return.
         copy(at.poses_before, at.poses, at.pose_count);
         run(at.find_poses);
         run(at.place);
@@ -55,7 +55,7 @@ struct Range {
     int64_t begin, end;
 };
 
-// Rows of a link, or of all links of a body.
+// Rows of one link, or of all links of a body.
 Range rows_of(const Body& body, double link) {
     const int64_t first = body.first_link, end = first + 1 + body.link_count;
     if (link <= ANY_LINK)
@@ -68,7 +68,7 @@ struct Pair {
     int32_t shape_a, shape_b, link_a, link_b;
 };
 
-// All pairs of shapes of some links and of others; -1 if there are too many.
+// All pairs of a shape of links a and a shape of links b; -1 if there are too many.
 int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
     int count = 0;
     for (int64_t i = a.begin; i < a.end; ++i)
@@ -125,7 +125,8 @@ bool meets(const Placement& at, int64_t shape, const double* lower, const double
 
 }  // namespace
 
-// Body, another, distance, link of the first, of the second, a bare shape on either side, connection.
+// Arguments: two bodies, distance, link of the first, link of the second, two collision shapes without bodies,
+// connection.
 extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const Call* call) {
     Scene& scene = *call->client->scene;
     const PairSearch& nearest = scene.nearest;
@@ -158,7 +159,7 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
         nearest.first[i] = before[0][i], nearest.second[i] = before[1][i];
     const int first_a = static_cast<int>(rows_a.begin - a->first_link) - 1;
     const int first_b = static_cast<int>(rows_b.begin - b->first_link) - 1;
-    // From here on the world may be another: new tuples let Python collect garbage, which may do anything.
+    // From here on the world may change: making a tuple can start garbage collection, which may run any code.
     Row contacts(found);
     for (int i = 0; contacts.tuple && i < found; ++i) {
         const Pair& pair = pairs[of[i]];
@@ -169,7 +170,7 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
     return contacts.tuple;
 }
 
-// Two corners of a box, connection.
+// Arguments: two corners of a box, connection.
 extern "C" CAROM_EXPORT PyObject* carom_overlapping(const double* in, const Call* call) {
     Placement& at = call->client->scene->placement;
     if (at.has_bare_links || !place(at))

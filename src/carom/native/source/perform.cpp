@@ -1,8 +1,8 @@
 // Performs programs of kernel launches, world after world, without Python in between.
 //
-// A launch is a C function with the addresses of its bounds and of its arguments. A thread takes chunks of
-// worlds from a list that all threads share, so that uneven ones even out, and takes each world through all
-// of its steps while it is in the processor's caches. `carom.engine.interpreter` has the same structs.
+// A launch is a C function with the addresses of its bounds and of its arguments. Each thread takes chunks of
+// worlds from a list that all threads share, which balances their load, and takes each world through all of its
+// steps while it is in the processor's caches. `carom.engine.interpreter` has the same structs.
 
 #include <stdint.h>
 
@@ -29,12 +29,12 @@ struct Program {
 struct Run {
     const Program* program;
     const int32_t* worlds;
-    const int32_t* due;  // substeps of each step; where it is 0, contacts are found and nothing moves
-    int32_t* counter;    // place in `worlds` of the next chunk that threads share, or null
+    const int32_t* due;  // substeps of each step; if it is 0, contacts are found and nothing moves
+    int32_t* counter;    // index in `worlds` of the next chunk, shared by all threads; or null
     int32_t world_count;
     int32_t step_count;
     int32_t chunk;
-    int32_t resumed;  // 1: go on after the steps that each world has done already
+    int32_t resumed;  // 1: continue after the steps that each world has already done
     int32_t first_substep;
     int32_t end_substep;
 };

@@ -1,8 +1,7 @@
-// CPython as builtins of this library see it: `carom.native.quick_calls` fills the table.
+// The functions and objects of CPython that this library uses: a table that `carom.native.quick_calls` fills.
 //
-// The library names nothing of Python's, or it would be for one version alone, and would not load where there is
-// none. It is told where the functions are that it needs, all of them of the stable ABI of 3.10 to 3.14 but for the
-// buffers of 3.10, which are laid out the same.
+// The library is not linked against Python, because then it would fit only one version, and would not load without
+// Python. All functions belong to the stable ABI of 3.10 to 3.14, except buffers in 3.10, which have the same layout.
 #pragma once
 
 #include <stdint.h>
@@ -52,9 +51,9 @@ struct PyBuffer {
     F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))                         \
     F(PyObject*, PyObject_Vectorcall, (PyObject*, PyObject* const*, intptr_t, PyObject*))
 
-// Objects that are there once.
+// Singletons.
 #define CAROM_PYTHON_OBJECTS(F) F(None) F(True) F(False)
-// Types, of which instances have exactly this one.
+// Types; instances of their subclasses are not accepted.
 #define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(range) F(ndarray) F(float64)
 
 struct Python {

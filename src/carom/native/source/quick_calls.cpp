@@ -1,10 +1,9 @@
-// Builtins of Python that try the usual case themselves and leave everything else to a Python function.
+// Builtins of Python that handle the usual case themselves and leave everything else to a Python function.
 //
-// A quick call has a kernel, which takes numbers and gives numbers, and a description of its arguments and results.
-// If the arguments are plain numbers and sequences of them, the kernel is asked. If they are not, if anything about
-// them is odd, or if the kernel declines, the Python function behind the builtin is called with the very same
-// arguments, and does what is right or says what is wrong. No code of Python runs before that, so that nothing can
-// change under this code's hands.
+// A quick call has a kernel, which takes numbers and returns numbers, and a description of its arguments and results.
+// If the arguments are plain numbers and sequences of them, the kernel is called. If they are anything else, or if the
+// kernel declines, the Python function behind the builtin is called with the very same arguments, and does the work or
+// raises the error. No Python code runs before that, so that nothing can change while this code runs.
 
 #include "quick_calls.h"
 
@@ -19,24 +18,24 @@ namespace {
 enum { MOST_CALLS = 48, MOST_PARAMETERS = 26, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8, MOST_CLIENTS = 1024 };
 enum { RECORDS = 0x1C };  // PyBUF_RECORDS_RO
 
-// What is greater is refused, or looked at more closely, by Python.
+// Bounds of numbers and of squared lengths of quaternions. Calls with others are left to Python.
 const double GREATEST = 1e30, LEAST_SQUARE = 1e-60, GREATEST_SQUARE = 1e60;
 
 struct Parameter {
     PyObject* name;  // interned
-    double missing;  // its value where it is left out; NaN for None
+    double missing;  // its default; NaN for None
     int32_t kind;    // a letter, see `read`
     int32_t is_required;
 };
 
 struct QuickCall {
     Kernel kernel;
-    Maker maker;  // in the place of a kernel
+    Maker maker;  // used instead of a kernel if it is not null
     int64_t parameter_count;
     Parameter parameters[MOST_PARAMETERS];
     // Lengths of the groups of results, 0 for a number alone, and -1 after the last one.
     int32_t groups[MOST_GROUPS + 1];
-    int32_t is_flat;  // the one group is the result
+    int32_t is_flat;  // there is one group, and it is the result
 };
 
 QuickCall calls[MOST_CALLS];
@@ -86,7 +85,7 @@ int width_of(int kind) {
     return kind == '-' || kind == 's' || kind == 'v' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
 }
 
-// Reads an argument; false if it is not of the kind.
+// Reads an argument; false if it is not of this kind.
 bool read(int kind, PyObject* value, double* numbers, Call* call) {
     switch (kind) {
     case '-':  // not used
@@ -99,7 +98,7 @@ bool read(int kind, PyObject* value, double* numbers, Call* call) {
         return read_numbers(value, 3, numbers);
     case '4':
         return read_numbers(value, 4, numbers);
-    case 'q': {  // a quaternion that has a direction
+    case 'q': {  // a quaternion whose length is not zero
         if (!read_numbers(value, 4, numbers))
             return false;
         const double x = numbers[0], y = numbers[1], z = numbers[2], w = numbers[3];
@@ -113,13 +112,13 @@ bool read(int kind, PyObject* value, double* numbers, Call* call) {
         call->sequences[call->sequence_count++] = value;
         return value->type == python.list_type || value->type == python.tuple_type || value->type == python.range_type;
     case 'b':  // the number of a body
-    case 'c':  // that of a connection
+    case 'c':  // the number of a connection
         return read_integer(value, numbers);
     }
     return false;
 }
 
-// Finds what the arguments name.
+// Finds the connection and the body that the arguments name; false if Python has to handle the call.
 bool find(const QuickCall& made, const double* numbers, Call* call) {
     const double* body = nullptr;
     for (int i = 0; i < made.parameter_count; ++i) {
@@ -140,7 +139,7 @@ bool find(const QuickCall& made, const double* numbers, Call* call) {
     return true;
 }
 
-// Puts the arguments of a call where its numbers are expected.
+// Reads all arguments of a call; false if Python has to handle the call.
 bool read_all(
     const QuickCall& made, PyObject* const* arguments, intptr_t count, PyObject* names, double* numbers, Call* call
 ) {
@@ -171,7 +170,7 @@ bool read_all(
         }
         numbers += width;
     }
-    // What is left over is misspelt, or given twice.
+    // A named argument that was not used is misspelt or given twice.
     return used == named;
 }
 
@@ -216,7 +215,8 @@ PyObject* answer(
     return python.PyObject_Vectorcall(function, arguments, count, names);
 }
 
-// A C function for each quick call: CPython tells it the Python function, and nothing else of the call.
+// A C function for each quick call. CPython passes the Python function, which does not identify the call; so each quick
+// call needs a function of its own.
 typedef PyObject* (*Entry)(PyObject*, PyObject* const*, intptr_t, PyObject*);
 
 template <int place>
@@ -308,7 +308,7 @@ Lock::~Lock() {
         python.PyErr_Clear();
 }
 
-// Names of what the host puts into `carom_python`, in its order.
+// Names of the functions and objects that the host writes to the table `python`, in order.
 #define F(result, name, arguments) #name " "
 extern "C" CAROM_EXPORT const char carom_python_functions[] = CAROM_PYTHON_FUNCTIONS(F);
 #undef F
@@ -316,14 +316,14 @@ extern "C" CAROM_EXPORT const char carom_python_functions[] = CAROM_PYTHON_FUNCT
 extern "C" CAROM_EXPORT const char carom_python_objects[] = CAROM_PYTHON_OBJECTS(F) CAROM_PYTHON_TYPES(F);
 #undef F
 
-// Not 0 while Python has to see to all calls that name a connection.
+// Not 0 while Python has to handle all calls that name a connection.
 extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused = 0;
 
 extern "C" CAROM_EXPORT int carom_most_quick_calls() { return MOST_CALLS; }
 extern "C" CAROM_EXPORT int carom_most_clients() { return MOST_CLIENTS; }
 
-// Where the host finds the tables of Python, of quick calls and of clients. Returns 0 if another interpreter of the
-// process has them already.
+// Gives the host the addresses of the tables of Python's functions, of quick calls and of clients. Returns 0 if another
+// interpreter of the process already has them.
 extern "C" CAROM_EXPORT int carom_claim_quick_calls(void** of_python, QuickCall** of_calls, const Client*** of_clients) {
     static bool is_claimed = false;
     if (is_claimed)

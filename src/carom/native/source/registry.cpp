@@ -1,12 +1,12 @@
-// Which bodies there are, and what does not change about them: quick calls that make their results of what the host
-// keeps. None of it lets Python collect garbage.
+// The bodies of a world and their constant properties: quick calls that return objects of the Python side. None of them
+// can start garbage collection.
 
 #include "export.h"
 #include "quick_calls.h"
 
 namespace {
 
-// What the host keeps of a body, borrowed; null if there is no such body.
+// The Python object of a body, as a borrowed reference; null if there is no such body.
 PyObject* handle_of(const Client& client, double body) {
     PyObject* number = python.PyLong_FromLong(static_cast<long>(body));
     PyObject* handle = number ? python.PyDict_GetItemWithError(client.world_bodies, number) : nullptr;
@@ -17,7 +17,7 @@ PyObject* handle_of(const Client& client, double body) {
     return handle;
 }
 
-// An attribute of that; null if it is None.
+// An attribute of the Python object of a body; null if it is None.
 PyObject* attribute(const Client& client, double body, PyObject* name) {
     PyObject* handle = handle_of(client, body);
     PyObject* value = handle ? python.PyObject_GetAttr(handle, name) : nullptr;
@@ -31,17 +31,17 @@ PyObject* attribute(const Client& client, double body, PyObject* name) {
 
 }  // namespace
 
-// Connection: one that is known is there.
+// Arguments: connection. A connection that is known exists.
 extern "C" CAROM_EXPORT PyObject* carom_is_connected(const double* in, const Call* call) {
     return python.PyLong_FromLong(1);
 }
 
-// Connection.
+// Arguments: connection.
 extern "C" CAROM_EXPORT PyObject* carom_body_count(const double* in, const Call* call) {
     return python.PyLong_FromLong(static_cast<long>(python.PyDict_Size(call->client->world_bodies)));
 }
 
-// Place among the bodies, connection.
+// Arguments: index among the bodies, connection.
 extern "C" CAROM_EXPORT PyObject* carom_body_at(const double* in, const Call* call) {
     PyObject *bodies = call->client->world_bodies, *number, *handle;
     intptr_t at = 0;
@@ -55,12 +55,12 @@ extern "C" CAROM_EXPORT PyObject* carom_body_at(const double* in, const Call* ca
     return nullptr;
 }
 
-// Body, connection.
+// Arguments: body, connection.
 extern "C" CAROM_EXPORT PyObject* carom_joint_count(const double* in, const Call* call) {
     return attribute(*call->client, in[0], call->client->joint_count_name);
 }
 
-// Body, connection.
+// Arguments: body, connection.
 extern "C" CAROM_EXPORT PyObject* carom_body_names(const double* in, const Call* call) {
     return attribute(*call->client, in[0], call->client->encoded_names_name);
 }

@@ -1,10 +1,10 @@
-// Tuples of Python, item by item.
+// Python tuples that are filled item by item.
 #pragma once
 
 #include "quick_calls.h"
 #include "turns.h"
 
-// Fills a tuple item by item, as long as memory lasts.
+// A tuple that is filled item by item; it becomes null if memory is short.
 struct Row {
     explicit Row(int length) : tuple(python.PyTuple_New(length)) {}
 

@@ -1,8 +1,8 @@
-// Maths functions for the host, whose own are others on each platform: `carom.native.trigonometry`.
+// Maths functions for the host, whose own functions differ between platforms: `carom.native.trigonometry`.
 
 #include "export.h"
 
-// By names of our own, as `flags.py` says: those of the kernels.
+// The functions that kernels use; `flags.py` gives them names of their own.
 extern "C" double sin(double);
 extern "C" double cos(double);
 extern "C" double tan(double);

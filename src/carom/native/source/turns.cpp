@@ -1,11 +1,11 @@
-// Rotations and rigid transforms by numbers: kernels of quick calls, and of `pybullet._maths.maths` by ctypes.
+// Rotations and rigid transforms: kernels of quick calls, which `pybullet._maths.maths` also calls by ctypes.
 
 #include <stdint.h>
 
 #include "export.h"
 #include "turns.h"
 
-// By names of our own, as `flags.py` says: those of the kernels.
+// The functions that kernels use; `flags.py` gives them names of their own.
 extern "C" double sin(double);
 extern "C" double cos(double);
 extern "C" double asin(double);
@@ -18,17 +18,17 @@ extern "C" double hypot(double, double);
 namespace {
 
 const double HALF_PI = 1.5707963267948966;
-// A sine of the pitch from which on roll and yaw turn about the same axis.
+// Sine of the pitch from which on roll and yaw count as rotations about the same axis.
 const double GIMBAL_LOCK = 0.99999;
 // Ten times the spacing of single-precision numbers at 1.
 const double NO_AXIS = 10.0 * 1.1920928955078125e-07;
-// How far the squared length of a unit quaternion in single precision may be from 1.
+// Tolerance of the squared length of a unit quaternion in single precision.
 const double UNIT = 1e-6;
 
 double length_of(Vector v) { return hypot(hypot(v.x, v.y), v.z); }
 double to_cosine(double x) { return x > 1.0 ? 1.0 : x < -1.0 ? -1.0 : x; }
 
-// End · start⁻¹ with the nearer of the two quaternions of `end`.
+// The rotation from `start` to `end`, end · start⁻¹, with the sign of `end` that is nearer to `start`.
 Quaternion difference(Quaternion start, Quaternion end) {
     return (dot(start, end) > 0.0 ? end : -end) * conjugate(start);
 }
@@ -105,7 +105,7 @@ CAROM_TURNS(quaternion_from_axis_angle) {
 }
 
 CAROM_TURNS(axis_angle_from_quaternion) {
-    // This close to no rotation the answer hangs on the rounding of w to single precision.
+    // Near the identity the result depends on the rounding of w to single precision, as in PyBullet.
     const double w = static_cast<float>(in[3]);
     const double sine_squared = 1.0 - w * w;
     out[3] = 2.0 * acos(to_cosine(w));
@@ -155,7 +155,7 @@ CAROM_TURNS(axis_difference_quaternion) {
     return 1;
 }
 
-// Declines where the time is too short for a velocity to be a number.
+// Declines if the duration is too short for a finite velocity.
 CAROM_TURNS(velocity_quaternion) {
     const Quaternion turn = difference(quaternion_at(in), quaternion_at(in + 4));
     const double duration = in[8], sine = length_of({turn.x, turn.y, turn.z}), w = turn.w;
@@ -163,7 +163,7 @@ CAROM_TURNS(velocity_quaternion) {
         put(out, Vector{0.0, 0.0, 0.0});
         return 1;
     }
-    // Of quaternions that are not of unit length PyBullet looks at w alone.
+    // If quaternions do not have unit length, PyBullet computes the angle from w alone.
     const bool is_unit = __builtin_fabs(sine * sine + w * w - 1.0) < UNIT;
     const double angle = 2.0 * (is_unit ? atan2(sine, w) : acos(to_cosine(w)));
     const double scale = angle / (sine * duration);

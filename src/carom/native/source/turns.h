@@ -1,4 +1,4 @@
-// Quaternions (x, y, z, w) and vectors, in the order of operations of `pybullet._maths.rotations`.
+// Quaternions (x, y, z, w) and vectors, with the same order of operations as `pybullet._maths.rotations`.
 #pragma once
 
 struct Vector {
@@ -53,7 +53,7 @@ struct Matrix {
     Vector rows[3];
 };
 
-// The matrix of a quaternion that need not be of unit length, in the order of operations of
+// The rotation matrix of a quaternion, which need not have unit length; with the same order of operations as
 // `carom.description.transform.rotation_matrix`.
 inline Matrix matrix_of(Quaternion q) {
     const double s = 2.0 / dot(q, q);
@@ -68,7 +68,7 @@ inline Matrix matrix_of(Quaternion q) {
     }};
 }
 
-// A vector turned by a quaternion of unit length.
+// A vector rotated by a unit quaternion.
 inline Vector turned(Quaternion q, Vector v) {
     const double tx = 2.0 * (q.y * v.z - q.z * v.y);
     const double ty = 2.0 * (q.z * v.x - q.x * v.z);
@@ -80,8 +80,8 @@ inline Vector turned(Quaternion q, Vector v) {
     };
 }
 
-// The one of the two quaternions of a rotation that PyBullet reports: w is positive while the trace of the matrix
-// is, or else the largest of x, y and z is.
+// Of the two quaternions of a rotation, the one that PyBullet reports: w is positive if the trace of the rotation
+// matrix is; otherwise the component of x, y and z with the largest magnitude is positive.
 inline Quaternion canonical(Quaternion q) {
     double leading = q.w;
     if (!(q.w * q.w > 0.25)) {

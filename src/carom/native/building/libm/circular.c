@@ -3,11 +3,11 @@
 #include "libm.h"
 
 #define EIGHTH_TURN 0.78539816339744828
-// Squares of what is smaller are lost beside 1.
+// The squares of smaller numbers vanish when added to 1.
 #define TINY 0x1p-27
 
-// An angle of at most an eighth of a turn, as a sum whose second part is smaller than the rounding error of the first,
-// and the quarters of a turn that it is away from the one that was asked for.
+// A reduced angle: at most an eighth of a turn, as a sum whose second part is smaller than the rounding error of the
+// first; and the number of quarter turns between it and the original angle.
 struct angle {
     double high, low;
     int quarters, reduced;
@@ -25,7 +25,7 @@ static struct angle reduce(double x)
     return (struct angle) { rest[0], rest[1], quarters, 1 };
 }
 
-// The sine `quarters` further on: every second one is a cosine, and after two the sign is the other.
+// The sine of an angle plus `quarters` quarter turns: a cosine if the number is odd, and negated after two.
 static double sine(struct angle angle, int quarters)
 {
     double value = quarters & 1 ? __cos(angle.high, angle.low) : __sin(angle.high, angle.low, angle.reduced);

@@ -1,4 +1,4 @@
-// All platforms that Carom is built for are little-endian.
+// All platforms of Carom are little-endian.
 #pragma once
 
 #define __LITTLE_ENDIAN 1234

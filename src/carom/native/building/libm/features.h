@@ -1,4 +1,4 @@
-// What musl's sources say of names.
+// Attributes of symbols in musl's sources.
 #pragma once
 
 #define hidden __attribute__((__visibility__("hidden")))

@@ -1,2 +1,2 @@
-// No platform has operations of its own: musl's generic ones are used everywhere.
+// No platform-specific operations: musl's generic ones are used everywhere.
 #pragma once

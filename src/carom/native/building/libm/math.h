@@ -1,4 +1,4 @@
-// What musl's maths sources need of <math.h>, for any target: no platform's own header is used.
+// The part of <math.h> that musl's maths sources need, for any target: no platform's own header is used.
 #pragma once
 
 #include <features.h>
