@@ -26,7 +26,7 @@ Step = tuple[np.ndarray, float, bool, bool, dict[str, Any]]
 
 
 class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
-    """A Minitaur on flat ground, rewarded for its way forward minus the energy it spends.
+    """A Minitaur on flat ground, rewarded for forward progress minus the energy it spends.
 
     The first episode begins at the first `reset`, or before something that needs an episode: in PyBullet it
     begins when the environment is made, and scripts rely on this.
@@ -211,7 +211,7 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         return abs(float(np.dot(self.minitaur.GetMotorTorques(), self.minitaur.GetMotorVelocities())))
 
     def get_objectives(self) -> list[list[float]]:
-        """Terms of the reward in each step of the episode: way forward, energy, drift and shaking."""
+        """Terms of the reward in each step of the episode: forward progress, energy, drift and shaking."""
         return self._objectives
 
     def get_minitaur_motor_angles(self) -> np.ndarray:
