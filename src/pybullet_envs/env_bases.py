@@ -149,7 +149,7 @@ class MJCFBaseBulletEnv(BulletEnv):
         return state, {}
 
     def _scene_is_set(self) -> None:
-        """Called by `reset` between those of the scene and the robot; for subclasses."""
+        """Called by `reset` after the scene is set up and before the robot; for subclasses."""
 
     def HUD(self, state: Any, a: Any, done: bool) -> None:
         """Called at every step; does nothing."""

@@ -76,7 +76,7 @@ class MinitaurBody(ABC):
             urdf_root: Folder of the robot's files; by default that of `pybullet_data`.
             time_step: Time step of the simulation [s].
             self_collides: Whether the links collide with each other.
-            velocity_limit: Velocity limit [rad/s]: it limits how far commands are from present angles.
+            velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             motor_model: Model of the motors, or None.
             pd_gain: Velocity gain of the PD controller without a motor model; None for position control.
             overheats: Whether a motor is shut off after a high torque for one second.

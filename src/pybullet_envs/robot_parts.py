@@ -89,7 +89,7 @@ class BodyPart:
         return np.array(self._p.getLinkState(self.body, self.bodyPartIndex, computeLinkVelocity=1)[6])
 
     def reset_position(self, position: Vector) -> None:
-        """Moves the base of the body, at rest, to a position [m] and this link's orientation."""
+        """Moves the base of the body, at rest, to a position [m] and the orientation of this link."""
         self.reset_pose(position, self.current_orientation())
 
     def reset_orientation(self, orientation: Vector) -> None:
@@ -101,7 +101,7 @@ class BodyPart:
         self._p.resetBaseVelocity(self.body, list(linearVelocity), list(angularVelocity))
 
     def reset_pose(self, position: Vector, orientation: Vector) -> None:
-        """Moves the base of the body, at rest."""
+        """Moves the base of the body, at rest, to a position [m] and an orientation (x, y, z, w)."""
         self._p.resetBasePositionAndOrientation(self.body, list(position), list(orientation))
 
     def pose(self) -> Pose_Helper:

@@ -50,7 +50,7 @@ class InvertedPendulum(MJCFBasedRobot):
 
 
 class InvertedPendulumSwingup(InvertedPendulum):
-    """A pole on a cart that hangs at the start."""
+    """A pole that hangs at the start."""
 
     swingup = True
 

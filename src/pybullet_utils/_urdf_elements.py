@@ -149,7 +149,7 @@ class UrdfJoint:
         link: The child link.
         joint_name: Name of the joint.
         joint_type: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_FIXED` or `JOINT_SPHERICAL`.
-        joint_lower_limit: Lower position limit [rad or m]; above the upper one, there are no limits.
+        joint_lower_limit: Lower position limit [rad or m]; if it is above the upper one, there are none.
         joint_upper_limit: Upper position limit [rad or m].
         joint_max_force: Maximum torque or force [N m or N].
         joint_max_velocity: Maximum velocity [rad/s or m/s].

@@ -80,7 +80,7 @@ class ArgParser:
         return self._first(key, default, _is_true)
 
     def parse_bools(self, key: str, default: Sequence[bool] = ()) -> list[bool]:
-        """Which of the words after a key are `true`, `True`, `t`, `T` or `1`."""
+        """For each word after a key, whether it is `true`, `True`, `t`, `T` or `1`."""
         return self._all(key, default, _is_true)
 
     def _first(self, key: str, default: Any, read: Callable[[str], _T]) -> _T:

@@ -80,7 +80,7 @@ def parseWorld(p: Any, filepath: str) -> dict[str, dict[str, Any]]:
     """Loads the included files of the models of a world, at their poses, as bodies that do not move.
 
     Args:
-        p: `pybullet`, or a client of it.
+        p: `pybullet` or a `BulletClient`.
         filepath: The world file.
 
     Returns:

@@ -69,7 +69,7 @@ def reduce_max(x: Any) -> Any:
 
 
 def reduce_all(x: Any, op: Any) -> Any:
-    """The numbers or arrays of all processes reduced by an MPI operation, given as such or by name."""
+    """A number or an array, reduced over all processes with an MPI operation or the name of one."""
     mpi = _world()
     if mpi is None:
         return np.array(x) if isinstance(x, np.ndarray) else x

@@ -74,7 +74,8 @@ def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> np.ndar
 def euler_from_matrix(matrix: Numbers, axes: str = "sxyz") -> tuple[float, float, float]:
     """The Euler angles [rad] of a rotation matrix about the given axes.
 
-    In gimbal lock, where the first and the third axis coincide, the third angle is 0.
+    In gimbal lock, where the first and the third axis coincide, the third angle is 0 for fixed axes, and the
+    first for rotating ones.
     """
     static, (i, j, k) = _parsed(axes)
     turned = np.asarray(matrix, dtype=float)[:3, :3]

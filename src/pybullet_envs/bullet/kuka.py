@@ -33,7 +33,7 @@ class Kuka:
         motorNames: Names of these joints: `str` of the bytes.
         useInverseKinematics: Whether actions are motions of the wrist; otherwise, joint targets.
         useNullSpace: 1 for inverse kinematics near `rp`, within `ll` and `ul`.
-        useOrientation: Whether inverse kinematics lets the gripper point down.
+        useOrientation: Whether inverse kinematics keeps the gripper pointing down.
         useSimulation: Whether motors move the joints; otherwise, joints are set to the targets at once.
     """
 
@@ -93,7 +93,7 @@ class Kuka:
         self.motorNames = [str(info[1]) for info in infos if info[3] > -1]
 
     def getActionDimension(self) -> int:
-        """As in PyBullet, the number of joints that move with inverse kinematics, otherwise 6."""
+        """As in PyBullet: with inverse kinematics the number of moving joints, otherwise 6."""
         return len(self.motorIndices) if self.useInverseKinematics else 6
 
     def getObservationDimension(self) -> int:

@@ -61,7 +61,7 @@ class Minitaur(MinitaurBody):
             urdf_root: Folder of the files; by default that of `pybullet_data`.
             time_step: Time step of the simulation [s].
             self_collision_enabled: Whether the links collide with each other.
-            motor_velocity_limit: Velocity limit [rad/s]: it limits how far commands are from present angles.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
             accurate_motor_model_enabled: Whether torques of a motor model drive the motors.
             motor_kp: Position gain of the motor model.

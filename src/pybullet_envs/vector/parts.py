@@ -13,7 +13,7 @@ from pybullet_envs.robot_parts import BodyPart, Joint
 
 
 class Joints:
-    """Some joints, of one or several bodies, in the order of a robot of a single environment.
+    """Some joints of one or several bodies, in many worlds, in the order of `joints`.
 
     Attributes:
         count: Number of joints.

@@ -26,7 +26,7 @@ class PandaOverTray:
     """An arm, a tray, three bricks and three balls.
 
     Attributes:
-        bullet_client: `pybullet`, or a client of it.
+        bullet_client: `pybullet` or a `BulletClient`.
         offset: Position of the arm's base [m].
         legos: Ids of the bricks.
         sphereId: Id of the first ball.
@@ -35,10 +35,10 @@ class PandaOverTray:
     """
 
     def __init__(self, bullet_client: Any, offset: Sequence[float]) -> None:
-        """Loads everything.
+        """Loads arm, tray, bricks and balls.
 
         Args:
-            bullet_client: `pybullet`, or a client of it; gravity, time step and search path are set already.
+            bullet_client: `pybullet` or a `BulletClient`, with gravity, time step and search path set.
             offset: Position of the arm's base [m].
         """
         self.bullet_client = bullet_client

@@ -28,7 +28,7 @@ jointPositions = rp = FIRST_POSE
 _WAIT, _CIRCLE_LOW, _CIRCLE_HIGH, _OVER_BRICK, _AT_BRICK, _OPEN, _CLOSE, _TO_MIDDLE = range(8)
 _LOW, _HIGH = 0.03, 0.2
 _KEPT = 0.9
-"""Weight of the hand's present height in the next one; its target height has the rest."""
+"""Weight of the hand's present height in a step; the rest is the weight of its target height."""
 
 
 class PandaSim(PandaOverTray):

@@ -29,7 +29,7 @@ class XArm6Sim:
     """An xArm; each `step` advances the path of its hand by 1/60 s.
 
     Attributes:
-        bullet_client: `pybullet`, or a client of it.
+        bullet_client: `pybullet` or a `BulletClient`.
         offset: Position of the arm's base [m].
         xarm: Id of the arm.
         jointPoses: Last target positions of the joints [rad].
@@ -40,7 +40,7 @@ class XArm6Sim:
         """Loads the arm, a tray, three bricks and three balls.
 
         Args:
-            bullet_client: `pybullet`, or a client of it; gravity, time step and search path are set already.
+            bullet_client: `pybullet` or a `BulletClient`, with gravity, time step and search path set.
             offset: Position of the arm's base [m].
         """
         self.bullet_client = bullet_client

@@ -94,7 +94,7 @@ class Minitaur(MinitaurDynamics):
             time_step: Time step of the simulation [s].
             action_repeat: Number of simulation steps of `Step`.
             self_collision_enabled: Whether the links collide with each other.
-            motor_velocity_limit: Velocity limit [rad/s]: it limits how far commands are from present angles.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
             accurate_motor_model_enabled: Whether torques of a motor model drive the motors.
             remove_default_joint_damping: Whether linear and angular damping of the robot are 0.

@@ -93,7 +93,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
             distance_limit: Distance from the start at which an episode ends [m].
             observation_noise_stdev: Standard deviations of the sensor noise; see `Minitaur`.
             self_collision_enabled: Whether the robot's links collide with each other.
-            motor_velocity_limit: Velocity limit [rad/s]: it limits how far commands are from present angles.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
             leg_model_enabled: Whether actions are swing and extension of legs, or motor angles [rad].
             accurate_motor_model_enabled: Whether torques of a motor model drive the motors.
