@@ -1,5 +1,5 @@
-"""What scripts look up to render without a display: `p.loadPlugin(<its file>, "_eglRendererPlugin")`.
+"""Placeholder for PyBullet's EGL plugin: `p.loadPlugin(<this file>, "_eglRendererPlugin")`.
 
-Carom's `getCameraImage` needs neither a display nor a plugin, so there is nothing in it. It is here because
-PyBullet has a library of this name, and scripts find it by `pkgutil.get_loader("eglRenderer")`.
+The module is empty, because Carom's `getCameraImage` needs neither a display nor a plugin. PyBullet has a
+library of this name, which scripts look up with `pkgutil.get_loader("eglRenderer")`.
 """

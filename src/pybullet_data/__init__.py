@@ -1,6 +1,7 @@
 """Carom's own assets, under the file names PyBullet scripts use.
 
-`p.setAdditionalSearchPath(pybullet_data.getDataPath())` makes them available to `loadURDF` and friends.
+`p.setAdditionalSearchPath(pybullet_data.getDataPath())` makes them available to `loadURDF` and the
+other loading functions.
 """
 
 import os
@@ -9,5 +10,5 @@ __all__ = ["getDataPath"]
 
 
 def getDataPath() -> str:
-    """Folder that holds the assets: robots, floors, things, meshes and textures."""
+    """The folder of the assets: robots, floors, objects, meshes and textures."""
     return os.path.dirname(os.path.abspath(__file__))

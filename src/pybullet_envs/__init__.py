@@ -1,7 +1,7 @@
-"""PyBullet's environments for learning, for Gymnasium: `gymnasium.make("AntBulletEnv-v0")`.
+"""PyBullet's reinforcement learning environments for Gymnasium: `gymnasium.make("AntBulletEnv-v0")`.
 
-Importing this package registers them, where Gymnasium is installed. Observations, actions, rewards and ends
-of episodes are PyBullet's; the interface is Gymnasium's, with its five results of `step`. Robots and other
+Importing this package registers them if Gymnasium is installed. Observations, actions, rewards and ends of
+episodes are PyBullet's; the interface is Gymnasium's, whose `step` returns five values. Robots and other
 parts work without Gymnasium.
 """
 
@@ -19,7 +19,7 @@ __all__ = ["getList"]
 
 _SWINGUP = "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv"
 _FLAGRUN_HARDER = "gym_locomotion_envs:HumanoidFlagrunHarderBulletEnv"
-# Name, module and class, steps of an episode, and what counts as solved.
+# Name, module and class, maximum number of steps, and reward threshold.
 _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("CartPoleBulletEnv-v1", "bullet.cartpole_bullet:CartPoleBulletEnv", 200, 190.0),
     ("CartPoleContinuousBulletEnv-v0", "bullet.cartpole_bullet:CartPoleContinuousBulletEnv", 200, 190.0),
@@ -62,7 +62,7 @@ _ENVIRONMENTS: tuple[tuple[str, str, int, float | None], ...] = (
     ("HumanoidFlagrunHarderBulletEnv-v0", _FLAGRUN_HARDER, 1000, None),
 )
 
-# Those that can be made many at once: module and class in `pybullet_envs.vector`.
+# Environments with a vector version: its module and class in `pybullet_envs.vector`.
 _VECTORS = {
     "CartPoleBulletEnv-v1": "cartpole:CartPoleVectorEnv",
     "CartPoleContinuousBulletEnv-v0": "cartpole:CartPoleContinuousVectorEnv",
@@ -79,14 +79,14 @@ _VECTORS = {
     "HumanoidBulletEnv-v0": "walkers:HumanoidVectorEnv",
 }
 
-# Names that PyBullet has besides, so that asking for one says more than that nobody knows it.
+# PyBullet's other names; they are registered so that the error gives the reason.
 _DEEP_MIMIC = ("HumanoidDeepMimicBackflipBulletEnv-v1", "HumanoidDeepMimicWalkBulletEnv-v1")
-_NEEDS_MOTIONS = "it imitates recorded motions of people, which are not Carom's to pass on"
+_NEEDS_MOTIONS = "it imitates recorded motions of people, which Carom may not distribute"
 
 
 def _unavailable(name: str, **keywords: Any) -> NoReturn:
     raise p.error(
-        f"{name} is not available in this version of Carom: {_NEEDS_MOTIONS}; these are: {_names()}"
+        f"{name} is not available in this version of Carom: {_NEEDS_MOTIONS}; available are: {_names()}"
     )
 
 
@@ -115,5 +115,5 @@ if INSTALLED:
 
 
 def getList() -> list[str]:
-    """Names of the environments, as lines of a list."""
+    """Names of the environments, each with `- ` in front."""
     return [f"- {name}" for name, *_ in _ENVIRONMENTS]

@@ -1,7 +1,7 @@
-"""What PyBullet's package of environments has and ours has not, by reason; see `pybullet_utils._absent`."""
+"""Modules that PyBullet's `pybullet_envs` has and Carom lacks, by reason; see `pybullet_utils._absent`."""
 
 ABSENT = """
-# PyBullet's learning code is for TensorFlow 1; the environments train with any library for Gymnasium
+# PyBullet's learning code is for TensorFlow 1; the environments work with any library for Gymnasium
 agents: configs networks train_ppo utility visualize_ppo
 agents.ppo: algorithm memory normalize utility
 agents.tools: attr_dict batch_env count_weights in_graph_batch_env in_graph_env loop mock_algorithm
@@ -17,7 +17,7 @@ minitaur.agents.tools: in_graph_batch_env in_graph_env loop loop_test mock_algor
 minitaur.agents.tools: simulate simulate_test streaming_mean wrappers wrappers_test
 minitaur.actuatornet: actuatornet_keras actuatornet_keras_lstm minitaur_raibert_controller_example
 minitaur.actuatornet: proto2csv
-# it imitates recorded motions of people, which are not Carom's to pass on
+# it imitates recorded motions of people, which Carom may not distribute
 deep_mimic: DeepMimic_Optimizer DeepMimic_Optimizer_multiclip mpi_run mpi_run_multiclip plot_return testrl
 deep_mimic: testrl_multiclip
 deep_mimic.env: env humanoid_pose_interpolator humanoid_stable_pd humanoid_stable_pd_multiclip

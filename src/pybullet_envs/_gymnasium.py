@@ -1,7 +1,7 @@
-"""Gymnasium, or what stands in for it where it is not installed.
+"""Gymnasium, or a stand-in for it if it is not installed.
 
-Scripts use parts of this package, such as robots, without any environment. These must not ask for Gymnasium
-before it is needed: for an environment, or for the spaces of its actions and observations.
+Scripts use parts of this package, such as robots, without any environment. These parts must not require
+Gymnasium before it is needed: for an environment, or for the spaces of its actions and observations.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ def _raise(*arguments: Any, **keywords: Any) -> NoReturn:
 
 
 def require_gymnasium() -> None:
-    """Raises `ImportError`, with the cure, where Gymnasium is not installed."""
+    """Raises `ImportError`, with the command for installing it, if Gymnasium is not installed."""
     if not INSTALLED:
         _raise()
 
 
 class _Env:
-    """Base class of environments, which cannot be made."""
+    """Stand-in for `gymnasium.Env`: subclasses can be defined, but not instantiated."""
 
     __init__ = _raise
 
@@ -35,13 +35,13 @@ class _Env:
 
 
 class _Spaces:
-    """Where the spaces should be."""
+    """Stand-in for `gymnasium.spaces`."""
 
     Box = Discrete = staticmethod(_raise)
 
 
 class _StandIn:
-    """What the modules of this package use of Gymnasium while they are imported."""
+    """The parts of Gymnasium that modules of this package use while they are imported."""
 
     Env = _Env
     spaces = _Spaces

@@ -1,4 +1,4 @@
-"""What all environments share: a world of their own, and pictures of it."""
+"""Base classes of all environments: a world of their own, and images of it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
     """An environment with a world of its own, made at the first `reset`.
 
     Attributes:
-        picture_size: Width and height of the pictures of `render`.
+        picture_size: Width and height of the images of `render` [pixels].
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 60}  # noqa: RUF012  # as Gymnasium has it
@@ -33,28 +33,28 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
             render_mode: `human`, `rgb_array` or none.
         """
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            raise ValueError(f"render_mode is {render_mode!r}, none of {self.metadata['render_modes']}")
+            raise ValueError(f"render_mode is {render_mode!r}, not one of {self.metadata['render_modes']}")
         require_gymnasium()
         self.render_mode = "human" if render and render_mode is None else render_mode
         self._p: Any = None
 
     def _connect(self) -> bool:
-        """Makes the world if there is none; tells whether it is new."""
+        """Makes the world if there is none; returns whether it is new."""
         if self._p is not None:
             return False
         self._p = BulletClient(pybullet.GUI if self.render_mode == "human" else pybullet.DIRECT)
         return True
 
     def _looked_at(self) -> Place:
-        """What the camera looks at."""
+        """The point that the camera looks at [m]."""
         return (0.0, 0.0, 0.0)
 
     def render(self, mode: str | None = None) -> np.ndarray | None:  # type: ignore[override]
-        """A picture (height, width, 3), white before `reset`; None where there is a window to look at.
+        """An image (height, width, 3), white before `reset`; None if the environment has a window.
 
         Args:
-            mode: `human` or `rgb_array`, as older scripts say it; the environment's own `render_mode`
-                without, and `rgb_array` where it has none.
+            mode: `human` or `rgb_array`, for older scripts; by default the environment's `render_mode`, or
+                `rgb_array` if that is None.
         """
         if (mode or self.render_mode or "rgb_array") != "rgb_array":
             return None
@@ -68,37 +68,37 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
         return np.reshape(picture, (height, width, -1))[:, :, :3].astype(np.uint8)
 
     def close(self) -> None:
-        """Ends the world; the next `reset` makes a new one."""
+        """Closes the world; the next `reset` makes a new one."""
         if self._p is not None:
             self._p.disconnect()
             self._p = None
 
 
 class Camera:
-    """What the viewer's camera looks at."""
+    """Camera of the viewer."""
 
     def __init__(self, env: MJCFBaseBulletEnv) -> None:
         self.env = env
 
     def move_and_look_at(self, i: float, j: float, k: float, x: float, y: float, z: float) -> None:
-        """Looks at (x, y, z) [m] from as far and in the same direction as before."""
+        """Looks at (x, y, z) [m] from the same distance and direction as before."""
         seen = self.env._p.getDebugVisualizerCamera()
         self.env._p.resetDebugVisualizerCamera(seen[10], seen[8], seen[9], [x, y, z])
 
 
 class MJCFBaseBulletEnv(BulletEnv):
-    """An environment of a robot in a scene; subclasses have `create_single_player_scene` and `step`.
+    """An environment of a robot in a scene; subclasses define `create_single_player_scene` and `step`.
 
     Attributes:
         robot: The robot.
-        scene: Where it is, from the first `reset` on.
-        camera: That of the viewer.
+        scene: The scene, from the first `reset` on.
+        camera: Camera of the viewer.
         physicsClientId: The connection, -1 while there is none.
         isRender: Whether there is a window.
-        stateId: The state of the first episode, -1 before it.
-        potential: What the last step came to, as the robot's `calc_potential` has it.
-        rewards: The parts of the last reward.
-        restores: Whether the world is put back into the state of the first episode before each other one.
+        stateId: Id of the saved state at the start of the first episode, -1 while there is none.
+        potential: Result of the robot's `calc_potential` after the last step.
+        rewards: The terms of the last reward.
+        restores: Whether each later episode starts by restoring that saved state.
     """
 
     restores = False
@@ -149,20 +149,20 @@ class MJCFBaseBulletEnv(BulletEnv):
         return state, {}
 
     def _scene_is_set(self) -> None:
-        """Comes after the scene's part of `reset` and before the robot's."""
+        """Called by `reset` after the scene is set up and before the robot; for subclasses."""
 
     def HUD(self, state: Any, a: Any, done: bool) -> None:
-        """Is told of every step; shows nothing."""
+        """Called at every step; does nothing."""
 
     def camera_adjust(self) -> None:
-        """Moves the viewer's camera along, for those who want it."""
+        """Moves the viewer's camera with the robot; does nothing here."""
 
     def _looked_at(self) -> Place:
         place = getattr(self.robot, "body_real_xyz", (0.0, 0.0, 0.0))
         return float(place[0]), float(place[1]), float(place[2])
 
     def close(self) -> None:
-        """Ends the world; the next `reset` makes a new one."""
+        """Closes the world; the next `reset` makes a new one."""
         super().close()
         self.robot.forget()
         self.scene = None
@@ -170,7 +170,7 @@ class MJCFBaseBulletEnv(BulletEnv):
 
 
 def checked(action: Any) -> np.ndarray:
-    """The action, held within -1 and 1.
+    """The action, clipped to -1 and 1.
 
     Raises:
         ValueError: A number is not finite.

@@ -1,4 +1,4 @@
-"""Robots that learn to run."""
+"""Environments in which robots learn to run."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from pybullet_envs.robot_locomotors import (
 )
 from pybullet_envs.scene_stadium import SinglePlayerStadiumScene
 
-# Seventeen joints, of which four matter for walking.
+# Factor of the effort costs: 17 joints, of which 4 matter for walking.
 _EFFORT_OF_PEOPLE = 4.25
 
 
 class WalkerBaseBulletEnv(MJCFBaseBulletEnv):
-    """A robot that is to run to a goal; see `pybullet_envs.robot_locomotors.WalkerBase`.
+    """A robot learns to run to a goal; see `pybullet_envs.robot_locomotors.WalkerBase`.
 
-    Reward: being alive, coming nearer to the goal, less effort and joints at their limits.
+    Reward: alive bonus and progress towards the goal, minus costs of effort and of joints at their limits.
 
     Attributes:
-        electricity_cost: Of the power of motors.
-        stall_torque_cost: Of torques at rest.
-        joints_at_limit_cost: Of each joint at a limit.
-        foot_ground_object_names: The links that are the ground for feet.
-        ground_ids: The same as (body, link).
+        electricity_cost: Weight of the motors' mean power in the reward.
+        stall_torque_cost: Weight of the mean squared action, for torques at rest.
+        joints_at_limit_cost: Reward for each joint at a limit.
+        foot_ground_object_names: Names of the links that count as ground for feet.
+        ground_ids: The same links as (body, link).
     """
 
     restores = True
@@ -56,7 +56,7 @@ class WalkerBaseBulletEnv(MJCFBaseBulletEnv):
     def _scene_is_set(self) -> None:
         if self.stateId >= 0:
             return
-        # The floor is one of the robot's parts, whose middle is taken for where it is.
+        # As in PyBullet the floor is one of the robot's parts, and so part of their mean position.
         self.parts, self.jdict, self.ordered_joints, _ = self.robot.addToScene(
             self._p, self.stadium_scene.ground_plane_mjcf
         )
@@ -64,12 +64,12 @@ class WalkerBaseBulletEnv(MJCFBaseBulletEnv):
         self.ground_ids = frozenset((part.body, part.bodyPartIndex) for part in ground)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Drives the joints for a step."""
+        """Applies an action for one step."""
         robot = self.robot
         given = np.asarray(action, dtype=float)
         robot.apply_action(action)
         self.scene.global_step()
-        # As in PyBullet an observation has the feet of the step before.
+        # As in PyBullet an observation has the foot contacts of the previous step.
         state = robot.calc_state()
         self._alive = float(robot.alive_bonus(float(state[0]) + robot.initial_z, robot.body_rpy[1]))
         done = self._isDone()
@@ -84,7 +84,7 @@ class WalkerBaseBulletEnv(MJCFBaseBulletEnv):
         return state, sum(self.rewards), done, False, {}
 
     def _on_ground(self, bodies: set[int]) -> set[tuple[int, int]]:
-        """The links, as (body, link), of some bodies that touch the ground."""
+        """The links of some bodies that touch the ground, as (body, link)."""
         return {
             (body, contact[3])
             for body in bodies
@@ -103,21 +103,21 @@ class WalkerBaseBulletEnv(MJCFBaseBulletEnv):
 
 
 class HopperBulletEnv(WalkerBaseBulletEnv):
-    """One leg."""
+    """A hopper with one leg."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(Hopper(), render, render_mode)
 
 
 class Walker2DBulletEnv(WalkerBaseBulletEnv):
-    """Two legs in a plane."""
+    """A biped in a plane."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(Walker2D(), render, render_mode)
 
 
 class HalfCheetahBulletEnv(WalkerBaseBulletEnv):
-    """A runner in a plane. To fall costs, but ends no episode."""
+    """A runner with two legs in a plane. A fall is penalised, but does not end the episode."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(HalfCheetah(), render, render_mode)
@@ -127,33 +127,33 @@ class HalfCheetahBulletEnv(WalkerBaseBulletEnv):
 
 
 class AntBulletEnv(WalkerBaseBulletEnv):
-    """Four legs around a ball."""
+    """A quadruped: four legs around a sphere."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(Ant(), render, render_mode)
 
 
 class HumanoidBulletEnv(WalkerBaseBulletEnv):
-    """A person."""
+    """A humanoid."""
 
     def __init__(
         self, robot: Humanoid | None = None, render: bool = False, render_mode: str | None = None
     ) -> None:
-        """Makes an environment of a person, or of a robot that is like one."""
+        """Makes an environment of a `Humanoid`, or of another robot of this kind."""
         super().__init__(Humanoid() if robot is None else robot, render, render_mode)
         self.electricity_cost = _EFFORT_OF_PEOPLE * WalkerBaseBulletEnv.electricity_cost
         self.stall_torque_cost = _EFFORT_OF_PEOPLE * WalkerBaseBulletEnv.stall_torque_cost
 
 
 class HumanoidFlagrunBulletEnv(HumanoidBulletEnv):
-    """A person that runs to flags; see `HumanoidFlagrun`."""
+    """A humanoid that runs to flags; see `HumanoidFlagrun`."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(HumanoidFlagrun(), render, render_mode)
 
 
 class HumanoidFlagrunHarderBulletEnv(HumanoidBulletEnv):
-    """A person that runs to flags while cubes are hurled at it; see `HumanoidFlagrunHarder`."""
+    """A humanoid that runs to flags while a cube is thrown at it; see `HumanoidFlagrunHarder`."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(HumanoidFlagrunHarder(), render, render_mode)

@@ -1,4 +1,4 @@
-"""Arms that reach, push, strike and throw."""
+"""Environments in which arms learn to reach, push, strike and throw."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from pybullet_envs.env_bases import MJCFBaseBulletEnv
 from pybullet_envs.robot_manipulators import Pusher, Reacher, SevenJointArm, Striker, Thrower
 from pybullet_envs.scene_abstract import SingleRobotEmptyScene
 
-# PyBullet counts the upper arm's roll where the forearm's would be due; so trained policies expect it.
+# Joints whose power costs: as in PyBullet, whose policies were trained with it, the upper arm's roll counts
+# in place of the forearm's.
 COUNTED = tuple("upper_arm_roll_joint" if n == "forearm_roll_joint" else n for n in SevenJointArm.ARM)
 WORK, STALL = 0.1, 0.01
 INSIDE, WELL_INSIDE = 0.1, 1.01
@@ -23,19 +24,19 @@ class _ArmEnv(MJCFBaseBulletEnv):
     _gravity, _timestep, _frame_skip = 9.81, 0.0020, 5
 
     def create_single_player_scene(self, bullet_client: Any) -> SingleRobotEmptyScene:
-        """Nothing but the arm and what it acts on."""
+        """A scene with nothing but the bodies of the robot's file."""
         return SingleRobotEmptyScene(bullet_client, self._gravity, self._timestep, self._frame_skip)
 
     def camera_adjust(self) -> None:
-        """Looks half way to the fingertip."""
+        """Looks at a point half way to the fingertip."""
         x, y, z = self.robot.fingertip.pose().xyz().tolist()
         self.camera.move_and_look_at(0.3, 0.3, 0.3, 0.5 * x, 0.5 * y, z)
 
 
 class ReacherBulletEnv(_ArmEnv):
-    """Two links whose tip is to come to a target; see `Reacher`.
+    """An arm of two links that moves its tip to a target; see `Reacher`.
 
-    Reward: 100 times the way come nearer, less the effort.
+    Reward: 100 times the decrease of the distance [m], minus costs of effort and of a joint at its limit.
     """
 
     _gravity, _timestep, _frame_skip = 0.0, 0.0165, 1
@@ -44,7 +45,7 @@ class ReacherBulletEnv(_ArmEnv):
         super().__init__(Reacher(), render, render_mode)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Turns the joints for a step."""
+        """Applies an action for one step."""
         robot = self.robot
         given = np.asarray(action, dtype=float)
         robot.apply_action(action)
@@ -60,14 +61,14 @@ class ReacherBulletEnv(_ArmEnv):
 
 
 class _SevenJointArmEnv(_ArmEnv):
-    """What the larger arms have in common; see `SevenJointArm`.
+    """Base class of environments with seven-joint arms; see `SevenJointArm`.
 
-    Reward: less the effort, and less 0.1 for each joint within its limits, as PyBullet has it; nothing for
-    coming nearer, which some arms add.
+    Reward: minus the effort and, as in PyBullet, minus 0.1 for each joint within its limits. Progress is not
+    rewarded; some subclasses add a term for it.
     """
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Turns the joints for a step; episodes end by their length alone."""
+        """Applies an action for one step; episodes end by their length alone."""
         robot = self.robot
         given = np.asarray(action, dtype=float)
         robot.apply_action(action)
@@ -83,11 +84,11 @@ class _SevenJointArmEnv(_ArmEnv):
 
     @abstractmethod
     def _success(self, square: float) -> float:
-        """What the reward has besides effort and limits, given the sum of the squares of the action."""
+        """The reward of the task itself, given the sum of the squares of the action."""
 
 
 class PusherBulletEnv(_SevenJointArmEnv):
-    """A fork is to push a cylinder over a table to a disc; see `Pusher`."""
+    """An arm with a fork that pushes a cylinder over a table to a disc; see `Pusher`."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(Pusher(), render, render_mode)
@@ -97,15 +98,16 @@ class PusherBulletEnv(_SevenJointArmEnv):
 
 
 class StrikerBulletEnv(_SevenJointArmEnv):
-    """A paddle is to strike a ball that slides over a table into a goal; see `Striker`.
+    """An arm with a paddle that strikes a ball, which slides over a table into a goal; see `Striker`.
 
-    The reward takes off three times the least distance of ball and goal so far, half the way from the ball to
-    the paddle (to where it struck, once it has), and a tenth of the squared action.
+    The task subtracts from the reward three times the smallest distance between ball and goal so far, half
+    the distance between ball and paddle (after a strike: where the paddle struck), and a tenth of the squared
+    action.
 
     PyBullet has the class, but its `reset` fails.
 
     Attributes:
-        strike_threshold: Distance of ball and paddle at which the ball is struck [m].
+        strike_threshold: Distance between ball and paddle below which the ball is struck [m].
     """
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
@@ -126,15 +128,15 @@ class StrikerBulletEnv(_SevenJointArmEnv):
 
 
 class ThrowerBulletEnv(_SevenJointArmEnv):
-    """A claw is to throw a ball into a basket, without gravity; see `Thrower`.
+    """An arm with a claw that throws a ball into a basket, without gravity; see `Thrower`.
 
-    The reward takes off the distance of ball and basket across the ground, that of where the ball came down
-    once it has, and 0.002 times the squared action.
+    The task subtracts from the reward the horizontal distance between ball and basket (once the ball has
+    landed: from its landing point), and 0.002 times the squared action.
     """
 
     _gravity = 0.0
     _ground = -0.25
-    """The height below which the ball has come down [m]."""
+    """The height below which the ball has landed [m]."""
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(Thrower(), render, render_mode)

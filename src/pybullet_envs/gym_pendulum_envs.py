@@ -1,4 +1,4 @@
-"""Poles on a cart."""
+"""Environments with poles on a cart."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class _CartEnv(MJCFBaseBulletEnv):
     restores = True
 
     def create_single_player_scene(self, bullet_client: Any) -> SingleRobotEmptyScene:
-        """Nothing but the cart."""
+        """A scene with nothing but the cart and its poles."""
         return SingleRobotEmptyScene(bullet_client, gravity=9.8, timestep=0.0165, frame_skip=1)
 
     def camera_adjust(self) -> None:
@@ -25,7 +25,7 @@ class _CartEnv(MJCFBaseBulletEnv):
 
 
 class InvertedPendulumBulletEnv(_CartEnv):
-    """A pole to keep upright; a point for each step that it stands. See `InvertedPendulum`."""
+    """A pole to keep upright; the reward of each step is 1. See `InvertedPendulum`."""
 
     fallen = 0.2
     _robot = InvertedPendulum
@@ -34,7 +34,7 @@ class InvertedPendulumBulletEnv(_CartEnv):
         super().__init__(self._robot(), render, render_mode)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Pushes the cart for a step."""
+        """Applies an action for one step."""
         self.robot.apply_action(action)
         self.scene.global_step()
         state = self.robot.calc_state()
@@ -46,7 +46,7 @@ class InvertedPendulumBulletEnv(_CartEnv):
 
 
 class InvertedPendulumSwingupBulletEnv(InvertedPendulumBulletEnv):
-    """A pole that hangs at first; each step rewards the cosine of its angle from upright."""
+    """A pole to swing up; the reward of each step is the cosine of its angle from upright."""
 
     _robot = InvertedPendulumSwingup
 
@@ -54,17 +54,19 @@ class InvertedPendulumSwingupBulletEnv(InvertedPendulumBulletEnv):
 class InvertedDoublePendulumBulletEnv(_CartEnv):
     """Two poles to keep upright, one on the other; see `InvertedDoublePendulum`.
 
-    Reward: 10 less the squared distance of the tip from its highest place.
+    Reward: 10, minus the squared height error of the tip [m], minus 0.01 times the squared x of the upper
+    pole's centre.
     """
 
-    # From the centre of the upper pole to its tip, and how high the tip is to be [m].
+    # Distance from the centre of the upper pole to its tip, desired height of the tip, and height at which
+    # the poles have fallen [m].
     to_tip, aim, fallen = 0.3, 2.0, 1.0
 
     def __init__(self, render: bool = False, render_mode: str | None = None) -> None:
         super().__init__(InvertedDoublePendulum(), render, render_mode)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Pushes the cart for a step."""
+        """Applies an action for one step."""
         self.robot.apply_action(action)
         self.scene.global_step()
         state = self.robot.calc_state()

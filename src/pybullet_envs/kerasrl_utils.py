@@ -1,4 +1,4 @@
-"""Files of saved weights, as `folder/Agent-v0-Environment-v1-20170701190920_actor.h5`, by their names."""
+"""Names of files with saved weights: `folder/Agent-v0-Environment-v1-20170701190920_actor.h5`."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ weight_save_re = re.compile(r"^(?:\w+/)+?(\w+-v\d+)-(\w+-v\d+)-(\d+)(?:_\w+)?\.(
 
 
 def get_fields(weight_save_name: str) -> tuple[str, str, int]:
-    """Agent, environment and number of a file; raises `ValueError` where its name says none."""
+    """Agent, environment and number in a file name; raises `ValueError` if it does not have this form."""
     match = weight_save_re.search(weight_save_name)
     if match is None:
-        raise ValueError(f"{weight_save_name!r} names no saved weights: it needs {weight_save_re.pattern}")
+        raise ValueError(f"the file name {weight_save_name!r} does not match {weight_save_re.pattern}")
     return match[1], match[2], int(match[3])
 
 

@@ -1,4 +1,4 @@
-"""The body of a Minitaur, a quadruped with direct drive: four legs, each a loop that two motors move."""
+"""Base class of Minitaurs, quadrupeds with direct drive: each leg is a loop driven by two motors."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ OVERHEAT_SHUTDOWN_TIME = 1.0
 LEG_POSITION = ("front_left", "back_left", "front_right", "back_right")
 MOTOR_NAMES = tuple(f"motor_{leg}{side}_joint" for leg in LEG_POSITION for side in "LR")
 
-# On the left a motor turns against the angle that is told of it.
+# Signs of the motors: on the left, reported angles are opposite to joint angles.
 _DIRECTIONS = np.array((-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0))
 _HIP_ANGLE, _KNEE_ANGLE = pi / 2, -2.1834
 _MOST_TORQUE = 3.5
 _PD_KP = 8.0
 
 _QUARTER = pi / 4
-# In a swing the two motors of a leg go opposite ways.
+# Signs for swings: the two motors of a leg get opposite commands.
 _SWING = np.array((1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0))
 _UNSTRETCHED = 1.5
 
@@ -38,16 +38,16 @@ Point = tuple[float, float, float]
 
 
 class MinitaurBody(ABC):
-    """A Minitaur in a world that is there already.
+    """A Minitaur in an existing world.
 
     Its motors are driven in one of three ways: by the engine's position control, by torques of a PD
-    controller, or by torques of a model of the motors.
+    controller, or by torques of a motor model.
 
     Attributes:
-        quadruped: The body in the world.
-        num_motors: How many motors there are.
-        num_legs: How many legs.
-        time_step: Of the simulation [s].
+        quadruped: Id of the body.
+        num_motors: Number of motors.
+        num_legs: Number of legs.
+        time_step: Time step of the simulation [s].
     """
 
     num_motors = 8
@@ -69,18 +69,18 @@ class MinitaurBody(ABC):
         overheats: bool,
         on_rack: bool,
     ) -> None:
-        """Notes how it is to be driven; loading it is the heirs' business.
+        """Stores the settings; subclasses load the robot.
 
         Args:
             pybullet_client: The world.
-            urdf_root: The folder of the files; that of `pybullet_data` where not given.
-            time_step: Of the simulation [s].
-            self_collides: Whether its links touch each other.
-            velocity_limit: How fast commands may lead the motors [rad/s].
-            motor_model: The model of the motors, or none.
-            pd_gain: For velocities, of the PD controller without a model; none for position control.
-            overheats: Whether a motor that strains for a second is shut off.
-            on_rack: Whether it hangs in the air.
+            urdf_root: Folder of the robot's files; by default that of `pybullet_data`.
+            time_step: Time step of the simulation [s].
+            self_collides: Whether the links collide with each other.
+            velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
+            motor_model: Model of the motors, or None.
+            pd_gain: Velocity gain of the PD controller without a motor model; None for position control.
+            overheats: Whether a motor is shut off after a high torque for one second.
+            on_rack: Whether the base is fixed in the air.
         """
         self._pybullet_client = pybullet_client
         self._urdf_root = pybullet_data.getDataPath() if urdf_root is None else urdf_root
@@ -97,7 +97,7 @@ class MinitaurBody(ABC):
         self._cool_motors()
 
     def _load(self, position: Sequence[float], fixed: bool = False) -> None:
-        """Loads it standing, and closes the loops of its legs."""
+        """Loads the robot in its standing pose, and closes the loops of its legs."""
         self.quadruped = self._pybullet_client.loadURDF(
             os.path.join(self._urdf_root, self._file),
             position,
@@ -130,10 +130,10 @@ class MinitaurBody(ABC):
 
     @abstractmethod
     def Reset(self, reload_urdf: bool = True) -> None:
-        """Takes it to where it begins, loaded anew or put back."""
+        """Resets the robot to its start: loads it again, or moves it there."""
 
     def _put_back(self, position: Sequence[float]) -> None:
-        """Puts it where it was loaded, at rest."""
+        """Moves the robot to its standing pose at a base position [m], at rest."""
         self._pybullet_client.resetBasePositionAndOrientation(self.quadruped, position, INIT_ORIENTATION)
         self._pybullet_client.resetBaseVelocity(self.quadruped, [0, 0, 0], [0, 0, 0])
         self.ResetPose(add_constraint=False)
@@ -143,10 +143,10 @@ class MinitaurBody(ABC):
         self._running = np.ones(self.num_motors, bool)
 
     def ResetPose(self, add_constraint: bool) -> None:
-        """Takes all legs to where they stand.
+        """Moves all legs to the standing pose.
 
         Args:
-            add_constraint: Whether to close the loops of the legs besides, as is needed once.
+            add_constraint: Whether to add the constraints that close the loops of the legs, as needed once.
         """
         for leg in range(self.num_legs):
             self._reset_leg(leg, add_constraint)
@@ -173,7 +173,7 @@ class MinitaurBody(ABC):
             )
 
     def _knee_points(self, leg: int) -> tuple[Point, Point]:
-        """Where the two lower links of a leg meet, in the frame of the right one and of the left one [m]."""
+        """The joint of the two lower links of a leg, in the frame of the right and of the left one [m]."""
         return KNEE_CONSTRAINT_POINT_RIGHT, KNEE_CONSTRAINT_POINT_LEFT
 
     def GetBasePosition(self) -> tuple[float, float, float]:
@@ -184,9 +184,9 @@ class MinitaurBody(ABC):
         return self._pybullet_client.getBasePositionAndOrientation(self.quadruped)[1]
 
     def _motor_states(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Angles [rad], velocities [rad/s] and torques [N m] of the motors, as they are now.
+        """Present angles [rad], velocities [rad/s] and torques [N m] of the motors.
 
-        Where the motors are driven by torques, these are what the sensors told of the latest command.
+        If the motors are driven by torques, the torques are the sensors' values for the latest command.
         """
         states = self._pybullet_client.getJointStates(self.quadruped, self._motor_id_list)
         angles, velocities, torques = (
@@ -196,31 +196,31 @@ class MinitaurBody(ABC):
 
     @abstractmethod
     def GetBaseOrientation(self) -> tuple[float, float, float, float]:
-        """Orientation of the base as it is told (x, y, z, w)."""
+        """Observed orientation of the base (x, y, z, w)."""
 
     @abstractmethod
     def GetMotorAngles(self) -> np.ndarray:
-        """Angles of the motors as they are told [rad], (8,)."""
+        """Observed angles of the motors [rad], (8,)."""
 
     @abstractmethod
     def GetMotorVelocities(self) -> np.ndarray:
-        """Velocities of the motors as they are told [rad/s], (8,)."""
+        """Observed velocities of the motors [rad/s], (8,)."""
 
     @abstractmethod
     def GetMotorTorques(self) -> np.ndarray:
-        """Torques of the motors as they are told [N m], (8,)."""
+        """Observed torques of the motors [N m], (8,)."""
 
     def GetActionDimension(self) -> int:
-        """How many commands `ApplyAction` takes."""
+        """Number of commands that `ApplyAction` takes."""
         return self.num_motors
 
     def _drive(self, motor_commands: Any, kp: Any = None, kd: Any = None) -> None:
         """Sets the motors for the next step of the simulation.
 
         Args:
-            motor_commands: Angles [rad] for the motors, or duty cycles under torque control, shape (8,).
-            kp: Gains for angles, (8,); the robot's where not given. For torques only.
-            kd: Gains for velocities.
+            motor_commands: Angles [rad] for the motors, or duty cycles with torque control, shape (8,).
+            kp: Position gains, (8,); by default the robot's. Only for motors driven by torques.
+            kd: Velocity gains, likewise.
         """
         commands = np.asarray(motor_commands, float)
         if self._motor_velocity_limit < inf:
@@ -246,7 +246,7 @@ class MinitaurBody(ABC):
 
     @abstractmethod
     def _torques_for(self, commands: np.ndarray, kp: Any, kd: Any) -> Torques:
-        """Torques [N m] that are to act, and what the sensors tell of them."""
+        """Torques [N m] to apply, and those that the sensors report."""
 
     def _hold(self, joints: Sequence[int], targets: Any) -> None:
         count = len(joints)
@@ -261,10 +261,10 @@ class MinitaurBody(ABC):
         )
 
     def ConvertFromLegModel(self, actions: Any) -> np.ndarray:
-        """Angles of the motors for legs that swing and stretch.
+        """Motor angles for a swing and an extension of each leg.
 
         Args:
-            actions: Swing of each leg, then how far each is stretched; 1 stands for an eighth of a turn.
+            actions: Swing of each leg, then extension of each leg; 1 is an eighth of a turn.
 
         Returns:
             Angles for `ApplyAction` [rad], (8,).
@@ -276,7 +276,7 @@ class MinitaurBody(ABC):
         return self._pybullet_client.getDynamicsInfo(self.quadruped, link)[0]
 
     def _set_dynamics(self, links: Sequence[int], values: Any, what: str) -> None:
-        """Changes something of several links, to a value of its own for each."""
+        """Sets one dynamics parameter of several links, to a value for each link."""
         for link, value in zip(links, values, strict=True):
             self._pybullet_client.changeDynamics(self.quadruped, link, **{what: value})
 
@@ -286,11 +286,11 @@ class MinitaurBody(ABC):
         self._set_dynamics(self._foot_link_ids, [foot_friction] * count, "lateralFriction")
 
     def SetBatteryVoltage(self, voltage: float) -> None:
-        """Sets the voltage of the battery [V], where there is a model of the motors."""
+        """Sets the voltage of the battery [V], if there is a motor model."""
         if self._motor_model is not None:
             self._motor_model.set_voltage(voltage)
 
     def SetMotorViscousDamping(self, viscous_damping: float) -> None:
-        """Sets the damping of the motors [V s/rad], where there is a model of them."""
+        """Sets the viscous damping of the motors [V s/rad], if there is a motor model."""
         if self._motor_model is not None:
             self._motor_model.set_viscous_damping(viscous_damping)

@@ -1,4 +1,4 @@
-"""What all environments of the Minitaur share: flat ground, commands for legs, falls, and what they tell."""
+"""Base class of the Minitaur environments: flat ground, leg commands, falls and observations."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ Step = tuple[np.ndarray, float, bool, bool, dict[str, Any]]
 
 
 class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
-    """A Minitaur on flat ground that is rewarded for its way forward, and charged for what it spends.
+    """A Minitaur on flat ground, rewarded for forward progress minus the energy it spends.
 
-    Its first episode begins at the first `reset`, or when something is done that needs one: in PyBullet it
-    has begun when the environment is made, and scripts go on from there.
+    The first episode begins at the first `reset`, or before something that needs an episode: in PyBullet it
+    begins when the environment is made, and scripts rely on this.
     """
 
     _camera = (1.0, 0.0, -30.0)
@@ -47,16 +47,16 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         render: bool,
         render_mode: str | None,
     ) -> None:
-        """Notes what the environment is like.
+        """Stores the settings.
 
         Args:
-            urdf_root: The folder of the files; that of `pybullet_data` where not given.
-            time_step: Of the simulation [s].
-            action_repeat: Steps of the simulation for each of the environment.
-            solver_iterations: Of the engine, in each step.
-            distance_limit: How far away from its start the robot may walk [m].
-            leg_model_enabled: Whether actions say how legs swing and stretch, or where motors go.
-            hard_reset: Whether each `reset` loads everything anew.
+            urdf_root: Folder of the robot's files; by default that of `pybullet_data`.
+            time_step: Time step of the simulation [s].
+            action_repeat: Number of simulation steps per environment step.
+            solver_iterations: Number of solver iterations per simulation step.
+            distance_limit: Distance from the start at which an episode ends [m].
+            leg_model_enabled: Whether actions are swing and extension of legs; otherwise, motor angles.
+            hard_reset: Whether each `reset` loads everything again.
             render: Whether to open a window.
             render_mode: `human`, `rgb_array` or none.
         """
@@ -79,7 +79,7 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         self._last_frame_time = 0.0
 
     def _set_spaces(self, actions: int, bound: float, most: np.ndarray) -> None:
-        """Makes the spaces: of so many numbers up to a bound, and of observations up to `most`."""
+        """Makes the spaces: `actions` numbers within ±`bound`, and observations within ±`most`."""
         self.action_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Box(
             -bound, bound, (actions,), np.float32
         )
@@ -100,7 +100,7 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
             self.reset()
 
     def close(self) -> None:
-        """Ends the world; a new one is made when it is needed."""
+        """Closes the world; a new one is made when it is needed."""
         self._minitaur = None
         super().close()
 
@@ -118,16 +118,16 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         self._loaded_state = bullet.saveState()
 
     def _load_things(self) -> None:
-        """Loads what else there is, before the robot."""
+        """Loads other bodies, before the robot; for subclasses."""
 
     @abstractmethod
     def _load_minitaur(self) -> RobotT:
         """Loads the robot."""
 
     def _renew_world(self) -> None:
-        """Loads everything, or puts it back to where it was loaded, to the last digit.
+        """Loads everything, or restores exactly the state after loading.
 
-        What was added to the world since is taken away. Where something is gone, all is loaded.
+        Bodies that were added since are removed. If a body is missing, everything is loaded again.
         """
         if self._connect() or self._hard_reset or not self._loaded_bodies <= self._bodies():
             self._load_world()
@@ -148,7 +148,7 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
             self._p.resetDebugVisualizerCamera(*self._camera, [0, 0, 0])
 
     def _pace(self) -> None:
-        """With a window, waits for the real time to come, and lets the camera follow."""
+        """With a window, waits until real time catches up, and moves the camera with the robot."""
         if self.render_mode != "human":
             return
         since = time.time() - self._last_frame_time
@@ -158,10 +158,10 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         self._p.resetDebugVisualizerCamera(distance, yaw, pitch, self.minitaur.GetBasePosition())
 
     def _checked(self, action: Any) -> np.ndarray:
-        """The action as numbers that nobody else changes.
+        """A copy of the action as floats.
 
         Raises:
-            ValueError: There are more or fewer than expected, or one is not finite.
+            ValueError: The action has another shape than expected, or a number is not finite.
         """
         values = np.array(action, dtype=float)
         if values.shape != self.action_space.shape:
@@ -171,17 +171,17 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         return values
 
     def _check_bounds(self, action: np.ndarray) -> None:
-        """Refuses actions for legs that are out of bounds.
+        """Checks that commands for legs are within bounds.
 
         Raises:
-            ValueError: One is greater than 1, or less than -1.
+            ValueError: A command is greater than 1, or less than -1.
         """
         for number, value in enumerate(action):
             if abs(value) > self._action_bound + ACTION_EPS:
                 raise ValueError(f"{number}th action {value} out of bounds.")
 
     def _transform_action_to_motor_command(self, action: np.ndarray) -> np.ndarray:
-        """Commands for the motors, of an action."""
+        """The motor commands for an action."""
         if not self._leg_model_enabled:
             return action
         self._check_bounds(action)
@@ -191,12 +191,12 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         return self.minitaur.GetBasePosition()
 
     def _up(self) -> np.ndarray:
-        """The vertical as the robot sees it, (3,)."""
+        """The vertical direction in the observed frame of the base, (3,)."""
         orientation = self.minitaur.GetBaseOrientation()
         return np.array(pybullet.getMatrixFromQuaternion(orientation)[6:])
 
     def is_fallen(self) -> bool:
-        """Whether the base leans by more than 32 degrees, or is less than 13 cm high."""
+        """Whether the base is tilted by more than 32 degrees, or less than 13 cm high."""
         return bool(self._up()[2] < _UPRIGHT or self.minitaur.GetBasePosition()[2] < _LOWEST)
 
     def _termination(self) -> bool:
@@ -207,11 +207,11 @@ class MinitaurEnvBase(BulletEnv, Generic[RobotT]):
         return self.is_fallen()
 
     def _motor_power(self) -> float:
-        """What all motors together take or give [W]."""
+        """Magnitude of the total mechanical power of all motors [W]."""
         return abs(float(np.dot(self.minitaur.GetMotorTorques(), self.minitaur.GetMotorVelocities())))
 
     def get_objectives(self) -> list[list[float]]:
-        """What was rewarded in each step of the episode: the way forward, energy, drift and shaking."""
+        """Terms of the reward in each step of the episode: forward progress, energy, drift and shaking."""
         return self._objectives
 
     def get_minitaur_motor_angles(self) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Robots of files, by the names of their links and joints, from which environments are made."""
+"""Base classes of the robots of environments: loaded from files, with links and joints by name."""
 
 from __future__ import annotations
 
@@ -20,17 +20,19 @@ Found = tuple[dict[str, BodyPart], dict[str, Joint], list[Joint], BodyPart | Non
 
 
 class XmlBasedRobot:
-    """A robot with names; its own classes have `robot_specific_reset`, `apply_action` and `calc_state`.
+    """A robot with named parts.
+
+    Subclasses define `robot_specific_reset`, `apply_action` and `calc_state`.
 
     Attributes:
         parts: Links by name, in order.
-        jdict: Joints by name, in order, but for those whose names begin with `ignore`, which are free.
+        jdict: Joints by name, in order, except free ones: names that begin with `ignore` or `jointfix`.
         ordered_joints: The same joints.
-        robot_body: The link that stands for the robot.
-        robot_name: Its name.
-        self_collision: Whether its links touch each other.
-        np_random: Where random numbers come from: the environment.
-        scene: Where it is.
+        robot_body: The link that represents the robot.
+        robot_name: Name of this link.
+        self_collision: Whether the links collide with each other.
+        np_random: Random number generator of the environment.
+        scene: The scene.
     """
 
     self_collision = True
@@ -38,13 +40,13 @@ class XmlBasedRobot:
     scene: Any
 
     def __init__(self, robot_name: str, action_dim: int, obs_dim: int, self_collision: bool) -> None:
-        """Says what it observes and how it acts.
+        """Makes the spaces of actions and observations.
 
         Args:
-            robot_name: The link that stands for it.
-            action_dim: Numbers of an action, each from -1 to 1.
-            obs_dim: Numbers of an observation.
-            self_collision: Whether its links touch each other.
+            robot_name: Name of the link that represents the robot.
+            action_dim: Size of an action, each of whose numbers is from -1 to 1.
+            obs_dim: Size of an observation.
+            self_collision: Whether the links collide with each other.
         """
         ones, endless = np.ones(action_dim, np.float32), np.full(obs_dim, np.inf, np.float32)
         self.action_space = gymnasium.spaces.Box(-ones, ones, dtype=np.float32)
@@ -54,7 +56,7 @@ class XmlBasedRobot:
         self.forget()
 
     def forget(self) -> None:
-        """Drops links and joints of a world that is no more."""
+        """Drops links and joints of a world that no longer exists."""
         self.objects: Sequence[int] = ()
         self.parts: dict[str, BodyPart] = {}
         self.jdict: dict[str, Joint] = {}
@@ -62,15 +64,14 @@ class XmlBasedRobot:
         self.robot_body: Any = None
 
     def addToScene(self, bullet_client: Any, bodies: int | Sequence[int]) -> Found:
-        """Takes the links and joints of bodies, and switches their motors off.
+        """Adds the links and joints of bodies, and switches their motors off.
 
         Args:
             bullet_client: The world.
-            bodies: One or several.
+            bodies: Id of one body, or ids of several.
 
         Returns:
-            The links, the joints, the joints in order and the link that stands for the robot, after all
-            that were added.
+            `parts`, `jdict`, `ordered_joints` and `robot_body`, with those added earlier.
         """
         self._p = bullet_client
         bodies = [bodies] if isinstance(bodies, int) else list(bodies)
@@ -100,7 +101,7 @@ class XmlBasedRobot:
             self.ordered_joints.append(joint)
 
     def reset_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Moves the body of the link that stands for the robot."""
+        """Moves the base of the body that contains `robot_body`."""
         self.parts[self.robot_name].reset_pose(position, orientation)
 
     def middle(self) -> np.ndarray:
@@ -117,7 +118,7 @@ class XmlBasedRobot:
         return np.array(places).mean(axis=0)
 
     def relative_joint_states(self) -> np.ndarray:
-        """(joints, 2) what `Joint.current_relative_position` says of each of `ordered_joints`."""
+        """The `Joint.current_relative_position` of each of `ordered_joints`, (joints, 2)."""
         states = np.empty((len(self.ordered_joints), 2))
         for body, places in self._places_by_body(self.ordered_joints).items():
             joints = [self.ordered_joints[place] for place in places]
@@ -137,14 +138,14 @@ class XmlBasedRobot:
 
     @staticmethod
     def _places_by_body(joints: Sequence[Joint]) -> dict[int, list[int]]:
-        """Where in a list the joints of each body are."""
+        """Indices, in a list of joints, of the joints of each body."""
         places: dict[int, list[int]] = {}
         for place, joint in enumerate(joints):
             places.setdefault(joint.body, []).append(place)
         return places
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts the robot where an episode begins."""
+        """Moves the robot to the start of an episode."""
         raise NotImplementedError(f"{type(self).__name__} has no robot_specific_reset")
 
     def apply_action(self, a: np.ndarray) -> None:
@@ -152,11 +153,11 @@ class XmlBasedRobot:
         raise NotImplementedError(f"{type(self).__name__} has no apply_action")
 
     def calc_state(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""
         raise NotImplementedError(f"{type(self).__name__} has no calc_state")
 
     def calc_potential(self) -> float:
-        """What being where it is is worth; rewards may have by how much that grows."""
+        """Potential of the present state; its increase in a step may be part of the reward."""
         return 0.0
 
     def _flags(self) -> int:
@@ -165,28 +166,28 @@ class XmlBasedRobot:
 
 
 class MJCFBasedRobot(XmlBasedRobot):
-    """A robot of an MJCF file, which is loaded when its first episode begins.
+    """A robot in an MJCF file, which is loaded when the first episode begins.
 
     Attributes:
         model_xml: The file, from the folder `mjcf` of `pybullet_data` if it is not absolute.
-        doneLoading: Whether it is loaded.
-        objects: The bodies of the file.
+        doneLoading: Whether the file is loaded.
+        objects: Ids of the bodies in the file.
     """
 
     def __init__(
         self, model_xml: str, robot_name: str, action_dim: int, obs_dim: int, self_collision: bool = True
     ) -> None:
-        """Names the file; see `XmlBasedRobot`."""
+        """Sets the file; see `XmlBasedRobot`."""
         super().__init__(robot_name, action_dim, obs_dim, self_collision)
         self.model_xml = model_xml
 
     def forget(self) -> None:
-        """Drops links and joints, so that they are loaded again."""
+        """Drops links and joints, so that the next `reset` loads them again."""
         super().forget()
         self.doneLoading = 0
 
     def reset(self, bullet_client: Any) -> np.ndarray:
-        """Begins an episode; returns what is observed."""
+        """Begins an episode; returns the first observation."""
         self._p = bullet_client
         if not self.doneLoading:
             self.doneLoading = 1
@@ -201,7 +202,7 @@ class MJCFBasedRobot(XmlBasedRobot):
 
 
 class URDFBasedRobot(XmlBasedRobot):
-    """A robot of a URDF file, which is loaded anew for each episode: its scene is to be empty then.
+    """A robot in a URDF file, which is loaded again for each episode: its scene has to be empty then.
 
     Attributes:
         model_urdf: The file, from the folder of `pybullet_data` if it is not absolute.
@@ -218,17 +219,17 @@ class URDFBasedRobot(XmlBasedRobot):
         fixed_base: bool = False,
         self_collision: bool = False,
     ) -> None:
-        """Names the file; see `XmlBasedRobot`.
+        """Sets the file; see `XmlBasedRobot`.
 
         Args:
             model_urdf: The file.
-            robot_name: The link that stands for the robot.
-            action_dim: Numbers of an action.
-            obs_dim: Numbers of an observation.
-            basePosition: Where it is loaded [m].
-            baseOrientation: How it is turned (x, y, z, w).
-            fixed_base: Whether its base is fixed.
-            self_collision: Whether its links touch each other.
+            robot_name: Name of the link that represents the robot.
+            action_dim: Size of an action.
+            obs_dim: Size of an observation.
+            basePosition: Initial position of the base [m].
+            baseOrientation: Initial orientation of the base (x, y, z, w).
+            fixed_base: Whether the base is fixed.
+            self_collision: Whether the links collide with each other.
         """
         super().__init__(robot_name, action_dim, obs_dim, self_collision)
         self.model_urdf = model_urdf
@@ -237,7 +238,7 @@ class URDFBasedRobot(XmlBasedRobot):
         self.fixed_base = fixed_base
 
     def reset(self, bullet_client: Any) -> np.ndarray:
-        """Begins an episode; returns what is observed."""
+        """Begins an episode; returns the first observation."""
         self.forget()
         body = bullet_client.loadURDF(
             os.path.join(pybullet_data.getDataPath(), self.model_urdf),

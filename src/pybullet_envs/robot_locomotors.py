@@ -21,7 +21,7 @@ __all__ = [
 
 
 class Hopper(WalkerBase):
-    """One leg."""
+    """A hopper with one leg."""
 
     foot_list: ClassVar[Any] = ("foot",)
 
@@ -29,12 +29,12 @@ class Hopper(WalkerBase):
         super().__init__("hopper.xml", "torso", action_dim=3, obs_dim=15, power=0.75)
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """1 while it stands."""
+        """1 while the robot stands, otherwise -1."""
         return 1.0 if z > 0.8 and abs(pitch) < 1.0 else -1.0
 
 
 class Walker2D(WalkerBase):
-    """Two legs in a plane."""
+    """A biped in a plane."""
 
     foot_list: ClassVar[Any] = ("foot", "foot_left")
     joint_power: ClassVar[Mapping[str, float]] = {"foot_joint": 30.0, "foot_left_joint": 30.0}
@@ -43,12 +43,12 @@ class Walker2D(WalkerBase):
         super().__init__("walker2d.xml", "torso", action_dim=6, obs_dim=22, power=0.40)
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """1 while it stands."""
+        """1 while the robot stands, otherwise -1."""
         return 1.0 if z > 0.8 and abs(pitch) < 1.0 else -1.0
 
 
 class HalfCheetah(WalkerBase):
-    """A runner in a plane; nothing but its feet is to touch the ground, which costs."""
+    """A runner with two legs in a plane, which may touch the ground with its feet only."""
 
     foot_list: ClassVar[Any] = ("ffoot", "fshin", "fthigh", "bfoot", "bshin", "bthigh")
     joint_power: ClassVar[Mapping[str, float]] = {
@@ -64,14 +64,14 @@ class HalfCheetah(WalkerBase):
         super().__init__("half_cheetah.xml", "torso", action_dim=6, obs_dim=26, power=0.90)
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """1 while it is on its feet."""
+        """1 while only feet touch the ground and the body is level enough, otherwise -1."""
         _, front_shin, front_thigh, _, back_shin, back_thigh = self.feet_contact
         fallen = front_shin or front_thigh or back_shin or back_thigh
         return 1.0 if abs(pitch) < 1.0 and not fallen else -1.0
 
 
 class Ant(WalkerBase):
-    """Four legs around a ball."""
+    """A quadruped: four legs around a sphere."""
 
     foot_list: ClassVar[Any] = ("front_left_foot", "front_right_foot", "left_back_foot", "right_back_foot")
 
@@ -79,5 +79,5 @@ class Ant(WalkerBase):
         super().__init__("ant.xml", "torso", action_dim=8, obs_dim=28, power=2.5)
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """1 while the ball is off the ground."""
+        """1 while the sphere is off the ground, otherwise -1."""
         return 1.0 if z > 0.26 else -1.0

@@ -1,4 +1,4 @@
-"""Arms that reach, push, strike and throw, and what they act on."""
+"""Arms that reach, push, strike and throw, and the objects that they move."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from pybullet_envs.robot_parts import BodyPart
 
 TURN = 3.14
 TORQUE = 0.05
-"""Of an action of one [N m]."""
+"""Torque of a joint for an action of 1 [N m]."""
 
 
 class Reacher(MJCFBasedRobot):
-    """Two links in a plane, and a target for their tip.
+    """An arm of two links in a plane, and a target for its tip.
 
-    Observation: the target (x, y), the way from it to the tip (x, y), cosine, sine and rate of the first
-    joint, position and rate of the second.
+    Observation: the target (x, y), the vector from there to the tip (x, y), cosine, sine and velocity of the
+    first joint, position and velocity of the second, as relative values of `Joint`.
 
     Attributes:
-        TARG_LIMIT: How far from the middle targets are along each axis [m].
-        to_target_vec: The way from the target to the tip [m].
-        theta_dot: A tenth of the rate of the first joint [rad/s].
-        gamma: Position of the second joint between its limits, from -1 to 1.
-        gamma_dot: A tenth of its rate [rad/s].
+        TARG_LIMIT: Largest distance of targets from the origin, along each axis [m].
+        to_target_vec: Vector from the target to the tip [m].
+        theta_dot: A tenth of the first joint's velocity [rad/s].
+        gamma: Position of the second joint relative to its limits, from -1 to 1.
+        gamma_dot: A tenth of the second joint's velocity [rad/s].
     """
 
     TARG_LIMIT = 0.27
@@ -36,7 +36,7 @@ class Reacher(MJCFBasedRobot):
         super().__init__("reacher.xml", "body0", action_dim=2, obs_dim=9)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts target and links anywhere."""
+        """Randomises the positions of target and links."""
         self.fingertip, self.target = self.parts["fingertip"], self.parts["target"]
         self.central_joint, self.elbow_joint = self.jdict["joint0"], self.jdict["joint1"]
         for name in ("target_x", "target_y", "joint0", "joint1"):
@@ -44,12 +44,12 @@ class Reacher(MJCFBasedRobot):
             self.jdict[name].reset_current_position(self.np_random.uniform(-reach, reach), 0)
 
     def apply_action(self, a: np.ndarray) -> None:
-        """Turns both joints."""
+        """Applies torques to both joints."""
         for joint, share in zip((self.central_joint, self.elbow_joint), checked(a), strict=True):
             joint.set_motor_torque(TORQUE * float(share))
 
     def calc_state(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""
         turn, self.theta_dot = self.central_joint.current_relative_position()
         self.gamma, self.gamma_dot = self.elbow_joint.current_relative_position()
         target = [self.jdict[name].get_position() for name in ("target_x", "target_y")]
@@ -58,23 +58,23 @@ class Reacher(MJCFBasedRobot):
         return np.array([*target, *self.to_target_vec[:2], cos(turn), sin(turn), *bend], np.float32)
 
     def calc_potential(self) -> float:
-        """100 times how near the tip is."""
+        """-100 times the distance between tip and target [m]."""
         return -100.0 * float(np.linalg.norm(self.to_target_vec))
 
 
 class SevenJointArm(MJCFBasedRobot):
     """An arm of seven joints with an object and a target for it.
 
-    Observation: of each joint (the arm's, then those that things slide along) position and rate; of each
-    joint again the position between its limits, from -1 to 1, and a tenth of its rate; the way from the
-    object to the target where they were put; positions of fingertip, object and target.
+    Observation: position and velocity of each joint (the arm's, then the slides of object and target); again
+    for each joint, the position relative to its limits, from -1 to 1, and a tenth of the velocity; the
+    initial vector from object to target; positions of fingertip, object and target.
 
     Attributes:
         arm: The joints of the arm.
-        object_pos: Where the object was put, from the point that both are drawn around [m].
-        target_pos: Where the target was put, likewise.
-        to_target_vec: From the one to the other.
-        zero_offset: The point around which they are drawn, from where they are in the file [m].
+        object_pos: Initial position of the object, relative to the point around which it is drawn [m].
+        target_pos: Initial position of the target, likewise.
+        to_target_vec: Vector from `object_pos` to `target_pos`.
+        zero_offset: Subtracted from these positions to get slide positions or world positions [m].
     """
 
     ARM = (
@@ -89,7 +89,7 @@ class SevenJointArm(MJCFBasedRobot):
         super().__init__(model_xml, "body0", action_dim=len(self.ARM), obs_dim=obs_dim)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Finds what environments ask for by name."""
+        """Finds the parts and joints that environments use, by name."""
         self.fingertip, self.object, self.target = (self.parts[n] for n in ("fingertip", "object", "target"))
         self.arm = [self.jdict[name] for name in self.ARM]
 
@@ -98,30 +98,30 @@ class SevenJointArm(MJCFBasedRobot):
             joint.reset_current_position(self.np_random.uniform(-TURN, TURN), 0)
 
     def _anywhere(self, axes: int) -> np.ndarray:
-        """A point within a square or a cube."""
+        """A random point in a square or a cube, with coordinates from -1 to 1."""
         return self.np_random.uniform(-1.0, 1.0, size=axes)
 
     def _around(self, axes: int, nearest: float, farthest: float) -> np.ndarray:
-        """A point at a distance from the middle that lies between two."""
+        """A random point whose distance from the origin is between two values."""
         way = self._anywhere(axes)
         return way / np.linalg.norm(way) * self.np_random.uniform(nearest, farthest)
 
     def _slide(self, thing: str, place: np.ndarray) -> None:
-        """Puts a thing on its slides, from the middle."""
+        """Moves an object along its slides to a position, before `zero_offset` is subtracted."""
         for axis, value in zip("xy", place - self.zero_offset[:2], strict=True):
             self.jdict[f"{thing}_{axis}"].reset_current_position(float(value), 0)
 
     def _put(self, thing: BodyPart, place: np.ndarray) -> None:
-        """Puts the base of a thing somewhere, from the middle."""
+        """Moves the base of an object to a position, before `zero_offset` is subtracted."""
         thing.reset_pose(place - self.zero_offset, (0.0, 0.0, 0.0, 1.0))
 
     def apply_action(self, a: np.ndarray) -> None:
-        """Turns the joints."""
+        """Applies torques to the joints."""
         for joint, share in zip(self.arm, checked(a), strict=True):
             joint.set_motor_torque(TORQUE * float(share))
 
     def calc_state(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""
         self.to_target_vec = self.target_pos - self.object_pos
         states = [joint.current_position() for joint in self.ordered_joints]
         relative = [joint.current_relative_position() for joint in self.ordered_joints]
@@ -131,13 +131,13 @@ class SevenJointArm(MJCFBasedRobot):
 
 
 class Pusher(SevenJointArm):
-    """A fork, a cylinder and a disc, which slide over a table."""
+    """An arm with a fork; a cylinder (the object) and a disc (the target) that slide over a table."""
 
     def __init__(self) -> None:
         super().__init__("pusher.xml", obs_dim=55)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts all anywhere."""
+        """Randomises the positions of arm, object and target."""
         super().robot_specific_reset(bullet_client)
         self.target_pos = self._around(2, 0.5, 0.8)
         way = self._anywhere(2)
@@ -149,13 +149,13 @@ class Pusher(SevenJointArm):
 
 
 class Striker(SevenJointArm):
-    """A paddle, a ball that slides over a table, and a goal."""
+    """An arm with a paddle, a ball that slides over a table, and a goal."""
 
     def __init__(self) -> None:
         super().__init__("striker.xml", obs_dim=48)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts all anywhere. The goal is the base of its body, which PyBullet does not find."""
+        """Randomises all positions. The goal is the base of its body, which PyBullet does not find."""
         (goal,) = (body for body in self.objects if bullet_client.getBodyInfo(body)[0] == b"target")
         self.parts["target"] = BodyPart(bullet_client, "target", [goal], 0, -1)
         super().robot_specific_reset(bullet_client)
@@ -168,13 +168,13 @@ class Striker(SevenJointArm):
 
 
 class Thrower(SevenJointArm):
-    """A claw, a ball and a basket."""
+    """An arm with a claw, a ball and a basket."""
 
     def __init__(self) -> None:
         super().__init__("thrower.xml", obs_dim=48)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts all anywhere."""
+        """Randomises the positions of arm, object and target."""
         super().robot_specific_reset(bullet_client)
         self._turn_arm()
         self.object_pos = self._around(3, 0.1, 0.8)

@@ -1,4 +1,4 @@
-"""Links and joints of robots, by the names that files give them."""
+"""Named links and joints of robots."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Vector = Sequence[float] | np.ndarray
 
 
 class Pose_Helper:
-    """Where a link is now."""
+    """Present pose of a link."""
 
     def __init__(self, body_part: BodyPart) -> None:
         self.body_part = body_part
@@ -35,11 +35,11 @@ class BodyPart:
     """A link.
 
     Attributes:
-        bodies: The bodies of which one has the link.
-        bodyIndex: Which of them.
-        bodyPartIndex: The link, -1 for the base.
-        initialPosition: Where it was when this was made [m].
-        initialOrientation: How it was turned then (x, y, z, w).
+        bodies: Ids of several bodies, one of which contains the link.
+        bodyIndex: Index of that body in `bodies`.
+        bodyPartIndex: Index of the link, -1 for the base.
+        initialPosition: Position when the object was made [m].
+        initialOrientation: Orientation when the object was made (x, y, z, w).
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class BodyPart:
 
     @property
     def body(self) -> int:
-        """The body that has the link."""
+        """Id of the body that contains the link."""
         return self.bodies[self.bodyIndex]
 
     def state_fields_of_pose_of(self, body_id: int, link_id: int = -1) -> np.ndarray:
@@ -89,11 +89,11 @@ class BodyPart:
         return np.array(self._p.getLinkState(self.body, self.bodyPartIndex, computeLinkVelocity=1)[6])
 
     def reset_position(self, position: Vector) -> None:
-        """Moves the base of the body, at rest; its turn stays."""
+        """Moves the base of the body, at rest, to a position [m] and the orientation of this link."""
         self.reset_pose(position, self.current_orientation())
 
     def reset_orientation(self, orientation: Vector) -> None:
-        """Turns the base of the body, at rest (x, y, z, w); its place stays."""
+        """Moves the base of the body, at rest, to an orientation (x, y, z, w) and this link's position."""
         self.reset_pose(self.current_position(), orientation)
 
     def reset_velocity(self, linearVelocity: Vector = (0, 0, 0), angularVelocity: Vector = (0, 0, 0)) -> None:
@@ -101,26 +101,26 @@ class BodyPart:
         self._p.resetBaseVelocity(self.body, list(linearVelocity), list(angularVelocity))
 
     def reset_pose(self, position: Vector, orientation: Vector) -> None:
-        """Moves the base of the body, at rest."""
+        """Moves the base of the body, at rest, to a position [m] and an orientation (x, y, z, w)."""
         self._p.resetBasePositionAndOrientation(self.body, list(position), list(orientation))
 
     def pose(self) -> Pose_Helper:
-        """Where it is."""
+        """The pose of the link."""
         return self.bp_pose
 
     def contact_list(self) -> Any:
-        """Its contacts, as of `getContactPoints`."""
+        """The contacts of the link, see `getContactPoints`."""
         return self._p.getContactPoints(self.body, -1, self.bodyPartIndex, -1)
 
 
 class Joint:
-    """A joint, driven by a torque where nothing else is asked for.
+    """A joint, usually driven by torques.
 
     Attributes:
-        joint_name: Its name.
-        lowerLimit: [rad or m].
-        upperLimit: [rad or m].
-        power_coef: Torque [N m] that robots take for an action of one, times their own power.
+        joint_name: Name of the joint.
+        lowerLimit: Lower position limit [rad or m].
+        upperLimit: Upper position limit [rad or m].
+        power_coef: Torque [N m] for an action of 1; robots multiply it by their own power.
     """
 
     def __init__(
@@ -136,11 +136,11 @@ class Joint:
 
     @property
     def body(self) -> int:
-        """The body that has the joint."""
+        """Id of the body that contains the joint."""
         return self.bodies[self.bodyIndex]
 
     def get_state(self) -> tuple[float, float]:
-        """Position [rad or m] and velocity."""
+        """Position [rad or m] and velocity [rad/s or m/s]."""
         return self._p.getJointState(self.body, self.jointIndex)[:2]
 
     current_position = get_state
@@ -160,22 +160,22 @@ class Joint:
         return self.get_state()[1]
 
     def set_state(self, x: float, vx: float) -> None:
-        """Puts the joint somewhere with a velocity; its motor stays."""
+        """Sets position and velocity; the motor keeps its settings."""
         self._p.resetJointState(self.body, self.jointIndex, x, vx)
 
     def reset_position(self, position: float, velocity: float) -> None:
-        """Puts the joint somewhere with a velocity and switches its motor off."""
+        """Sets position and velocity, and switches the motor off."""
         self.set_state(position, velocity)
         self.disable_motor()
 
     reset_current_position = reset_position
 
     def set_position(self, position: float) -> None:
-        """Has a motor take it somewhere."""
+        """Sets a position target for the motor."""
         self._control(pybullet.POSITION_CONTROL, targetPosition=position)
 
     def set_velocity(self, velocity: float) -> None:
-        """Has a motor keep a velocity."""
+        """Sets a velocity target for the motor."""
         self._control(pybullet.VELOCITY_CONTROL, targetVelocity=velocity)
 
     def set_torque(self, torque: float) -> None:

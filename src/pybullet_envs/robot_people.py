@@ -1,4 +1,4 @@
-"""People who run, and who run after flags."""
+"""Humanoids that run, straight on or to flags."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pybullet_envs.robot_parts import BodyPart
 from pybullet_envs.robot_walker import WalkerBase
 
 _FLAG_SPREAD, _FLAG_HEIGHT, _FLAG_REACHED, _FLAG_FRAMES = 0.5, 0.7, 1.0, 600
-"""Share of the stadium in which flags stand, their height, what is near [m], frames before they move."""
+"""Share of the stadium for flags, their height [m], distance that counts as reached [m], frames per flag."""
 _UPRIGHT, _LONGEST_DOWN = 0.8, 170
 _PEACE, _HURL_PERIOD, _HURL_DISTANCE, _HURL_SPEEDS, _CUBE_MASS = 100, 30, 4.0, (20.0, 30.0), 1.2
 _HALF_TURN = 3.14
@@ -35,13 +35,13 @@ _MOTORS = (
 
 
 class Humanoid(WalkerBase):
-    """A person.
+    """A humanoid.
 
     Attributes:
-        motor_names: The joints that the numbers of an action drive.
-        motor_power: Their torques [N m].
-        random_yaw: Whether it begins in any direction.
-        random_lean: Whether it may then begin lying down.
+        motor_names: Names of the joints that an action drives, in order.
+        motor_power: Torques of these joints [N m], before `power` is applied.
+        random_yaw: Whether episodes start with a random heading.
+        random_lean: Whether the robot may then start lying down.
     """
 
     foot_list: ClassVar[Any] = ("right_foot", "left_foot")
@@ -53,7 +53,7 @@ class Humanoid(WalkerBase):
         super().__init__("humanoid_symmetric.xml", "torso", action_dim=17, obs_dim=44, power=0.41)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Turns the joints a little, and the whole where that is asked for."""
+        """Randomises the joint angles a little and, with `random_yaw`, the pose of the base."""
         super().robot_specific_reset(bullet_client)
         self.motor_names = [name for name, _ in _MOTORS]
         self.motor_power = [power for _, power in _MOTORS]
@@ -71,24 +71,24 @@ class Humanoid(WalkerBase):
         self.robot_body.reset_pose((0.0, 0.0, height), turn)
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """2 while it stands: policies that try things out spend much effort on 17 joints."""
+        """2 while the robot stands, otherwise -1; 2, because exploring with 17 joints costs effort."""
         return 2.0 if z > 0.78 else -1.0
 
 
 def _thing(bullet_client: Any, file: str) -> BodyPart:
-    """A body of `pybullet_data`."""
+    """Loads a body from a file of `pybullet_data`."""
     body = bullet_client.loadURDF(os.path.join(pybullet_data.getDataPath(), file))
     return BodyPart(bullet_client, bullet_client.getBodyInfo(body)[0].decode(), [body], 0, -1)
 
 
 class HumanoidFlagrun(Humanoid):
-    """A person that runs to a flag, which moves on when it is reached, or after 150 steps.
+    """A humanoid that runs to a flag, which moves when it is reached, or after 150 steps.
 
-    As in PyBullet the reward of a step in which the flag moves has the whole way that the goal jumped.
+    As in PyBullet, if the flag moves in a step, the reward includes the jump of the distance to it.
 
     Attributes:
-        flag: A ball that nothing touches.
-        flag_timeout: Steps until it moves on.
+        flag: The flag, a ball without collision shape.
+        flag_timeout: Number of steps until the flag moves.
     """
 
     def forget(self) -> None:
@@ -97,12 +97,12 @@ class HumanoidFlagrun(Humanoid):
         self.flag: BodyPart | None = None
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts the flag somewhere."""
+        """Resets the robot and moves the flag."""
         super().robot_specific_reset(bullet_client)
         self.flag_reposition()
 
     def flag_reposition(self) -> None:
-        """Moves the flag."""
+        """Moves the flag to a random position."""
         halves = (self.scene.stadium_halflen, self.scene.stadium_halfwidth)
         self.walk_target_x, self.walk_target_y = (
             self.np_random.uniform(-half, half) * _FLAG_SPREAD for half in halves
@@ -113,28 +113,28 @@ class HumanoidFlagrun(Humanoid):
         self.flag_timeout = _FLAG_FRAMES / self.scene.frame_skip
 
     def calc_state(self) -> np.ndarray:
-        """What is observed now; moves the flag if it is time."""
+        """The present observation; moves the flag if it is reached or its time is over."""
         self.flag_timeout -= 1
         state = super().calc_state()
         if self.walk_target_dist >= _FLAG_REACHED and self.flag_timeout > 0:
             return state
         self.flag_reposition()
         state = super().calc_state()
-        # Nothing reads it, but crawling is booked when it is asked for.
+        # The value is not read, but computing it updates the progress made by crawling.
         self.potential = self.calc_potential()
         return state
 
 
 class HumanoidFlagrunHarder(HumanoidFlagrun):
-    """As `HumanoidFlagrun`, while a heavy cube is hurled at it every 30 steps, if it stands.
+    """A `HumanoidFlagrun` at which a heavy cube is thrown every 30 steps, if it stands.
 
-    It may fall and has to get up: it fails after 170 steps more on the ground than not. Being alive is worth
-    between 1 lying down and 2 standing; ways crawled are worth nothing.
+    The robot may fall, and has to get up: it fails when `on_ground_frame_counter` reaches 170. The alive
+    bonus is between 1 (lying) and 2 (standing); progress made by crawling is not rewarded.
 
     Attributes:
         aggressive_cube: The cube.
-        frame: Steps of the episode.
-        on_ground_frame_counter: Steps on the ground less those since.
+        frame: Number of steps in the episode.
+        on_ground_frame_counter: Number of steps on the ground, minus steps off the ground since.
     """
 
     def forget(self) -> None:
@@ -143,7 +143,7 @@ class HumanoidFlagrunHarder(HumanoidFlagrun):
         self.aggressive_cube: BodyPart | None = None
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Puts the cube behind it."""
+        """Resets the robot and places the cube behind it."""
         super().robot_specific_reset(bullet_client)
         if self.aggressive_cube is None:
             self.aggressive_cube = _thing(bullet_client, "cube_small.urdf")
@@ -154,7 +154,7 @@ class HumanoidFlagrunHarder(HumanoidFlagrun):
         self.crawl_ignored_potential = 0.0
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """Between 1 and 2; below 0 when it has been down too long."""
+        """Between 1 and 2; -1 if the robot has been on the ground for too long."""
         attack = self.frame % _HURL_PERIOD == 0 and self.frame > _PEACE
         if attack and self.on_ground_frame_counter == 0:
             self._hurl()
@@ -166,7 +166,7 @@ class HumanoidFlagrunHarder(HumanoidFlagrun):
         return self.potential_leak() if self.on_ground_frame_counter < _LONGEST_DOWN else -1.0
 
     def _hurl(self) -> None:
-        """Throws the cube from 4 m away at where the robot will be."""
+        """Throws the cube from a distance of 4 m at the predicted position of the robot."""
         assert self.aggressive_cube is not None
         angle = self.np_random.uniform(-_HALF_TURN, _HALF_TURN)
         speed = self.np_random.uniform(*_HURL_SPEEDS)
@@ -178,11 +178,11 @@ class HumanoidFlagrunHarder(HumanoidFlagrun):
         self.aggressive_cube.reset_velocity(velocity)
 
     def potential_leak(self) -> float:
-        """1 for one that lies, 2 for one that stands."""
+        """Alive bonus: from 1 (lying) to 2 (standing), by the height of the body."""
         return min(max(self.body_xyz[2], 0.0), _UPRIGHT) / _UPRIGHT + 1.0
 
     def calc_potential(self) -> float:
-        """How near the flag is, less what was crawled, and 100 times how upright the robot is."""
+        """Potential without the progress made by crawling, plus 100 times `potential_leak`."""
         progress = super().calc_potential()
         upright = 100.0 * self.potential_leak()
         if self.body_xyz[2] >= _UPRIGHT:

@@ -1,4 +1,4 @@
-"""What robots that run have in common."""
+"""Base class of robots that run."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ LARGEST_OBSERVED = 5.0
 
 
 class WalkerBase(MJCFBasedRobot):
-    """A robot that is to run to a goal.
+    """A robot that runs to a goal.
 
-    Observation: height above that at the start; sine and cosine of the angle to the goal; velocity of the
-    body in its own heading, times 0.3; roll and pitch; of each joint the position between its limits, from -1
-    to 1, and a tenth of its rate; of each foot whether it is on the ground. All within ±5.
+    Observation: height relative to the start; sine and cosine of the angle to the goal; velocity of the body
+    relative to its heading, times 0.3; roll and pitch; for each joint, the position relative to its limits,
+    from -1 to 1, and a tenth of its velocity; for each foot, whether it is on the ground. All clipped to ±5.
 
     Attributes:
-        power: Share of the joints' own power that an action of one has.
-        foot_list: The links whose contact with the ground is observed.
-        joint_power: Torque of joints [N m] that have not 100.
-        motors: The joints that the numbers of an action drive, in order.
-        feet: The feet.
-        feet_contact: Of each foot 1 where it is on the ground; the environment writes it.
-        walk_target_x: The goal: a kilometre away [m].
-        walk_target_y: The goal [m].
-        walk_target_dist: How far it is from the middle of all parts [m].
-        walk_target_theta: Its direction [rad].
-        body_xyz: Middle of all parts, but the height of the body [m].
-        body_real_xyz: Where the body is [m].
+        power: Factor on the `power_coef` of all joints.
+        foot_list: Names of the links whose contact with the ground is observed.
+        joint_power: `power_coef` of joints for which it is not 100 [N m].
+        motors: The joints that an action drives, in order.
+        feet: The links in `foot_list`.
+        feet_contact: For each foot, 1 if it is on the ground; set by the environment.
+        walk_target_x: Position of the goal along x, a kilometre away [m].
+        walk_target_y: Position of the goal along y [m].
+        walk_target_dist: Horizontal distance from the mean position of all parts to the goal [m].
+        walk_target_theta: Direction from there to the goal, as an angle from the x axis [rad].
+        body_xyz: Mean x and y of all parts, and height of the body [m].
+        body_real_xyz: Position of the body [m].
         body_rpy: Roll, pitch and yaw of the body [rad].
         initial_z: Height of the body at the start [m].
-        joint_speeds: A tenth of the rates of the joints [rad/s].
-        joints_at_limit: How many joints are at a limit.
+        joint_speeds: A tenth of the joint velocities [rad/s].
+        joints_at_limit: Number of joints at a limit.
     """
 
     foot_list: ClassVar[Any] = ()
@@ -48,14 +48,14 @@ class WalkerBase(MJCFBasedRobot):
     motors: list[Joint]
 
     def __init__(self, fn: str, robot_name: str, action_dim: int, obs_dim: int, power: float) -> None:
-        """Names the file; see `XmlBasedRobot`."""
+        """Sets the file; see `XmlBasedRobot`."""
         super().__init__(fn, robot_name, action_dim, obs_dim)
         self.power = power
         self.walk_target_x, self.walk_target_y = 1e3, 0.0
         self.body_xyz: Any = (0.0, 0.0, 0.0)
 
     def robot_specific_reset(self, bullet_client: Any) -> None:
-        """Turns the joints a little."""
+        """Randomises the joint angles a little."""
         for joint in self.ordered_joints:
             joint.reset_current_position(self.np_random.uniform(-LARGEST_START, LARGEST_START), 0)
         for name, torque in self.joint_power.items():
@@ -67,18 +67,18 @@ class WalkerBase(MJCFBasedRobot):
         self.initial_z: Any = None
 
     def apply_action(self, a: np.ndarray) -> None:
-        """Drives the joints.
+        """Applies torques to the joints.
 
         Raises:
-            ValueError: The action has not one number for each motor, or one is not finite.
+            ValueError: The action does not have one number for each motor, or one is not finite.
         """
         shares, own = checked(a), np.array([joint.power_coef for joint in self.motors])
         if shares.shape != own.shape:
-            raise ValueError(f"the action has the shape {shares.shape}, where {own.shape} is asked for")
+            raise ValueError(f"the action has shape {shares.shape}, not {own.shape}")
         self.set_motor_torques(self.motors, self.power * own * shares)
 
     def calc_state(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""
         joints = self.relative_joint_states().astype(np.float32)
         self.joint_speeds = joints[:, 1]
         self.joints_at_limit = int(np.count_nonzero(np.abs(joints[:, 0]) > NEAR_LIMIT))
@@ -95,7 +95,7 @@ class WalkerBase(MJCFBasedRobot):
         return np.clip(whole, -LARGEST_OBSERVED, LARGEST_OBSERVED).astype(np.float32)
 
     def _find_body(self) -> None:
-        """Where the body is, and the goal from there."""
+        """Updates the pose of the body, and distance and direction of the goal."""
         pose = self.robot_body.get_pose()
         self.body_real_xyz = pose[:3]
         self.body_rpy = self._p.getEulerFromQuaternion(pose[3:].tolist())
@@ -106,14 +106,14 @@ class WalkerBase(MJCFBasedRobot):
         self.walk_target_dist = float(np.hypot(dx, dy))
 
     def calc_potential(self) -> float:
-        """How near the goal is [m], by the time of a step [s]."""
+        """Negative distance to the goal [m], divided by the time of a step [s]."""
         return -self.walk_target_dist / self.scene.dt
 
     def alive_bonus(self, z: float, pitch: float) -> float:
-        """The reward of being alive; below 0 the robot has failed.
+        """The reward for being alive; below 0 the robot has failed.
 
         Args:
             z: Height of the body [m].
-            pitch: Its pitch [rad].
+            pitch: Pitch of the body [rad].
         """
         raise NotImplementedError(f"{type(self).__name__} has no alive_bonus")

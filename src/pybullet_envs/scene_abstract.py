@@ -1,4 +1,4 @@
-"""Where robots of environments move: a world's gravity and steps, and what stands in it."""
+"""Scenes of environments: the gravity and time step of a world, and the bodies in it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ _CONTACT_ERP = 0.9
 
 
 class World:
-    """Gravity and steps of a connection.
+    """Gravity and time step of a connection.
 
     Attributes:
-        gravity: Downwards [m/s²].
-        timestep: Of the simulation [s].
-        frame_skip: Steps of the simulation in one of an environment.
-        numSolverIterations: Of the solver.
+        gravity: Downward acceleration [m/s²].
+        timestep: Time step of the simulation [s].
+        frame_skip: Number of simulation steps per environment step.
+        numSolverIterations: Number of solver iterations.
     """
 
     def __init__(self, bullet_client: Any, gravity: float, timestep: float, frame_skip: int) -> None:
@@ -37,19 +37,19 @@ class World:
         )
 
     def step(self, frame_skip: int) -> None:
-        """Goes on by one step of the environment, whose parts the engine takes by itself."""
+        """Advances by one environment step; the engine itself divides it into substeps."""
         self._p.stepSimulation()
 
 
 class Scene:
-    """A world and what stands in it; subclasses put something there in `episode_restart`.
+    """A world and the bodies in it; subclasses load them in `episode_restart`.
 
     Attributes:
-        timestep: Of the simulation [s].
-        frame_skip: Steps of the simulation in one of the environment.
-        dt: Time that a step of the environment takes [s].
+        timestep: Time step of the simulation [s].
+        frame_skip: Number of simulation steps per environment step.
+        dt: Duration of an environment step [s].
         cpp_world: The world.
-        multiplayer: Whether several robots share it.
+        multiplayer: Whether several robots share the scene.
     """
 
     multiplayer = False
@@ -59,9 +59,9 @@ class Scene:
 
         Args:
             bullet_client: The connection.
-            gravity: Downwards [m/s²].
-            timestep: Of the simulation [s].
-            frame_skip: Steps of the simulation in one of the environment.
+            gravity: Downward acceleration [m/s²].
+            timestep: Time step of the simulation [s].
+            frame_skip: Number of simulation steps per environment step.
         """
         self._p = bullet_client
         self.timestep = timestep
@@ -70,16 +70,16 @@ class Scene:
         self.cpp_world = World(bullet_client, gravity, timestep, frame_skip)
 
     def actor_introduce(self, robot: Any) -> None:
-        """Is told of each robot when its episode begins."""
+        """Called by each robot when its episode begins; does nothing here."""
 
     def episode_restart(self, bullet_client: Any) -> None:
         """Begins an episode."""
         self.cpp_world.clean_everything()
 
     def global_step(self) -> None:
-        """Goes on by one step of the environment."""
+        """Advances by one environment step."""
         self.cpp_world.step(self.frame_skip)
 
 
 class SingleRobotEmptyScene(Scene):
-    """Nothing but one robot."""
+    """A scene with nothing but one robot."""

@@ -1,4 +1,4 @@
-"""A stadium to run in."""
+"""Scenes in a stadium."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ class StadiumScene(Scene):
     """A field of grass.
 
     Attributes:
-        stadium_halflen: From the middle to the ends [m].
-        stadium_halfwidth: From the middle to the sides [m].
-        ground_plane_mjcf: The bodies of the field, after the first episode has begun.
+        stadium_halflen: Half the length of the field [m].
+        stadium_halfwidth: Half the width of the field [m].
+        ground_plane_mjcf: Ids of the bodies of the field, once the first episode has begun.
     """
 
     stadium_halflen = 105 * 0.25
@@ -23,7 +23,7 @@ class StadiumScene(Scene):
     ground_plane_mjcf: tuple[int, ...] = ()
 
     def episode_restart(self, bullet_client: Any) -> None:
-        """Begins an episode; lays the field before the first one."""
+        """Begins an episode; loads the field before the first one."""
         self._p = bullet_client
         super().episode_restart(bullet_client)
         if self.ground_plane_mjcf:

@@ -1,4 +1,4 @@
-"""PyBullet's examples. They are not part of Carom, whose own are in its documentation."""
+"""Placeholders for PyBullet's examples, which Carom does not include; its own are in the documentation."""
 
 from pybullet_utils._absent import announce
 

@@ -1,1 +1,1 @@
-"""Robots at work: classes that load an arm with things to grasp and move it, and scripts that show them."""
+"""Example robots: classes that simulate an arm with objects to grasp, and scripts that show the robots."""

@@ -1,4 +1,4 @@
-"""What the simulations of arms have in common: things in a tray, and an arm in its first pose."""
+"""Shared code of the arm simulations: loading several objects, and setting the initial pose of an arm."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 
 
 def load_all(client: Any, file: str, places: Iterable[Sequence[float]], offset: np.ndarray) -> list[int]:
-    """Loads a file at several places, given from `offset` on [m], and returns the ids of the bodies."""
+    """Loads a file at several positions, relative to `offset` [m], and returns the ids of the bodies."""
     flags = client.URDF_ENABLE_CACHED_GRAPHICS_SHAPES
     return [client.loadURDF(file, np.array(place) + offset, flags=flags) for place in places]
 
 
 def put_in_pose(client: Any, robot: int, positions: Sequence[float]) -> None:
-    """Takes the damping from all links and puts the moving joints, in their order, where they are to be."""
+    """Sets the damping of all links to 0, and revolute and prismatic joints, in order, to `positions`."""
     remaining = iter(positions)
     for joint in range(client.getNumJoints(robot)):
         client.changeDynamics(robot, joint, linearDamping=0, angularDamping=0)

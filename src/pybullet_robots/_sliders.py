@@ -1,4 +1,4 @@
-"""A slider for each joint of a robot, which its motors follow."""
+"""Sliders that set the target positions of a robot's joints."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import pybullet
 
 
 def follow_sliders(robot: int, force: float) -> None:
-    """Moves the joints of a robot to where their sliders are, in real time, until the window is closed.
+    """Moves the joints of a robot to the values of their sliders, in real time, until the window is closed.
 
     Args:
         robot: The body.
-        force: Greatest torque of each motor [N m].
+        force: Maximum torque of each motor [N m].
     """
     joints = [
         joint

@@ -1,7 +1,7 @@
-"""Modules that PyBullet has and Carom has not: they can be imported, and say at their use what is missing.
+"""Placeholders for modules that PyBullet has and Carom lacks: importing them works, using them raises.
 
-Scripts import more than they use. So a module that is not here still gives whatever is asked of it; what it
-gives raises `pybullet.error` when it is called, subclassed, or asked for anything itself.
+Scripts import more than they use. So a placeholder module returns a placeholder object for any name; that
+object raises `pybullet.error`, with the reason, when it is called or subclassed, or its attributes are read.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 
 
 class Absent:
-    """Something out of a module that is not here."""
+    """Placeholder for an object of a missing module: almost any use raises `pybullet.error`."""
 
     def __init__(self, name: str, reason: str) -> None:
         self.__dict__["_absent"] = f"{name} is not available in this version of Carom: {reason}"
@@ -29,7 +29,7 @@ class Absent:
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __neg__ = __bool__ = __index__ = _raise
 
     def __getattr__(self, name: str) -> Any:
-        # Who inspects an object asks for such names and expects this answer.
+        # Code that inspects objects looks up special names and expects this error.
         if name.startswith("__"):
             raise AttributeError(name)
         self._raise()
@@ -39,7 +39,7 @@ class Absent:
 
 
 class _AbsentModule(ModuleType):
-    """A module that is not here."""
+    """Placeholder for a missing module."""
 
     absent_reason: str
 
@@ -50,7 +50,7 @@ class _AbsentModule(ModuleType):
 
 
 class _AbsentLoader(Loader):
-    """Makes modules that are not here, for one reason."""
+    """Makes placeholders for modules that are missing for the same reason."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
@@ -61,16 +61,16 @@ class _AbsentLoader(Loader):
         return module
 
     def exec_module(self, module: ModuleType) -> None:
-        """There is nothing to run."""
+        """Does nothing: placeholders have no code."""
 
     def get_code(self, name: str) -> CodeType:
-        """What `python -m` runs: it says what is missing and ends."""
+        """Code for `python -m`: exits with a message that names the missing module."""
         text = f"{name} is not available in this version of Carom: {self.reason}"
         return compile(f"raise SystemExit({text!r})", f"<{name}>", "exec")
 
 
 class _AbsentFinder(MetaPathFinder):
-    """Finds what nobody else has found."""
+    """Finds placeholders; it is the last finder, so that real modules come first."""
 
     def __init__(self) -> None:
         self.reasons: dict[str, str] = {}
@@ -89,12 +89,12 @@ _finder = _AbsentFinder()
 
 
 def announce(package: str, listing: str) -> None:
-    """Makes modules known that PyBullet has, so that they can be imported.
+    """Registers modules that PyBullet has and Carom lacks, so that they can be imported.
 
     Args:
-        package: The package they are in.
-        listing: Lines `folder: module module ...`, the folder relative to the package and `.` for itself,
-            under lines `# reason` that say why they are missing.
+        package: The package that contains the modules.
+        listing: Lines `folder: module module ...`, the folder relative to the package and `.` for the
+            package itself, below lines `# reason` that say why these modules are missing.
     """
     if _finder not in sys.meta_path:
         sys.meta_path.append(_finder)
@@ -119,5 +119,5 @@ def _lines(listing: str) -> Iterator[tuple[str, list[str], str]]:
 
 
 def absent_modules() -> list[str]:
-    """Names of all modules made known so far, in order."""
+    """Sorted names of all registered modules."""
     return sorted(_finder.reasons)

@@ -1,4 +1,4 @@
-"""What a robot of the URDF editor consists of, and the text of each part."""
+"""The elements of a robot in the URDF editor, and their URDF text."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _JOINT_TYPES = {
 
 
 class _Placed:
-    """Something that has a place in the frame of a link.
+    """An element with a pose in the frame of a link.
 
     Attributes:
-        origin_xyz: Where it is [m].
-        origin_rpy: How it is turned: roll, pitch and yaw [rad].
+        origin_xyz: Position [m].
+        origin_rpy: Orientation: roll, pitch and yaw [rad].
     """
 
     def __init__(self) -> None:
@@ -33,12 +33,12 @@ class _Placed:
         self.origin_rpy: Numbers = (0.0, 0.0, 0.0)
 
     def move(self, shift: Numbers, turn: Numbers) -> None:
-        """Moves it by a transform of the frame of the link."""
+        """Applies a transform of the link frame to the pose: translation [m] and quaternion (x, y, z, w)."""
         self.origin_xyz, self.origin_rpy = _moved(self.origin_xyz, self.origin_rpy, shift, turn)
 
 
 class UrdfInertial(_Placed):
-    """Mass [kg], principal moments of inertia [kg m²] and their frame."""
+    """Mass [kg], principal moments of inertia [kg m²] and inertial frame."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class UrdfInertial(_Placed):
 
 
 class UrdfContact:
-    """Friction of a link."""
+    """Friction coefficients of a link."""
 
     def __init__(self) -> None:
         self.lateral_friction = 1.0
@@ -56,15 +56,15 @@ class UrdfContact:
 
 
 class UrdfCollision(_Placed):
-    """A shape.
+    """A collision shape.
 
     Attributes:
         geom_type: `GEOM_BOX`, `GEOM_SPHERE`, `GEOM_CYLINDER`, `GEOM_CAPSULE`, `GEOM_MESH` or `GEOM_PLANE`.
-        geom_radius: Of a ball, a cylinder or a capsule [m].
-        geom_length: Of a cylinder or a capsule, along z [m].
-        geom_extents: Edges of a box [m].
+        geom_radius: Radius of a sphere, a cylinder or a capsule [m].
+        geom_length: Length of a cylinder or a capsule, along z [m].
+        geom_extents: Edge lengths of a box [m].
         geom_meshfilename: File of a mesh.
-        geom_meshscale: Its scale.
+        geom_meshscale: Scale of the mesh along x, y and z.
     """
 
     def __init__(self) -> None:
@@ -78,14 +78,14 @@ class UrdfCollision(_Placed):
 
     @classmethod
     def of_shape(cls, shape: Sequence[Any], place: tuple[Numbers, Quaternion]) -> UrdfCollision:
-        """A shape as `getCollisionShapeData` describes it, at a place in the frame of its link."""
+        """The shape of an entry of `getCollisionShapeData`, at a pose in the link frame."""
         made = cls()
         made.origin_xyz, made.origin_rpy = place[0], roll_pitch_yaw(place[1])
         made._take(shape[2], shape[3], shape[4])
         return made
 
     def copy_geometry(self, other: UrdfCollision) -> None:
-        """Takes the kind and size of another shape, and not its place."""
+        """Copies the type and size of another shape, but not its pose."""
         self.geom_type, self.geom_radius, self.geom_length = (
             other.geom_type,
             other.geom_radius,
@@ -110,11 +110,11 @@ class UrdfCollision(_Placed):
 
 
 class UrdfVisual(UrdfCollision):
-    """A shape that is seen.
+    """A visual shape.
 
     Attributes:
-        material_rgba: Its colour, and how opaque it is.
-        material_name: Name of its colour.
+        material_rgba: Colour and opacity (red, green, blue, alpha), from 0 to 1.
+        material_name: Name of the material.
     """
 
     def __init__(self) -> None:
@@ -124,7 +124,7 @@ class UrdfVisual(UrdfCollision):
 
     @classmethod
     def of_seen(cls, shape: Sequence[Any], material: str) -> UrdfVisual:
-        """A shape as `getVisualShapeData` describes it."""
+        """The shape of an entry of `getVisualShapeData`."""
         made = cls()
         made.origin_xyz, made.origin_rpy = shape[5], roll_pitch_yaw(shape[6])
         made._take(shape[2], shape[3], shape[4])
@@ -146,18 +146,18 @@ class UrdfJoint:
     """A joint.
 
     Attributes:
-        link: The link it leads to.
-        joint_name: Its name.
+        link: The child link.
+        joint_name: Name of the joint.
         joint_type: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_FIXED` or `JOINT_SPHERICAL`.
-        joint_lower_limit: From here [rad or m]; no limits where this is above the upper one.
-        joint_upper_limit: To here.
-        joint_max_force: Greatest torque [N m or N].
-        joint_max_velocity: Greatest velocity [rad/s or m/s].
-        parent_name: The link it hangs on.
-        child_name: The link it leads to.
-        joint_origin_xyz: Where it is in the frame of the parent [m].
-        joint_origin_rpy: How it is turned there [rad].
-        joint_axis_xyz: What it turns about or slides along.
+        joint_lower_limit: Lower position limit [rad or m]; if it is above the upper one, there are none.
+        joint_upper_limit: Upper position limit [rad or m].
+        joint_max_force: Maximum torque or force [N m or N].
+        joint_max_velocity: Maximum velocity [rad/s or m/s].
+        parent_name: Name of the parent link.
+        child_name: Name of the child link.
+        joint_origin_xyz: Position in the frame of the parent link [m].
+        joint_origin_rpy: Orientation in the frame of the parent link: roll, pitch and yaw [rad].
+        joint_axis_xyz: Axis of rotation or translation.
     """
 
     def __init__(self) -> None:
@@ -175,14 +175,14 @@ class UrdfJoint:
         self.joint_axis_xyz: Numbers = (0.0, 0.0, 1.0)
 
     def move(self, shift: Numbers, turn: Numbers) -> None:
-        """Moves it by a transform of the frame of its parent."""
+        """Applies a transform of the parent link's frame: translation [m] and quaternion (x, y, z, w)."""
         self.joint_origin_xyz, self.joint_origin_rpy = _moved(
             self.joint_origin_xyz, self.joint_origin_rpy, shift, turn
         )
 
 
 def link_element(link: UrdfLink, visuals: bool) -> str:
-    """The text of a link."""
+    """The URDF text of a link."""
     inertial = link.urdf_inertial
     ixx, iyy, izz = inertial.inertia_xxyyzz
     lines = [
@@ -206,7 +206,7 @@ def link_element(link: UrdfLink, visuals: bool) -> str:
 
 
 def joint_element(joint: UrdfJoint) -> str:
-    """The text of a joint."""
+    """The URDF text of a joint."""
     limited = joint.joint_type in (p.JOINT_REVOLUTE, p.JOINT_PRISMATIC)
     endless = joint.joint_type == p.JOINT_REVOLUTE and joint.joint_lower_limit > joint.joint_upper_limit
     kind = "continuous" if endless else _JOINT_TYPES.get(joint.joint_type, "fixed")

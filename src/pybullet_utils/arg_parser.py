@@ -10,7 +10,7 @@ _TRUE = ("true", "True", "1", "T", "t")
 
 
 class ArgParser:
-    """Lists of words by key. What was loaded first stays; words that begin with `#` are left out."""
+    """Lists of words by key. The first value of a key is kept; words that begin with `#` are ignored."""
 
     global_parser: ArgParser | None = None
 
@@ -18,11 +18,11 @@ class ArgParser:
         self._table: dict[str, list[str]] = {}
 
     def clear(self) -> None:
-        """Forgets all arguments."""
+        """Removes all arguments."""
         self._table.clear()
 
     def load_args(self, arg_strs: Sequence[str]) -> bool:
-        """Takes the words of a command line. Those before the first key are left out.
+        """Adds the arguments of a command line. Words before the first key are ignored.
 
         Returns:
             True.
@@ -38,7 +38,7 @@ class ArgParser:
         return True
 
     def load_file(self, filename: str) -> bool:
-        """Takes the words of a file whose lines beginning with `#` are comments.
+        """Adds the arguments of a file. Lines that begin with `#` are comments.
 
         Returns:
             True.
@@ -48,7 +48,7 @@ class ArgParser:
         return self.load_args([word for line in lines if not line.startswith("#") for word in line.split()])
 
     def has_key(self, key: str) -> bool:
-        """Whether there is a key."""
+        """Whether a key is present."""
         return key in self._table
 
     def parse_string(self, key: str, default: str = "") -> str:
@@ -80,7 +80,7 @@ class ArgParser:
         return self._first(key, default, _is_true)
 
     def parse_bools(self, key: str, default: Sequence[bool] = ()) -> list[bool]:
-        """Which of the words after a key are `true`, `True`, `t`, `T` or `1`."""
+        """For each word after a key, whether it is `true`, `True`, `t`, `T` or `1`."""
         return self._all(key, default, _is_true)
 
     def _first(self, key: str, default: Any, read: Callable[[str], _T]) -> _T:

@@ -1,4 +1,4 @@
-"""A physics client as an object: `client.stepSimulation()`, with no `physicsClientId` anywhere."""
+"""A physics client as an object: `client.stepSimulation()` needs no `physicsClientId`."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ import pybullet
 
 
 class BulletClient:
-    """A connection whose functions are those of the module `pybullet`, bound to it.
+    """A connection with the functions of the module `pybullet` as its methods.
 
-    It is closed when it is garbage, at the end of a `with` block, or by `disconnect()`.
+    The connection is closed when the object is garbage collected, at the end of a `with` block, or by
+    `disconnect()`.
     """
 
     def __init__(
@@ -24,15 +25,15 @@ class BulletClient:
         """Connects.
 
         Args:
-            connection_mode: `pybullet.DIRECT`, `pybullet.GUI`, ...; without it a running server is looked
-                for, and failing that a `DIRECT` connection is made.
-            hostName: Of a server.
-            options: Of the connection, see `pybullet.connect`.
+            connection_mode: `pybullet.DIRECT`, `pybullet.GUI`, ...; None connects to a running server
+                (`SHARED_MEMORY`), or with `DIRECT` if there is none.
+            hostName: Host name of a server.
+            options: Options of the connection, see `pybullet.connect`.
 
         Raises:
             pybullet.error: The connection cannot be made.
         """
-        # A forked process has the object too, but the connection is not its own to close.
+        # A forked process has a copy of the object, but must not close the connection.
         self._process = os.getpid()
         self._client = -1
         if connection_mode is None:
@@ -53,7 +54,7 @@ class BulletClient:
         self._close()
 
     def __del__(self) -> None:
-        # At the interpreter's end the functions that close may be gone already, and all worlds end with it.
+        # At interpreter shutdown the functions for closing may be gone already; all worlds end anyway.
         if not sys.is_finalizing():
             self._close()
 

@@ -1,4 +1,4 @@
-"""The models of a Gazebo world file: a scene of models that stand in files of their own."""
+"""Loading of Gazebo world files: scenes whose models are in separate files."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ def only_contains_float(stringlist: list[str]) -> bool:
 
 
 def parse_number(text: str) -> int | float | str:
-    """A text as a whole number if it is one, as a number if it is one, or as it is."""
+    """A text as a whole number or else as a number, if possible; otherwise unchanged."""
     if is_int(text):
         return int(text)
     return float(text) if is_float(text) else text
 
 
 def parse_text(text: str) -> Any:
-    """The words of a text: None if there are none, one alone, several as a list of one kind."""
+    """The parsed words of a text: None without words, one value, or a list of values of the same type."""
     words = text.split()
     if len(words) < 2:
         return parse_number(words[0]) if words else None
@@ -56,14 +56,14 @@ def parse_text(text: str) -> Any:
 
 
 def parseModel(model_xml: ElementTree.Element, urdffilepath: str) -> dict[str, Any]:
-    """What a `<model>` says: its attributes, the file it includes, where it is.
+    """The data of a `<model>`: its attributes, included file and pose.
 
     Args:
         model_xml: The element.
         urdffilepath: Not used.
 
     Returns:
-        The attributes, an empty list `children` and, where they are stated, `uri`, `pose_xyz` and `pose_rpy`.
+        The attributes, an empty list `children` and, if given, `uri`, `pose_xyz` [m] and `pose_rpy` [rad].
     """
     model: dict[str, Any] = {**model_xml.attrib, "children": []}
     uri = model_xml.findtext("include/uri")
@@ -77,10 +77,10 @@ def parseModel(model_xml: ElementTree.Element, urdffilepath: str) -> dict[str, A
 
 
 def parseWorld(p: Any, filepath: str) -> dict[str, dict[str, Any]]:
-    """Loads the files that the models of a world include, where it puts them, as bodies that do not move.
+    """Loads the included files of the models of a world, at their poses, as bodies that do not move.
 
     Args:
-        p: `pybullet`, or a client of it.
+        p: `pybullet` or a `BulletClient`.
         filepath: The world file.
 
     Returns:
@@ -88,8 +88,8 @@ def parseWorld(p: Any, filepath: str) -> dict[str, dict[str, Any]]:
 
     Raises:
         OSError: The file cannot be read.
-        xml.etree.ElementTree.ParseError: It is no XML.
-        pybullet.error: A file that it includes cannot be loaded.
+        xml.etree.ElementTree.ParseError: The file is not valid XML.
+        pybullet.error: An included file cannot be loaded.
     """
     models = {}
     for element in ElementTree.parse(filepath).getroot().iter("model"):

@@ -1,4 +1,4 @@
-"""A window for clients of other processes: `python -m pybullet_utils.graphicsServer`."""
+"""A window for clients in other processes: `python -m pybullet_utils.graphicsServer`."""
 
 from __future__ import annotations
 

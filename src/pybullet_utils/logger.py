@@ -1,4 +1,4 @@
-"""Tables of what a learning script measures in each of its iterations."""
+"""Tables of the values that a learning script measures in each iteration."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _RULE = "-" * 37
 
 
 class Logger:
-    """A row for each iteration, printed and written to a file; of several MPI processes, by the first alone.
+    """A table with a row for each iteration, printed and written to a file by the root process of MPI only.
 
-    Which columns there are is decided by the first row.
+    The first row determines the columns.
     """
 
     @staticmethod
     def print2(str: object) -> None:
-        """Prints a text in one of all processes."""
+        """Prints a text in the root process only."""
         if mpi_util.is_root_proc():
             print(str)
 
@@ -32,13 +32,13 @@ class Logger:
         self.log_current_row: dict[str, Any] = {}
 
     def reset(self) -> None:
-        """Begins anew, with an empty file if there is one."""
+        """Clears the table and, if there is one, the file."""
         self._forget_rows()
         if self.output_file is not None:
             self.configure_output_file(self.output_file.name)
 
     def configure_output_file(self, filename: str | None = None) -> None:
-        """Begins a file, `output/log_<seconds>.txt` where no name is given, and its folder if need be."""
+        """Creates the file, by default `output/log_<seconds>.txt`, and its folder if needed."""
         self._forget_rows()
         if not mpi_util.is_root_proc():
             return
@@ -51,10 +51,10 @@ class Logger:
         self.print2(f"Logging data to {self.output_file.name}")
 
     def log_tabular(self, key: str, val: Any) -> None:
-        """Sets a number of the present row.
+        """Sets a value of the present row.
 
         Raises:
-            AssertionError: It is not the first row, and that had no such column.
+            AssertionError: The first row, which is complete, has no such column.
         """
         if key not in self.log_headers:
             assert self.first_row, f"{key} is a new column; the first row had none of this name"
@@ -73,7 +73,7 @@ class Logger:
         self.print2(_RULE)
 
     def dump_tabular(self) -> None:
-        """Writes the present row, after the names of the columns if it is the first, and begins the next."""
+        """Writes the present row, before the first one also the column names, and starts the next row."""
         if self.output_file is not None:
             if self.first_row:
                 self.output_file.write(_line(self.log_headers))

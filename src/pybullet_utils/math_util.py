@@ -1,4 +1,4 @@
-"""Small functions of learning scripts."""
+"""Small mathematical functions for learning scripts."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 
 def lerp(x: Any, y: Any, t: Any) -> Any:
-    """A share `t` of the way from x to y."""
+    """Linear interpolation from x (t = 0) to y (t = 1)."""
     return (1 - t) * x + t * y
 
 
 def log_lerp(x: Any, y: Any, t: Any) -> np.ndarray:
-    """A share `t` of the way from x to y, both > 0, where equal shares are equal factors."""
+    """Logarithmic interpolation from x (t = 0) to y (t = 1), both > 0: linear in the logarithm."""
     return np.exp(lerp(np.log(x), np.log(y), t))
 
 

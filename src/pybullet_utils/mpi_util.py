@@ -1,4 +1,4 @@
-"""Numbers shared among the processes of an MPI job. Without mpi4py a process is alone and its own root."""
+"""Values exchanged between the processes of an MPI job. Without mpi4py there is one process, the root."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT_PROC_RANK = 0
 
 
 def _world() -> Any:
-    """MPI and the communicator of all processes, or None where there is no mpi4py."""
+    """The module `mpi4py.MPI`, or None if mpi4py is not installed."""
     try:
         from mpi4py import MPI  # type: ignore[import-not-found]
     except ImportError:
@@ -20,56 +20,56 @@ def _world() -> Any:
 
 
 def get_num_procs() -> int:
-    """How many processes there are."""
+    """The number of processes."""
     mpi = _world()
     return 1 if mpi is None else mpi.COMM_WORLD.Get_size()
 
 
 def get_proc_rank() -> int:
-    """The number of this process, from 0."""
+    """The rank of this process, from 0."""
     mpi = _world()
     return ROOT_PROC_RANK if mpi is None else mpi.COMM_WORLD.Get_rank()
 
 
 def is_root_proc() -> bool:
-    """Whether this is the process that speaks for all."""
+    """Whether this is the root process."""
     return get_proc_rank() == ROOT_PROC_RANK
 
 
 def bcast(x: np.ndarray) -> None:
-    """Fills an array of each process with that of the root."""
+    """Overwrites an array in each process with that of the root process."""
     mpi = _world()
     if mpi is not None:
         mpi.COMM_WORLD.Bcast(x, root=ROOT_PROC_RANK)
 
 
 def reduce_sum(x: Any) -> Any:
-    """The sum of the numbers or arrays of all processes."""
+    """The sum, elementwise for arrays, over all processes."""
     return reduce_all(x, "SUM")
 
 
 def reduce_prod(x: Any) -> Any:
-    """The product of the numbers or arrays of all processes."""
+    """The product, elementwise for arrays, over all processes."""
     return reduce_all(x, "PROD")
 
 
 def reduce_avg(x: Any) -> Any:
-    """The mean of the numbers or arrays of all processes."""
+    """The mean, elementwise for arrays, over all processes."""
     return reduce_sum(x) / get_num_procs()
 
 
 def reduce_min(x: Any) -> Any:
-    """The least of the numbers or arrays of all processes."""
+    """The minimum, elementwise for arrays, over all processes."""
     return reduce_all(x, "MIN")
 
 
 def reduce_max(x: Any) -> Any:
-    """The greatest of the numbers or arrays of all processes."""
+    """The maximum, elementwise for arrays, over all processes."""
     return reduce_all(x, "MAX")
 
 
 def reduce_all(x: Any, op: Any) -> Any:
-    """What an operation of MPI, or the name of one, makes of the numbers or arrays of all processes."""
+    """A number or an array, reduced over all processes with an MPI operation or the name of one."""
     mpi = _world()
     if mpi is None:
         return np.array(x) if isinstance(x, np.ndarray) else x
@@ -78,7 +78,7 @@ def reduce_all(x: Any, op: Any) -> Any:
 
 
 def gather_all(x: Any) -> list[Any]:
-    """The numbers or arrays of all processes, by their rank."""
+    """The numbers or arrays of all processes, in the order of their ranks."""
     mpi = _world()
     mine = np.array([x])
     if mpi is None:

@@ -1,9 +1,9 @@
-"""Stable proportional-derivative control in Python, as scripts of PyBullet do it.
+"""Stable proportional-derivative (PD) control in Python, with the classes of PyBullet's module.
 
-After the controller of Tan, Liu and Turk (Stable Proportional-Derivative Controllers, 2011). The error of
-velocity is the one expected after the next step, for which the equations of motion are solved together with
-the controller's own damping; high gains then stay stable at long steps. The error of position is the present
-one, as in PyBullet, where the paper takes the next one as well. `setJointMotorControlMultiDofArray` with
+The method is that of Tan, Liu and Turk (Stable Proportional-Derivative Controllers, 2011). The velocity
+error is the one expected after the next step: the equations of motion are solved together with the
+controller's own damping, so that high gains stay stable with long time steps. The position error is the
+present one, as in PyBullet; the paper uses the expected one. `setJointMotorControlMultiDofArray` with
 `STABLE_PD_CONTROL` is faster.
 """
 
@@ -16,19 +16,19 @@ from typing import Any
 import numpy as np
 
 _BASE_POSITIONS, _BASE_RATES = 7, 6
-# Rates of a rotation, padded with a zero to the length of its quaternion.
+# Length of a quaternion, and of an angular velocity padded with a zero.
 _ROTATION = 4
 
 
 class PDControllerStable:
-    """For joints of one freedom.
+    """Stable PD control of joints with one dof.
 
-    Lists have a value for each joint. Where the base is free, seven positions and six rates of the base come
-    before; the base is taken to stand still and turned as it should be.
+    Lists have a value for each joint. If the base is free, seven positions and six velocities of the base
+    come first; the base is assumed to be at rest and to have the desired orientation.
     """
 
     def __init__(self, pb: Any) -> None:
-        """Takes the module `pybullet`, or a `BulletClient`."""
+        """Makes a controller; `pb` is the module `pybullet` or a `BulletClient`."""
         self._pb = pb
 
     def computePD(
@@ -42,17 +42,17 @@ class PDControllerStable:
         maxForces: Sequence[float],
         timeStep: float,
     ) -> np.ndarray:
-        """Torques [N m] that bring joints to positions.
+        """Torques [N m] that drive the joints to the desired positions.
 
         Args:
             bodyUniqueId: The body.
             jointIndices: All its joints.
-            desiredPositions: Where they ought to be [rad or m].
-            desiredVelocities: How fast they ought to move [rad/s or m/s].
-            kps: Torque by error.
-            kds: Torque by error of velocity.
-            maxForces: Greatest torques.
-            timeStep: Of the simulation [s].
+            desiredPositions: Desired positions [rad or m].
+            desiredVelocities: Desired velocities [rad/s or m/s].
+            kps: Proportional gains: torque per position error.
+            kds: Derivative gains: torque per velocity error.
+            maxForces: Maximum torques [N m].
+            timeStep: Time step of the simulation [s].
         """
         states = self._pb.getJointStates(bodyUniqueId, jointIndices)
         positions = [state[0] for state in states]
@@ -70,27 +70,27 @@ class PDControllerStable:
 
 
 class PDControllerStableMultiDof:
-    """For joints of any number of freedoms on a base that is free.
+    """Stable PD control of joints with any number of dofs, on a free base.
 
-    Positions, rates, gains and torques come as PyBullet's flags=1 wants them: seven numbers for the base,
-    then four for each spherical joint, of whose rates the last is idle, and one for each other joint. As in
-    PyBullet no torque turns the base to its aim; only its rate is braked.
+    Positions, velocities, gains and torques have the layout of PyBullet's flags=1: seven numbers for the
+    base, then four for each spherical joint (the fourth velocity is unused), and one for each other joint.
+    As in PyBullet the orientation of the base has no position gain; only its angular velocity is damped.
     """
 
     def __init__(self, pb: Any) -> None:
-        """Takes the module `pybullet`, or a `BulletClient`."""
+        """Makes a controller; `pb` is the module `pybullet` or a `BulletClient`."""
         self._pb = pb
 
     def computeAngVel(
         self, ornStart: Sequence[float], ornEnd: Sequence[float], deltaTime: float, bullet_client: Any
     ) -> list[float]:
-        """Rate [rad/s] in world axes that turns one orientation to another in a time [s]."""
+        """Angular velocity [rad/s], in world axes, that rotates one orientation to another in a time [s]."""
         turn = bullet_client.getDifferenceQuaternion(ornStart, ornEnd)
         axis, angle = bullet_client.getAxisAngleFromQuaternion(turn)
         return [component * angle / deltaTime for component in axis]
 
     def quatMul(self, q1: Sequence[float], q2: Sequence[float]) -> list[float]:
-        """The rotation that turns as q2 does and then as q1."""
+        """The product of two quaternions: the rotation q2 followed by q1."""
         x1, y1, z1, w1 = q1
         x2, y2, z2, w2 = q2
         return [
@@ -103,7 +103,7 @@ class PDControllerStableMultiDof:
     def computeAngVelRel(
         self, ornStart: Sequence[float], ornEnd: Sequence[float], deltaTime: float, bullet_client: Any
     ) -> list[float]:
-        """Rate [rad/s] in the axes of the first orientation that turns it to the second in a time [s]."""
+        """Like `computeAngVel`, but in the axes of the first orientation."""
         back = [-ornStart[0], -ornStart[1], -ornStart[2], ornStart[3]]
         turn = self.quatMul(back, ornEnd)
         axis, angle = bullet_client.getAxisAngleFromQuaternion(turn)
@@ -120,17 +120,17 @@ class PDControllerStableMultiDof:
         maxForces: Sequence[float],
         timeStep: float,
     ) -> np.ndarray:
-        """Torques [N m] that bring base and joints to positions; those of the base lead the list.
+        """Torques [N m] that drive base and joints to the desired positions; those of the base come first.
 
         Args:
             bodyUniqueId: The body.
             jointIndices: All its joints that move.
-            desiredPositions: Where they ought to be.
-            desiredVelocities: How fast they ought to move.
-            kps: Torque by error.
-            kds: Torque by error of velocity.
-            maxForces: Greatest torques.
-            timeStep: Of the simulation [s].
+            desiredPositions: Desired positions.
+            desiredVelocities: Desired velocities.
+            kps: Proportional gains: torque per position error.
+            kds: Derivative gains: torque per velocity error.
+            maxForces: Maximum torques [N m].
+            timeStep: Time step of the simulation [s].
         """
         bullet = self._pb
         origin, turn = bullet.getBasePositionAndOrientation(bodyUniqueId)
@@ -159,7 +159,7 @@ class PDControllerStableMultiDof:
 
 @dataclass(frozen=True, slots=True)
 class _Gains:
-    """Torque by error of position and of velocity, and the greatest torques, by freedom."""
+    """Proportional gains, derivative gains and maximum torques, each with a value per dof."""
 
     kp: Sequence[float]
     kd: Sequence[float]
@@ -169,7 +169,7 @@ class _Gains:
 def _torques(
     gains: _Gains, masses: Any, bias: Any, errors: Sequence[float], rate_errors: np.ndarray, time_step: float
 ) -> np.ndarray:
-    """The torques for errors of positions and of rates, given mass matrix and bias forces."""
+    """Torques for position and velocity errors, given the mass matrix and the bias forces."""
     damping = np.asarray(gains.kd, dtype=float)
     wanted = np.multiply(gains.kp, errors) + damping * rate_errors
     acceleration = np.linalg.solve(

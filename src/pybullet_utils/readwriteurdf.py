@@ -1,4 +1,4 @@
-"""Loads a URDF file and writes it anew: `python -m pybullet_utils.readwriteurdf --urdf_in a --urdf_out b`."""
+"""Loads and writes a URDF file: `python -m pybullet_utils.readwriteurdf --urdf_in a --urdf_out b`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pybullet_utils.urdfEditor import UrdfEditor
 
 
 def main() -> None:
-    """Does what the command line says."""
-    parser = argparse.ArgumentParser(description="Loads a URDF file and writes it anew.")
+    """Loads and writes the files that the command line names."""
+    parser = argparse.ArgumentParser(description="Loads a URDF file and writes it to another.")
     parser.add_argument("--urdf_in", default="test.urdf", help="file to load")
     parser.add_argument("--urdf_out", default="out.urdf", help="file to write")
     parser.add_argument("--urdf_flags", type=int, default=0, help="flags of loadURDF")

@@ -1,4 +1,4 @@
-"""A server with a window, for clients of other processes: `python -m pybullet_utils.runServer`."""
+"""A server with a window, for clients in other processes: `python -m pybullet_utils.runServer`."""
 
 from __future__ import annotations
 

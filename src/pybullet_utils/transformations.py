@@ -1,8 +1,8 @@
 """Rotations and homogeneous transforms as NumPy arrays.
 
-Quaternions are (x, y, z, w), matrices 4 by 4, vectors columns. Euler angles come with four letters that say
-about which axes they turn: `s` for the axes of the world or `r` for those of the turning body, then the axes
-in order. `sxyz`, where no letters are given, is roll, pitch and yaw.
+Quaternions are (x, y, z, w), matrices 4 by 4, vectors columns. Four letters name the axes of Euler angles:
+`s` for fixed (static) axes or `r` for axes that rotate with the body, then the three axes in order. The
+default `sxyz` is roll, pitch and yaw.
 """
 
 from __future__ import annotations
@@ -15,31 +15,31 @@ import numpy as np
 Numbers = Sequence[float] | np.ndarray
 
 _AXES = "xyz"
-# Below this, two angles turn about the same line, or a length is none.
+# Tolerance for gimbal lock, zero lengths and singular matrices.
 _SMALL = 4.0 * float(np.finfo(float).eps)
 
 
 def identity_matrix() -> np.ndarray:
-    """The transform that leaves everything as it is."""
+    """The identity transform."""
     return np.identity(4)
 
 
 def translation_matrix(direction: Numbers) -> np.ndarray:
-    """The transform that moves by a vector of three."""
+    """The translation by a vector of three components."""
     matrix = np.identity(4)
     matrix[:3, 3] = np.asarray(direction, dtype=float)[:3]
     return matrix
 
 
 def translation_from_matrix(matrix: Numbers) -> np.ndarray:
-    """How far a transform moves the origin."""
+    """The translation part of a transform."""
     return np.array(matrix, dtype=float)[:3, 3].copy()
 
 
 def scale_matrix(
     factor: float, origin: Numbers | None = None, direction: Numbers | None = None
 ) -> np.ndarray:
-    """The transform that scales by `factor` about an origin, along one direction or along all."""
+    """The scaling by `factor` about an origin, along one direction or along all."""
     matrix = np.identity(4)
     if direction is None:
         matrix[:3, :3] *= factor
@@ -53,12 +53,12 @@ def scale_matrix(
 
 
 def reflection_matrix(point: Numbers, normal: Numbers) -> np.ndarray:
-    """The transform that mirrors at the plane through a point with a normal."""
+    """The reflection in the plane through a point with a normal."""
     return scale_matrix(-1.0, point, normal)
 
 
 def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = None) -> np.ndarray:
-    """The transform that turns by an angle [rad] about the line through a point in a direction."""
+    """The rotation by an angle [rad] about the axis through a point in a direction."""
     matrix = quaternion_matrix(quaternion_about_axis(angle, np.asarray(direction, dtype=float)[:3]))
     if point is not None:
         fixed = np.asarray(point, dtype=float)[:3]
@@ -67,21 +67,22 @@ def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = No
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> np.ndarray:
-    """The rotation that three angles [rad] about the given axes make."""
+    """The rotation matrix of Euler angles [rad] about the given axes."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
 def euler_from_matrix(matrix: Numbers, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The three angles [rad] about the given axes that make a rotation.
+    """The Euler angles [rad] of a rotation matrix about the given axes.
 
-    Where the first and the third turn about the same line, the third is 0.
+    In gimbal lock, where the first and the third axis coincide, the third angle is 0 for fixed axes, and the
+    first for rotating ones.
     """
     static, (i, j, k) = _parsed(axes)
     turned = np.asarray(matrix, dtype=float)[:3, :3]
     if not static:
-        # Turns about the body's axes are those about the world's in the opposite order.
+        # Rotations about the body's axes equal rotations about fixed axes in the opposite order.
         i, k = k, i
-    # In the frame whose axes are i, j and the third, seen in a mirror where those are left-handed.
+    # The frame with axes i, j and the third; `sign` is -1 where this frame is left-handed.
     third = 3 - i - j
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
     if i == k:
@@ -104,12 +105,12 @@ def euler_from_matrix(matrix: Numbers, axes: str = "sxyz") -> tuple[float, float
 
 
 def euler_from_quaternion(quaternion: Numbers, axes: str = "sxyz") -> tuple[float, float, float]:
-    """The three angles [rad] about the given axes that make a rotation."""
+    """The Euler angles [rad] of a quaternion about the given axes."""
     return euler_from_matrix(quaternion_matrix(quaternion), axes)
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> np.ndarray:
-    """The rotation that three angles [rad] about the given axes make."""
+    """The quaternion of Euler angles [rad] about the given axes."""
     static, order = _parsed(axes)
     result = np.array([0.0, 0.0, 0.0, 1.0])
     for angle, axis in zip((ai, aj, ak), order, strict=True):
@@ -120,7 +121,10 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
 
 
 def quaternion_about_axis(angle: float, axis: Numbers) -> np.ndarray:
-    """The rotation by an angle [rad] about an axis of any length; none about an axis of no length."""
+    """The quaternion of a rotation by an angle [rad] about an axis of any length.
+
+    The vector part of the result is zero for an axis of zero length.
+    """
     direction = np.asarray(axis, dtype=float)[:3]
     length = float(np.linalg.norm(direction))
     scale = sin(angle / 2.0) / length if length > _SMALL else 0.0
@@ -128,7 +132,7 @@ def quaternion_about_axis(angle: float, axis: Numbers) -> np.ndarray:
 
 
 def quaternion_matrix(quaternion: Numbers) -> np.ndarray:
-    """The transform of a rotation; a quaternion of no length is none."""
+    """The rotation matrix of a quaternion; the identity for a quaternion of zero length."""
     q = np.array(quaternion[:4], dtype=float)
     square = float(q @ q)
     matrix = np.identity(4)
@@ -141,10 +145,10 @@ def quaternion_matrix(quaternion: Numbers) -> np.ndarray:
 
 
 def quaternion_from_matrix(matrix: Numbers) -> np.ndarray:
-    """The rotation of a transform."""
+    """The quaternion of the rotation in a transform."""
     m = np.asarray(matrix, dtype=float)[:3, :3]
     trace = float(np.trace(m))
-    # The largest of the four is the one to divide by.
+    # Dividing by the largest of the four components is the most accurate.
     largest = int(np.argmax([m[0, 0], m[1, 1], m[2, 2], trace]))
     q = np.empty(4)
     if largest == 3:
@@ -159,7 +163,7 @@ def quaternion_from_matrix(matrix: Numbers) -> np.ndarray:
 
 
 def quaternion_multiply(quaternion1: Numbers, quaternion0: Numbers) -> np.ndarray:
-    """The rotation that turns as the second argument does and then as the first one."""
+    """The product of two quaternions: the rotation `quaternion0` followed by `quaternion1`."""
     x0, y0, z0, w0 = quaternion0
     x1, y1, z1, w1 = quaternion1
     return np.array(
@@ -173,27 +177,27 @@ def quaternion_multiply(quaternion1: Numbers, quaternion0: Numbers) -> np.ndarra
 
 
 def quaternion_conjugate(quaternion: Numbers) -> np.ndarray:
-    """The quaternion with its axis reversed."""
+    """The conjugate of a quaternion."""
     x, y, z, w = quaternion
     return np.array([-x, -y, -z, w], dtype=float)
 
 
 def quaternion_inverse(quaternion: Numbers) -> np.ndarray:
-    """The quaternion that takes a quaternion back, whatever its length."""
+    """The inverse of a quaternion of any length but zero."""
     return quaternion_conjugate(quaternion) / float(np.dot(quaternion, quaternion))
 
 
 def quaternion_slerp(
     quat0: Numbers, quat1: Numbers, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> np.ndarray:
-    """The rotation a fraction of the way from one to another.
+    """Spherical linear interpolation (slerp) between two quaternions.
 
     Args:
-        quat0: Where `fraction` is 0.
-        quat1: Where it is 1.
-        fraction: How far on the way.
-        spin: Half turns made besides.
-        shortestpath: Whether to turn the other way round where that is shorter.
+        quat0: Rotation for fraction 0.
+        quat1: Rotation for fraction 1.
+        fraction: Fraction of the way from `quat0` to `quat1`.
+        spin: Number of additional half turns.
+        shortestpath: Whether to rotate in the opposite direction where that is shorter.
     """
     start, end = unit_vector(quat0[:4]), unit_vector(quat1[:4])
     if fraction == 0.0:
@@ -212,10 +216,10 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: Numbers | None = None) -> np.ndarray:
-    """A rotation, all equally likely.
+    """A random rotation with uniform distribution.
 
     Args:
-        rand: Three numbers from 0 to 1 to make it of, instead of random ones.
+        rand: Three numbers from 0 to 1 that are used instead of random numbers.
     """
     share, first, second = np.random.random(3) if rand is None else rand
     low, high = sqrt(1.0 - share), sqrt(share)
@@ -230,7 +234,7 @@ def random_quaternion(rand: Numbers | None = None) -> np.ndarray:
 
 
 def random_rotation_matrix(rand: Numbers | None = None) -> np.ndarray:
-    """The transform of a `random_quaternion`."""
+    """The rotation matrix of a `random_quaternion`."""
     return quaternion_matrix(random_quaternion(rand))
 
 
@@ -240,23 +244,23 @@ def vector_norm(data: Numbers, axis: int | None = None) -> np.ndarray:
 
 
 def unit_vector(data: Numbers, axis: int | None = None) -> np.ndarray:
-    """A vector, or the vectors along an axis of an array, made as long as one."""
+    """A vector, or the vectors along an axis of an array, scaled to length 1."""
     values = np.array(data, dtype=float)
     return values / np.sqrt(np.sum(np.square(values), axis=axis, keepdims=axis is not None))
 
 
 def random_vector(size: int) -> np.ndarray:
-    """So many random numbers from 0 to 1."""
+    """`size` random numbers from 0 to 1."""
     return np.random.random(size)
 
 
 def inverse_matrix(matrix: Numbers) -> np.ndarray:
-    """The transform that takes a transform back."""
+    """The inverse of a transform."""
     return np.linalg.inv(np.asarray(matrix, dtype=float))
 
 
 def concatenate_matrices(*matrices: Numbers) -> np.ndarray:
-    """The transform that applies all of them, the last one first."""
+    """The product of transforms; the last one is applied first."""
     result = np.identity(4)
     for matrix in matrices:
         result = result @ np.asarray(matrix, dtype=float)
@@ -264,21 +268,21 @@ def concatenate_matrices(*matrices: Numbers) -> np.ndarray:
 
 
 def is_same_transform(matrix0: Numbers, matrix1: Numbers) -> bool:
-    """Whether two transforms do the same, whatever their scale in homogeneous coordinates."""
+    """Whether two transforms are equal up to their scale in homogeneous coordinates."""
     first, second = (np.array(matrix, dtype=float) for matrix in (matrix0, matrix1))
     return bool(np.allclose(first / first[3, 3], second / second[3, 3]))
 
 
 def rotation_from_matrix(matrix: Numbers) -> tuple[float, np.ndarray, np.ndarray]:
-    """Angle [rad], direction and a point (homogeneous, of four) of the line a transform turns about.
+    """Angle [rad], direction and a point (homogeneous, 4 components) of the axis of a rotation.
 
     Raises:
-        ValueError: The transform is no rotation about a line.
+        ValueError: The 3 by 3 part of the transform is not a rotation matrix.
     """
     full = np.asarray(matrix, dtype=float)
     turned = full[:3, :3]
     if not np.allclose(turned @ turned.T, np.identity(3)) or np.linalg.det(turned) < 0.0:
-        raise ValueError("the transform is no rotation")
+        raise ValueError("the transform is not a rotation")
     q = quaternion_from_matrix(full)
     length = float(np.linalg.norm(q[:3]))
     direction = q[:3] / length if length > _SMALL else np.array([0.0, 0.0, 1.0])
@@ -296,7 +300,7 @@ def compose_matrix(
     translate: Numbers | None = None,
     perspective: Numbers | None = None,
 ) -> np.ndarray:
-    """The transform that scales, shears (xy, xz, yz), turns (`sxyz`), moves and projects, in this order."""
+    """Scaling, shear (xy, xz, yz), rotation (`sxyz`), translation and perspective, applied in this order."""
     matrix = np.identity(4)
     if perspective is not None:
         matrix[3, :] = np.asarray(perspective, dtype=float)[:4]
@@ -316,21 +320,21 @@ def compose_matrix(
 def decompose_matrix(
     matrix: Numbers,
 ) -> tuple[np.ndarray, list[float], list[float], np.ndarray, np.ndarray]:
-    """Scale, shear, angles, translation and perspective of which `compose_matrix` makes a transform.
+    """Scale, shear, angles, translation and perspective of a transform: the inverse of `compose_matrix`.
 
     Raises:
         ValueError: The transform is singular.
     """
     full = np.array(matrix, dtype=float)
     if abs(full[3, 3]) < _SMALL:
-        raise ValueError("the transform sends the origin to infinity")
+        raise ValueError("the transform maps the origin to infinity")
     full /= full[3, 3]
     bottom = full[3].copy()
     affine = full.copy()
     affine[3] = 0.0, 0.0, 0.0, 1.0
     if abs(float(np.linalg.det(affine))) < _SMALL:
         raise ValueError("the transform is singular")
-    # Columns as a rotation times an upper triangle with a positive diagonal.
+    # QR decomposition, with a positive diagonal of the upper triangular matrix.
     turned, triangle = np.linalg.qr(affine[:3, :3])
     signs = np.sign(np.diag(triangle))
     turned, triangle = turned * signs, triangle * signs[:, None]
@@ -343,9 +347,9 @@ def decompose_matrix(
 
 
 def _parsed(axes: str) -> tuple[bool, tuple[int, int, int]]:
-    """Whether angles are about the axes of the world, and which."""
+    """Whether Euler angles are about fixed axes, and the indices of the three axes."""
     if len(axes) == 4 and axes[0] in "sr" and all(axis in _AXES for axis in axes[1:]):
         first, second, third = (_AXES.index(axis) for axis in axes[1:])
         if first != second != third:
             return axes[0] == "s", (first, second, third)
-    raise ValueError(f"axes are {axes!r}, not as 'sxyz' or 'rzyx'")
+    raise ValueError(f"axes must be like 'sxyz' or 'rzyx', not {axes!r}")

@@ -1,4 +1,4 @@
-"""Robots as data that scripts change, join and write as URDF files."""
+"""Robots as data that scripts can change, join and write as URDF files."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ __all__ = [
 
 Numbers = Sequence[float]
 _NOWHERE = (0.0, 0.0, 0.0)
-# What PyBullet calls the file of a hull it has made itself.
+# File name that PyBullet reports for a convex hull that it has built itself.
 _FORGOTTEN = "unknown_file"
 
 
@@ -43,14 +43,14 @@ class UrdfEditor:
         urdfLinks: The links, the base first.
         urdfJoints: The joints; joint i leads to link i + 1.
         robotName: The name of the robot.
-        linkNameToIndex: Where in `urdfLinks` a link is.
+        linkNameToIndex: Index of each link in `urdfLinks`, by name.
     """
 
     def __init__(self) -> None:
         self.initialize()
 
     def initialize(self) -> None:
-        """Forgets all links and joints."""
+        """Removes all links and joints."""
         self.urdfLinks: list[UrdfLink] = []
         self.urdfJoints: list[UrdfJoint] = []
         self.robotName = ""
@@ -62,7 +62,7 @@ class UrdfEditor:
         }
 
     def initializeFromBulletBody(self, bodyUid: int, physicsClientId: int) -> None:
-        """Takes the links and joints of a body of a simulation in place of those there were."""
+        """Replaces all links and joints by those of a body in a simulation."""
         self.initialize()
         base_name, robot_name = p.getBodyInfo(bodyUid, physicsClientId=physicsClientId)
         self.robotName = robot_name.decode()
@@ -76,7 +76,7 @@ class UrdfEditor:
     def convertLinkFromMultiBody(
         self, bodyUid: int, linkIndex: int, urdfLink: UrdfLink, physicsClientId: int
     ) -> None:
-        """Takes mass, inertia and shapes of a link of a simulation; -1 is the base."""
+        """Copies mass, inertia and shapes of a link in a simulation to `urdfLink`; index -1 is the base."""
         dynamics = p.getDynamicsInfo(bodyUid, linkIndex, physicsClientId=physicsClientId)
         inertial = urdfLink.urdf_inertial
         inertial.mass, inertial.inertia_xxyyzz, inertial.origin_xyz = dynamics[0], dynamics[2], dynamics[3]
@@ -86,12 +86,12 @@ class UrdfEditor:
                 number = len(urdfLink.urdf_visual_shapes)
                 urdfLink.urdf_visual_shapes.append(UrdfVisual.of_seen(shape, f"mat_{linkIndex}_{number}"))
         for shape in p.getCollisionShapeData(bodyUid, linkIndex, physicsClientId=physicsClientId):
-            # They are given in the inertial frame, and written in that of the link.
+            # The pose is given in the inertial frame, and written in the link frame.
             place = p.multiplyTransforms(dynamics[3], dynamics[4], shape[5], shape[6])
             collision = UrdfCollision.of_shape(shape, place)
             number = len(urdfLink.urdf_collision_shapes)
             if collision.geom_meshfilename == _FORGOTTEN and number < len(urdfLink.urdf_visual_shapes):
-                # Of a cylinder that touches as a hull nothing is known but what it looks like.
+                # The size of a cylinder that collides as a convex hull is only known from its visual shape.
                 collision.copy_geometry(urdfLink.urdf_visual_shapes[number])
             urdfLink.urdf_collision_shapes.append(collision)
 
@@ -106,23 +106,23 @@ class UrdfEditor:
         parentPhysicsClientId: int = 0,
         childPhysicsClientId: int = 0,
     ) -> UrdfJoint:
-        """Adds the links and joints of another robot behind a new joint.
+        """Attaches another robot: adds its links and joints, and a new joint to its base.
 
-        The base of the other robot is moved so that the pivot is the origin of its link frame. Names of
-        links and joints that are there already get a number.
+        The base of the other robot is moved so that the joint is the origin of its link frame. Links and
+        joints whose names are already used get a number.
 
         Args:
-            childEditor: The other robot; it is not to be used any more.
-            parentLinkIndex: The link it is joined to, in `urdfLinks`.
-            jointPivotXYZInParent: Where the joint is in the frame of that link [m].
-            jointPivotRPYInParent: How it is turned there, roll, pitch and yaw [rad].
-            jointPivotXYZInChild: Where it is in the frame of the other robot's base.
-            jointPivotRPYInChild: How it is turned there.
+            childEditor: The other robot; do not use the editor afterwards.
+            parentLinkIndex: Index of the parent link in `urdfLinks`.
+            jointPivotXYZInParent: Position of the joint in the frame of the parent link [m].
+            jointPivotRPYInParent: Orientation of the joint there: roll, pitch and yaw [rad].
+            jointPivotXYZInChild: Position of the joint in the frame of the other robot's base [m].
+            jointPivotRPYInChild: Orientation of the joint there: roll, pitch and yaw [rad].
             parentPhysicsClientId: Not used.
             childPhysicsClientId: Not used.
 
         Returns:
-            The joint: revolute, about z, without limits. Change it as you please.
+            The new joint: revolute, about z, without limits. Scripts may change it.
         """
         base = childEditor.urdfLinks[0]
         turn = p.getQuaternionFromEuler(jointPivotRPYInChild)
@@ -159,18 +159,18 @@ class UrdfEditor:
         baseOrientation: Numbers = (0, 0, 0, 1),
         physicsClientId: int = 0,
     ) -> int:
-        """Makes a body of the robot in a simulation.
+        """Loads the robot into a simulation as a body.
 
         Args:
-            basePosition: Where its base is to be [m].
-            baseOrientation: How it is to be turned, a quaternion (x, y, z, w).
+            basePosition: Position of the base [m].
+            baseOrientation: Orientation of the base, a quaternion (x, y, z, w).
             physicsClientId: The connection.
 
         Returns:
-            Its id.
+            The id of the body.
 
         Raises:
-            pybullet.error: The robot cannot be made, for want of a file for one.
+            pybullet.error: The robot cannot be loaded, for example because a file is missing.
         """
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "robot.urdf")
@@ -184,7 +184,7 @@ class UrdfEditor:
             )
 
     def saveUrdf(self, fileName: str, saveVisuals: bool = True) -> None:
-        """Writes the robot to a URDF file, with or without what its links look like."""
+        """Writes the robot to a URDF file, with or without visual shapes."""
         with open(fileName, "w", encoding="utf-8") as file:
             self._write(file, saveVisuals)
 
@@ -208,7 +208,8 @@ class UrdfEditor:
         joint.joint_axis_xyz = info[13]
         joint.parent_name = self.urdfLinks[info[16] + 1].link_name
         joint.child_name = link.link_name
-        # Where the joint is in the inertial frame of the parent, and how that is turned in the child's.
+        # info[14]: the joint's position in the parent's inertial frame; info[15]: the orientation of that
+        # frame in the child's inertial frame.
         parent = p.getDynamicsInfo(body, info[16], physicsClientId=client)
         to_child = p.invertTransform(_NOWHERE, info[15])[1]
         origin, turn = p.multiplyTransforms(parent[3], parent[4], info[14], to_child)
@@ -225,7 +226,7 @@ class UrdfEditor:
 
 
 def _unused(name: str, taken: set[str]) -> str:
-    """The name, with a number if it is taken; it is taken from now on."""
+    """The name, with a number if it is already in `taken`; adds the result to `taken`."""
     number, result = 0, name
     while result in taken:
         number += 1

@@ -1,4 +1,4 @@
-"""Random numbers that are the same in every run."""
+"""Seeds of random number generators."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 def set_global_seeds(seed: int) -> None:
-    """Seeds Python's and NumPy's random numbers, and TensorFlow's where it has been imported."""
+    """Seeds the random numbers of Python and NumPy, and of TensorFlow if it has been imported."""
     tensorflow = sys.modules.get("tensorflow")
     if tensorflow is not None:
         tensorflow.random.set_seed(seed)

@@ -111,7 +111,7 @@ def test_what_scripts_read_of_a_robot() -> None:
 def test_actions_of_the_wrong_length_are_refused() -> None:
     env = AntBulletEnv()
     env.reset(seed=1)
-    with pytest.raises(ValueError, match=r"the action has the shape \(1,\), where \(8,\) is asked for"):
+    with pytest.raises(ValueError, match=r"the action has shape \(1,\), not \(8,\)"):
         env.step(np.ones(1))
     env.close()
 

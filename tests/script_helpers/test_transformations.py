@@ -78,7 +78,7 @@ def test_reflections_scales_and_moves() -> None:
 def test_parts_of_singular_transforms_are_refused() -> None:
     with pytest.raises(ValueError, match="singular"):
         transform.decompose_matrix(np.diag([1.0, 1.0, 0.0, 1.0]))
-    with pytest.raises(ValueError, match="no rotation"):
+    with pytest.raises(ValueError, match="not a rotation"):
         transform.rotation_from_matrix(np.diag([1.0, 2.0, 1.0, 1.0]))
 
 

@@ -1,4 +1,4 @@
-"""Environments around a single URDF or SDF robot."""
+"""Environments with one robot from a URDF or SDF file."""
 
 from pybullet_envs.bullet.cartpole_bullet import CartPoleBulletEnv, CartPoleContinuousBulletEnv
 from pybullet_envs.bullet.kuka_diverse_object_gym_env import KukaDiverseObjectEnv

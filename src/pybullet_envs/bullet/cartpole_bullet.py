@@ -1,4 +1,4 @@
-"""A pole on a cart, pushed left or right."""
+"""Environments with a pole on a cart that is pushed left or right."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ LARGEST_START = 0.05
 
 
 class CartPoleBulletEnv(BulletEnv):
-    """A pole to keep upright; a point for each step that it stands and the cart is on its track.
+    """A pole to keep upright; the reward is 1 per step, until the pole falls or the cart leaves its track.
 
-    Observation: angle and rate of the pole, position and velocity of the cart. Action: 0 pushes with 10 N to
-    one side, 1 to the other.
+    Observation: angle and velocity of the pole, position and velocity of the cart. Action: 0 pushes with 10 N
+    to one side, 1 to the other.
     """
 
     picture_size = (320, 200)
@@ -38,7 +38,7 @@ class CartPoleBulletEnv(BulletEnv):
 
         Args:
             renders: Whether to open a window.
-            discrete_actions: Whether to push with all force to one side, or with any force.
+            discrete_actions: Whether to push with the full force to one side; otherwise, with any force.
             render_mode: `human`, `rgb_array` or none.
         """
         super().__init__(renders, render_mode)
@@ -54,7 +54,7 @@ class CartPoleBulletEnv(BulletEnv):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode: everything within 0.05 of upright and at rest."""
+        """Begins an episode, with random positions and velocities within ±0.05."""
         super().reset(seed=seed)
         if self._connect():
             self._load()
@@ -78,7 +78,7 @@ class CartPoleBulletEnv(BulletEnv):
         return np.array([*pole, *cart], np.float32)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Pushes the cart for a step."""
+        """Applies an action for one step."""
         way = (1.0 if action == 1 else -1.0) if self._discrete else float(action[0]) / self.force_mag
         force = self.force_mag * way
         self._p.setJointMotorControl2(self.cartpole, CART, pybullet.TORQUE_CONTROL, force=force)
@@ -90,7 +90,7 @@ class CartPoleBulletEnv(BulletEnv):
 
 
 class CartPoleContinuousBulletEnv(CartPoleBulletEnv):
-    """The same, pushed with any force up to 10 N."""
+    """The same, but with any force up to 10 N."""
 
     def __init__(self, renders: bool = False, render_mode: str | None = None) -> None:
         """Makes an environment; see `CartPoleBulletEnv`."""

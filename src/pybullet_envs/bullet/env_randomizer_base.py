@@ -1,4 +1,4 @@
-"""What changes a Minitaur from one episode to the next."""
+"""Base class of randomizers, which change a Minitaur from one episode to the next."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Any
 
 
 class EnvRandomizerBase(ABC):
-    """Something that each `reset` of an environment calls."""
+    """A randomizer, called by each `reset` of an environment."""
 
     @abstractmethod
     def randomize_env(self, env: Any) -> None:
-        """Changes what is in an environment, for one episode.
+        """Changes the robot or the world of an environment, for one episode.
 
         Args:
             env: The environment; random numbers come from its `np_random`, that is from its seed.

@@ -1,4 +1,4 @@
-"""A KUKA arm with a gripper above a tray, steered by where its wrist is to go."""
+"""A KUKA arm with a gripper above a tray, controlled by target positions of its wrist."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pybullet_data
 
 WRIST, GRIPPER = 6, 7
 LEFT_FINGER, LEFT_TIP, RIGHT_FINGER, RIGHT_TIP = 8, 10, 11, 13
-# The bounds within which the wrist is sent [m].
+# Bounds of the target position of the wrist [m].
 REACH_X, REACH_Y = (0.5, 0.65), (-0.17, 0.22)
 _DOWN = (0.0, -pi, 0.0)
 _STANCE = (
@@ -22,19 +22,19 @@ _STANCE = (
 
 
 class Kuka:
-    """The arm, its gripper and the tray, in a world that is there already.
+    """The arm, its gripper and the tray, in an existing world.
 
     Attributes:
-        kukaUid: The arm.
-        trayUid: The tray.
-        endEffectorPos: Where the wrist is to be [m].
-        endEffectorAngle: How far the gripper is to be turned [rad].
-        motorIndices: Joints that move.
-        motorNames: Their names, as `str` writes bytes.
-        useInverseKinematics: Whether actions say where the wrist goes, or where each joint goes.
-        useNullSpace: 1 to draw the joints to `rp` within `ll` and `ul`.
-        useOrientation: Whether the gripper is to point down.
-        useSimulation: Whether motors take the joints there, or they are put there at once.
+        kukaUid: Id of the arm.
+        trayUid: Id of the tray.
+        endEffectorPos: Target position of the wrist [m].
+        endEffectorAngle: Target angle of the gripper [rad].
+        motorIndices: Indices of the joints that move.
+        motorNames: Names of these joints: `str` of the bytes.
+        useInverseKinematics: Whether actions are motions of the wrist; otherwise, joint targets.
+        useNullSpace: 1 for inverse kinematics near `rp`, within `ll` and `ul`.
+        useOrientation: Whether inverse kinematics keeps the gripper pointing down.
+        useSimulation: Whether motors move the joints; otherwise, joints are set to the targets at once.
     """
 
     def __init__(
@@ -43,12 +43,12 @@ class Kuka:
         timeStep: float = 0.01,
         bullet_client: Any = pybullet,
     ) -> None:
-        """Loads them.
+        """Loads arm and tray.
 
         Args:
-            urdfRootPath: The folder of the files; that of `pybullet_data` where not given.
-            timeStep: Kept, but of no effect [s].
-            bullet_client: The world; the first connection where not given.
+            urdfRootPath: Folder of the files; by default that of `pybullet_data`.
+            timeStep: No effect; kept as an attribute [s].
+            bullet_client: The world; by default the first connection.
         """
         self._p = bullet_client
         self.urdfRootPath = pybullet_data.getDataPath() if urdfRootPath is None else urdfRootPath
@@ -72,7 +72,7 @@ class Kuka:
         self.reset()
 
     def reset(self) -> None:
-        """Loads arm and tray, and takes up the stance to begin from."""
+        """Loads arm and tray, and moves the arm to its initial pose."""
         bullet = self._p
         (self.kukaUid, *_) = bullet.loadSDF(
             os.path.join(self.urdfRootPath, "kuka_iiwa/kuka_with_gripper2.sdf")
@@ -93,11 +93,11 @@ class Kuka:
         self.motorNames = [str(info[1]) for info in infos if info[3] > -1]
 
     def getActionDimension(self) -> int:
-        """How many numbers an action has when it is one for each joint; otherwise 6."""
+        """As in PyBullet: with inverse kinematics the number of moving joints, otherwise 6."""
         return len(self.motorIndices) if self.useInverseKinematics else 6
 
     def getObservationDimension(self) -> int:
-        """How many numbers `getObservation` returns."""
+        """Size of the result of `getObservation`."""
         return len(self.getObservation())
 
     def getObservation(self) -> list[float]:
@@ -106,11 +106,11 @@ class Kuka:
         return [*position, *self._p.getEulerFromQuaternion(orientation)]
 
     def applyAction(self, motorCommands: Sequence[float]) -> None:
-        """Tells the motors where to go.
+        """Sets the targets of the motors.
 
         Args:
-            motorCommands: How far the wrist moves along x, y and z [m], how far the gripper turns, and
-                how far each finger opens [rad]. Without inverse kinematics, targets of the joints.
+            motorCommands: Motion of the wrist along x, y and z [m], rotation of the gripper and opening of
+                each finger [rad]. Without inverse kinematics, targets of the joints.
         """
         if not self.useInverseKinematics:
             for joint, target in zip(self.motorIndices, motorCommands, strict=False):
@@ -118,7 +118,7 @@ class Kuka:
             return
         dx, dy, dz, turn, finger = motorCommands[:5]
         x, y, z = self.endEffectorPos
-        # In place, since scripts keep the list.
+        # In place, because scripts hold a reference to the list.
         self.endEffectorPos[:] = [
             min(max(x + dx, REACH_X[0]), REACH_X[1]),
             min(max(y + dy, REACH_Y[0]), REACH_Y[1]),
@@ -133,7 +133,7 @@ class Kuka:
         self._drive(RIGHT_TIP, 0.0, self.fingerTipForce)
 
     def joints_for(self, place: Sequence[float]) -> tuple[float, ...]:
-        """Where the joints bring the wrist to a place."""
+        """Joint positions that bring the wrist to a position [m], by inverse kinematics."""
         options: dict[str, Any] = {}
         if self.useOrientation:
             options["targetOrientation"] = self._p.getQuaternionFromEuler(_DOWN)

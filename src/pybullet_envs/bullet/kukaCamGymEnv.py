@@ -1,4 +1,4 @@
-"""The grasping KUKA, seen by a camera."""
+"""An environment with a grasping KUKA that is observed by a camera."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _PROJECTION = (
 
 
 class KukaCamGymEnv(KukaGymEnv):
-    """As `KukaGymEnv`, with pictures for observations, steps twice as long, and no price on turning.
+    """Like `KukaGymEnv`, but with images as observations, steps twice as long, and no cost of turning.
 
-    Observation: a picture (256, 341, 4) of the tray.
+    Observation: an image (256, 341, 4) of the tray.
     """
 
     _step_size = 0.01
@@ -53,7 +53,7 @@ class KukaCamGymEnv(KukaGymEnv):
         return gymnasium.spaces.Box(0, 255, (self._height, self._width, 4), np.uint8)
 
     def getExtendedObservation(self) -> np.ndarray:
-        """What the camera sees now."""
+        """The present image of the camera."""
         picture: Any = self._p.getCameraImage(
             self._width, self._height, viewMatrix=_VIEW, projectionMatrix=_PROJECTION
         )[2]

@@ -1,4 +1,4 @@
-"""A KUKA that comes down on a tray and grasps at a block; the action steers it on the way."""
+"""An environment with a KUKA that moves down to a tray, steered by actions, and grasps a block."""
 
 from __future__ import annotations
 
@@ -16,26 +16,25 @@ FINGER_OPEN = 0.3
 CLOSING_STEPS, LIFTING_STEPS = 100, 1000
 # Heights at which lifting ends [m].
 BLOCK_HIGH, WRIST_HIGH = 0.23, 0.5
-# How near the tray the gripper grasps [m].
+# Distance from the tray at which the gripper grasps [m].
 GRASP_DISTANCE = 0.005
-# How far the gripper sinks in a step [m].
+# Vertical motion of the gripper per step [m].
 SINK = -0.002
-# How the wrist rises in a step while the fingers close, and then [m].
+# Rise of the wrist per step, while the fingers close and afterwards [m].
 CLOSING_RISE, LIFTING_RISE = 0.0001, 0.001
-# What the choices of the discrete action move: along x, along y, and the turn.
+# Discrete actions: motion along x, along y, and rotation.
 CHOICES = ((0, 0, 0), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1))
 
 
 class KukaGymEnv(UrdfEnv):
-    """The gripper sinks by 2 mm a step; where it meets the tray it closes and lifts, which ends the episode.
+    """The gripper sinks by 2 mm per step; at the tray it closes and lifts, which ends the episode.
 
-    Observation: position and roll, pitch and yaw of the gripper, then position across and yaw of the block as
-    the gripper sees it. Action: how far to move along x and y and to turn, within -1 and 1, or one of 7
-    choices. Reward: ten times the distance of block and wrist, negative, less the turn; 10000 more for a
-    block that is lifted.
+    Observation: position, roll, pitch and yaw of the gripper; x, y and yaw of the block in the gripper's
+    frame. Action: motion along x and y and rotation, from -1 to 1, or one of 7 choices. Reward: -10 times the
+    distance of block and wrist, minus a cost of turning, plus 10000 for a lifted block.
 
     Attributes:
-        blockUid: The block.
+        blockUid: Id of the block.
     """
 
     _timeStep = 1.0 / 240.0
@@ -45,7 +44,7 @@ class KukaGymEnv(UrdfEnv):
     _turn_cost = 10.0
     _lifted_height = 0.2
     _success = 10000.0
-    # Where the block is put: the least and the most of x, y [m] and yaw [rad]; its height.
+    # Initial pose of the block: bounds of x, y [m] and yaw [rad]; height [m].
     _block_ranges: tuple[tuple[float, float], ...] = (
         (0.55, 0.67),
         (0.0, 0.2),
@@ -66,12 +65,12 @@ class KukaGymEnv(UrdfEnv):
         """Makes the environment and its world; see `UrdfEnv`.
 
         Args:
-            urdfRoot: The folder of the files.
-            actionRepeat: Steps of the simulation for each of the environment.
-            isEnableSelfCollision: Kept, but of no effect.
+            urdfRoot: Folder of the files.
+            actionRepeat: Number of simulation steps per environment step.
+            isEnableSelfCollision: No effect.
             renders: Whether to open a window.
             isDiscrete: Whether the action is one of 7 choices.
-            maxSteps: Steps after which an episode ends.
+            maxSteps: Number of steps after which an episode ends.
             render_mode: `human`, `rgb_array` or none.
         """
         self._maxSteps = maxSteps
@@ -88,7 +87,7 @@ class KukaGymEnv(UrdfEnv):
         return gymnasium.spaces.Box(-100.0, 100.0, (9,), np.float32)
 
     def _begin(self) -> None:
-        """Puts the block somewhere on the tray."""
+        """Builds the world, with the block at a random place on the tray."""
         self.terminated = False
         self._envStepCounter = 0
         self._lay_table()
@@ -103,11 +102,11 @@ class KukaGymEnv(UrdfEnv):
         self._settle()
 
     def _settle(self) -> None:
-        """Takes the step that is done before an episode."""
+        """Makes the simulation step that precedes an episode."""
         self._p.stepSimulation()
 
     def _lay_table(self) -> None:
-        """An empty world with a floor and a table."""
+        """Resets the world and loads floor and table."""
         self._p.resetSimulation()
         self._p.setPhysicsEngineParameter(numSolverIterations=150)
         self._p.setTimeStep(self._timeStep)
@@ -115,7 +114,7 @@ class KukaGymEnv(UrdfEnv):
         self._p.loadURDF(os.path.join(self._urdfRoot, "table/table.urdf"), [0.5, 0.0, -0.82])
 
     def getExtendedObservation(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""
         gripper = self._p.getLinkState(self._kuka.kukaUid, self._kuka.kukaGripperIndex)[:2]
         block = self._p.getBasePositionAndOrientation(self.blockUid)
         position, orientation = self._p.multiplyTransforms(*self._p.invertTransform(*gripper), *block)
@@ -123,7 +122,7 @@ class KukaGymEnv(UrdfEnv):
         return np.array([*self._kuka.getObservation(), *position[:2], yaw], np.float32)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Moves the gripper on."""
+        """Applies an action for one step."""
         if self._isDiscrete:
             x, y, turn = CHOICES[int(action)]
         else:
@@ -132,7 +131,7 @@ class KukaGymEnv(UrdfEnv):
         return self.step2([size * x, size * y, SINK, self._turn_size * turn, FINGER_OPEN])
 
     def step2(self, action: list[float]) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Moves the gripper by an action as `Kuka.applyAction` takes it."""
+        """Makes a step with an action of `Kuka.applyAction`."""
         for _ in range(self._actionRepeat):
             self._kuka.applyAction(action)
             self._p.stepSimulation()
@@ -149,7 +148,7 @@ class KukaGymEnv(UrdfEnv):
         return self._p.getBasePositionAndOrientation(self._kuka.kukaUid)[0]
 
     def _termination(self) -> bool:
-        """Whether the episode is over; grasps when the gripper comes to the tray."""
+        """Whether the episode is over; grasps when the gripper reaches the tray."""
         if self.terminated or self._envStepCounter > self._maxSteps:
             return True
         if not self._p.getClosestPoints(self._kuka.trayUid, self._kuka.kukaUid, GRASP_DISTANCE):
@@ -159,7 +158,7 @@ class KukaGymEnv(UrdfEnv):
         return True
 
     def _grasp(self) -> None:
-        """Closes the fingers and lifts, until the block or the wrist is high."""
+        """Closes the fingers and lifts, until the block or the wrist is high enough."""
         for step in range(CLOSING_STEPS):
             finger = FINGER_OPEN * (1.0 - step / CLOSING_STEPS)
             self._kuka.applyAction([0, 0, CLOSING_RISE, 0, finger])

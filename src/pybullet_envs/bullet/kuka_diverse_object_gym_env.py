@@ -1,4 +1,4 @@
-"""A KUKA that grasps at whatever lies in the tray, seen by a camera."""
+"""An environment with a KUKA that grasps random objects in a tray, observed by a camera."""
 
 from __future__ import annotations
 
@@ -21,12 +21,11 @@ _TURN = 0.25
 
 
 class KukaDiverseObjectEnv(KukaGymEnv):
-    """Eight moves at most, then one grasp at some of the random objects of `pybullet_data`.
+    """Up to eight moves, then one attempt to grasp one of several random objects of `pybullet_data`.
 
-    Observation: a picture (height, width, 3). Action: how far to move along x, y (and z with
-    `removeHeightHack`; else the gripper sinks by itself) and to turn, within -1 and 1, or one of 7 or 9
-    choices. Reward: 1 if an object is lifted in the end. The information of a step tells how many, as
-    `grasp_success`.
+    Observation: an image (height, width, 3). Action: motion along x, y (and z with `removeHeightHack`;
+    otherwise the gripper sinks by itself) and rotation, from -1 to 1, or one of 7 or 9 choices. Reward: 1 if
+    an object is lifted in the end. The info dictionary of a step repeats this as `grasp_success`.
     """
 
     def __init__(
@@ -50,20 +49,20 @@ class KukaDiverseObjectEnv(KukaGymEnv):
         """Makes the environment and its world.
 
         Args:
-            urdfRoot: The folder of the files; that of `pybullet_data` where not given.
-            actionRepeat: Steps of the simulation for each of the environment.
-            isEnableSelfCollision: Kept, but of no effect.
+            urdfRoot: Folder of the files; by default that of `pybullet_data`.
+            actionRepeat: Number of simulation steps per environment step.
+            isEnableSelfCollision: No effect.
             renders: Whether to open a window.
             isDiscrete: Whether the action is one of several choices.
-            maxSteps: Steps after which an episode ends.
-            dv: How far a step moves along each axis [m].
-            removeHeightHack: Whether the action says how far the gripper sinks.
-            blockRandom: How far objects lie from each other, 0 to 1.
-            cameraRandom: How far the camera differs from episode to episode, 0 to 1.
-            width: Of the picture.
-            height: Of the picture.
-            numObjects: How many objects there are.
-            isTest: Whether to take the objects kept for tests.
+            maxSteps: Number of steps after which an episode ends.
+            dv: Motion per step along each axis, for an action of 1 [m].
+            removeHeightHack: Whether actions contain the vertical motion of the gripper.
+            blockRandom: Spread of the objects, 0 to 1.
+            cameraRandom: Variation of the camera from episode to episode, 0 to 1.
+            width: Width of the image [pixels].
+            height: Height of the image [pixels].
+            numObjects: Number of objects.
+            isTest: Whether to use the objects reserved for tests.
             render_mode: `human`, `rgb_array` or none.
         """
         self._dv = dv
@@ -111,13 +110,13 @@ class KukaDiverseObjectEnv(KukaGymEnv):
         )
 
     def _choose_objects(self) -> list[str]:
-        """Files of objects; one in ten of all is kept for tests."""
+        """Files of random objects; one in ten of all objects is reserved for tests."""
         pattern = "random_urdfs/*0/*.urdf" if self._isTest else "random_urdfs/*[1-9]/*.urdf"
         files = sorted(glob.glob(os.path.join(self._urdfRoot, pattern)))
         return [files[i] for i in self.np_random.integers(len(files), size=self._numObjects)]
 
     def _drop(self, file: str) -> int:
-        """An object that falls into the tray and comes to rest."""
+        """Loads an object above the tray and lets it fall and settle; returns its id."""
         spread = self._blockRandom
         place = [
             0.4 + spread * self.np_random.uniform(),
@@ -131,14 +130,14 @@ class KukaDiverseObjectEnv(KukaGymEnv):
         return body
 
     def getExtendedObservation(self) -> np.ndarray:
-        """What the camera sees now."""
+        """The present image of the camera."""
         picture: Any = self._p.getCameraImage(
             self._width, self._height, viewMatrix=self._view_matrix, projectionMatrix=self._proj_matrix
         )[2]
         return np.reshape(picture, (self._height, self._width, 4))[:, :, :3].astype(np.uint8)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Moves the gripper on, and grasps if it has come down."""
+        """Applies an action for one step; grasps if the gripper is low enough."""
         *moves, turn = self._chosen(int(action)) if self._isDiscrete else [float(value) for value in action]
         sink = moves.pop() if self._removeHeightHack else -1.0
         x, y = (self._dv * move for move in moves)
@@ -159,7 +158,7 @@ class KukaDiverseObjectEnv(KukaGymEnv):
         return self.getExtendedObservation(), reward, self._termination(), False, found
 
     def _chosen(self, number: int) -> list[float]:
-        """The action that a choice stands for: nothing, or one way along one of its axes."""
+        """The action of a choice: no motion, or motion in one direction of one axis."""
         moves = [0.0] * (4 if self._removeHeightHack else 3)
         if number:
             moves[(number - 1) // 2] = 1.0 if number % 2 == 0 else -1.0

@@ -1,4 +1,4 @@
-"""A Minitaur whose sensors tell at once, and exactly, what is."""
+"""A Minitaur with exact sensors, without latency."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ __all__ = [
 
 
 class Minitaur(MinitaurBody):
-    """A Minitaur in a world that is there already; see `MinitaurBody`."""
+    """A Minitaur in an existing world; see `MinitaurBody`."""
 
     def __init__(
         self,
@@ -54,22 +54,22 @@ class Minitaur(MinitaurBody):
         on_rack: bool = False,
         kd_for_pd_controllers: float = 0.3,
     ) -> None:
-        """Loads it.
+        """Loads the robot.
 
         Args:
             pybullet_client: The world.
-            urdf_root: The folder of the files; that of `pybullet_data` where not given.
-            time_step: Of the simulation [s].
-            self_collision_enabled: Whether its links touch each other.
-            motor_velocity_limit: How fast commands may lead the motors [rad/s].
+            urdf_root: Folder of the files; by default that of `pybullet_data`.
+            time_step: Time step of the simulation [s].
+            self_collision_enabled: Whether the links collide with each other.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
-            accurate_motor_model_enabled: Whether torques of a model of the motors do.
-            motor_kp: Gain for angles, of that model.
-            motor_kd: Gain for velocities.
-            torque_control_enabled: Whether commands are duty cycles for that model.
-            motor_overheat_protection: Whether a motor of that model that strains for a second is shut off.
-            on_rack: Whether it hangs in the air.
-            kd_for_pd_controllers: Gain for velocities of the PD controller.
+            accurate_motor_model_enabled: Whether torques of a motor model drive the motors.
+            motor_kp: Position gain of the motor model.
+            motor_kd: Velocity gain of the motor model.
+            torque_control_enabled: Whether commands are duty cycles for the motor model.
+            motor_overheat_protection: Whether the motor model shuts a motor off after 1 s of high torque.
+            on_rack: Whether the base is fixed in the air.
+            kd_for_pd_controllers: Velocity gain of the PD controller.
         """
         model = (
             MotorModel(torque_control_enabled, motor_kp, motor_kd) if accurate_motor_model_enabled else None
@@ -88,10 +88,10 @@ class Minitaur(MinitaurBody):
         self.Reset()
 
     def Reset(self, reload_urdf: bool = True) -> None:
-        """Takes it to where it begins.
+        """Resets the robot to its start.
 
         Args:
-            reload_urdf: Whether to load it anew, or to put back the one that is there.
+            reload_urdf: Whether to load it again; otherwise, it is moved to the start.
         """
         if reload_urdf:
             self._load(INIT_POSITION)
@@ -109,7 +109,7 @@ class Minitaur(MinitaurBody):
         """Sets the motors for the next step of the simulation.
 
         Args:
-            motor_commands: Angles [rad] for the motors, or duty cycles under torque control, shape (8,).
+            motor_commands: Angles [rad] for the motors, or duty cycles with torque control, shape (8,).
         """
         self._drive(motor_commands)
 
@@ -133,7 +133,7 @@ class Minitaur(MinitaurBody):
         return self._motor_states()[1]
 
     def GetMotorTorques(self) -> np.ndarray:
-        """Torques of the motors [N m], (8,): as commanded, or as the engine's motors exert them."""
+        """Torques of the motors [N m], (8,): commanded torques, or those of the engine's motors."""
         return self._motor_states()[2]
 
     def GetObservation(self) -> list[float]:
@@ -141,23 +141,23 @@ class Minitaur(MinitaurBody):
         return [*np.concatenate(self._motor_states()).tolist(), *self._orientation()]
 
     def GetObservationDimension(self) -> int:
-        """How many numbers `GetObservation` returns."""
+        """Size of the result of `GetObservation`."""
         return len(self.GetObservation())
 
     def GetObservationUpperBound(self) -> np.ndarray:
-        """The greatest values of `GetObservation`, (28,)."""
+        """Upper bounds of `GetObservation`, (28,)."""
         return observation_bound()
 
     def GetObservationLowerBound(self) -> np.ndarray:
-        """The least values of `GetObservation`, (28,)."""
+        """Lower bounds of `GetObservation`, (28,)."""
         return -observation_bound()
 
     def GetBaseMassFromURDF(self) -> float:
-        """Mass of the base in its file [kg]."""
+        """Mass of the base in the file [kg]."""
         return self._base_mass_urdf
 
     def GetLegMassesFromURDF(self) -> list[float]:
-        """Masses of a link of a leg and of a motor in the file [kg]."""
+        """Masses of a leg link and of a motor link in the file [kg]."""
         return self._leg_masses_urdf
 
     def SetBaseMass(self, base_mass: float) -> None:
@@ -165,12 +165,12 @@ class Minitaur(MinitaurBody):
         self._set_dynamics([-1], [base_mass], "mass")
 
     def SetLegMasses(self, leg_masses: Any) -> None:
-        """Sets masses [kg]: that of each link of the legs, and that of each motor."""
+        """Sets the mass of each leg link and the mass of each motor link [kg]."""
         of_links, of_motors = leg_masses
         self._set_dynamics(self._leg_link_ids, [of_links] * len(self._leg_link_ids), "mass")
         self._set_dynamics(self._motor_link_ids, [of_motors] * len(self._motor_link_ids), "mass")
 
 
 def observation_bound() -> np.ndarray:
-    """The greatest values of angles, velocities, torques and an orientation, (28,)."""
+    """Upper bounds of motor angles, velocities and torques, and of the orientation, (28,)."""
     return np.repeat((pi, MOTOR_SPEED_LIMIT, OBSERVED_TORQUE_LIMIT, 1.0), (8, 8, 8, 4))

@@ -1,4 +1,4 @@
-"""A Minitaur with a duck on its back."""
+"""An environment with a Minitaur that carries a duck on its back."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ duckStartOrn = (0.5, 0.5, 0.5, 0.5)
 
 
 class MinitaurBulletDuckEnv(MinitaurBulletEnv):
-    """As `MinitaurBulletEnv`; an episode also ends when the duck touches the ground."""
+    """Like `MinitaurBulletEnv`, but an episode also ends when the duck touches the ground."""
 
     def _load_things(self) -> None:
         file = os.path.join(self._urdf_root, "duck_vhacd.urdf")

@@ -1,4 +1,4 @@
-"""A Minitaur that learns to walk."""
+"""An environment with a Minitaur that learns to walk."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _RANDOMIZER = MinitaurEnvRandomizer()
 
 
 class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
-    """A Minitaur is to come far along x, and to spend little.
+    """A Minitaur learns to walk far along x with little energy.
 
     Observation: angles [rad], velocities [rad/s] and torques [N m] of the eight motors, and the orientation
-    of the base. Action: how each leg swings and then how far each is stretched, within -1 and 1. Reward: the
-    way forward, less energy, drift and shaking, by their weights. An episode ends with a fall.
+    of the base. Action: swing of each leg, then extension of each leg, from -1 to 1. Reward: weighted sum of
+    forward progress, minus energy, drift and shaking. An episode ends with a fall.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 50}  # noqa: RUF012  # as Gymnasium has it
@@ -60,32 +60,32 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
         """Makes the environment.
 
         Args:
-            urdf_root: The folder of the files; that of `pybullet_data` where not given.
-            action_repeat: Times 10 ms for each step of the environment.
-            distance_weight: Of the way forward [1/m].
-            energy_weight: Of the energy spent [1/J].
-            shake_weight: Of the way up or down [1/m].
-            drift_weight: Of the way aside [1/m].
-            distance_limit: How far away from its start the robot may walk [m].
-            observation_noise_stdev: Of noise in observations, as a share of their bounds.
-            self_collision_enabled: Whether the robot's links touch each other.
-            motor_velocity_limit: How fast commands may lead the motors [rad/s].
+            urdf_root: Folder of the files; by default that of `pybullet_data`.
+            action_repeat: Duration of an environment step, as a multiple of 10 ms.
+            distance_weight: Weight of forward progress [1/m].
+            energy_weight: Weight of the energy spent [1/J].
+            shake_weight: Weight of vertical motion [1/m].
+            drift_weight: Weight of sideways motion [1/m].
+            distance_limit: Distance from the start at which an episode ends [m].
+            observation_noise_stdev: Standard deviation of observation noise, relative to the bounds.
+            self_collision_enabled: Whether the robot's links collide with each other.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
-            leg_model_enabled: Whether actions say how legs swing and stretch, or where motors go [rad].
-            accurate_motor_model_enabled: Whether torques of a model of the motors drive them. With neither
-                the engine's position control does.
-            motor_kp: Gain for angles, of that model.
-            motor_kd: Gain for velocities.
-            torque_control_enabled: Whether commands are duty cycles for that model.
-            motor_overheat_protection: Whether a motor of that model that strains for a second is shut off.
-            hard_reset: Whether each `reset` loads everything anew, or puts the robot back.
-            on_rack: Whether the robot hangs in the air.
+            leg_model_enabled: Whether actions are swing and extension of legs, or motor angles [rad].
+            accurate_motor_model_enabled: Whether torques of a motor model drive the motors. With neither, the
+                engine's position control does.
+            motor_kp: Position gain of the motor model.
+            motor_kd: Velocity gain of the motor model.
+            torque_control_enabled: Whether commands are duty cycles for the motor model.
+            motor_overheat_protection: Whether the motor model shuts a motor off after 1 s of high torque.
+            hard_reset: Whether each `reset` loads everything again, or restores the state.
+            on_rack: Whether the base is fixed in the air.
             render: Whether to open a window.
-            kd_for_pd_controllers: Gain for velocities of the PD controller.
-            env_randomizer: What changes the robot at each `reset`, or none.
+            kd_for_pd_controllers: Velocity gain of the PD controller.
+            env_randomizer: Randomizer that changes the robot at each `reset`, or None.
             render_mode: `human`, `rgb_array` or none.
         """
-        # Torques that depend on velocities need small steps to be stable.
+        # Torques that depend on velocities need short time steps to be stable.
         self._by_torques = pd_control_enabled or accurate_motor_model_enabled
         parts = NUM_SUBSTEPS if self._by_torques else 1
         super().__init__(
@@ -119,11 +119,11 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
         self._set_spaces(NUM_MOTORS, self._action_bound, observation_bound())
 
     def set_env_randomizer(self, env_randomizer: EnvRandomizerBase | None) -> None:
-        """Sets what changes the robot at each `reset`."""
+        """Sets the randomizer that changes the robot at each `reset`."""
         self._env_randomizer = env_randomizer
 
     def configure(self, args: Any) -> None:
-        """Keeps arguments, as scripts expect it."""
+        """Stores arguments, for compatibility with scripts."""
         self._args = args
 
     def _load_minitaur(self) -> Minitaur:
@@ -132,7 +132,7 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode: the robot comes to stand for a hundred steps of the simulation."""
+        """Begins an episode; first the robot settles for a hundred simulation steps."""
         super().reset(seed=seed)
         self._renew_world()
         if self._env_randomizer is not None:
@@ -145,7 +145,7 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
         return self._observe(), {}
 
     def step(self, action: Any) -> Step:
-        """Walks on.
+        """Applies an action for one step.
 
         Raises:
             ValueError: The action is not eight finite numbers, or one is out of bounds.
@@ -170,7 +170,7 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
         return float(self._weights @ objectives)
 
     def _observe(self) -> np.ndarray:
-        """What is observed now, with noise."""
+        """The present observation, with noise."""
         self._observation = np.array(self.minitaur.GetObservation())
         seen = self._observation
         if self._observation_noise_stdev > 0:

@@ -1,4 +1,4 @@
-"""The motors of `pybullet_envs.bullet.minitaur`."""
+"""Motor model of `pybullet_envs.bullet.minitaur`."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ __all__ = [
 
 
 class MotorModel(DcMotor):
-    """Motors without delay between what is measured and what is."""
+    """Motors whose measured angles and velocities have no latency."""
 
     def convert_to_torque(
         self, motor_commands: Any, current_motor_angle: Any, current_motor_velocity: Any
     ) -> Torques:
-        """What the motors do for commands.
+        """The torques of the motors for commands.
 
         Args:
-            motor_commands: Angles [rad], or duty cycles under torque control.
-            current_motor_angle: Angles now [rad].
-            current_motor_velocity: Velocities now [rad/s].
+            motor_commands: Angles [rad], or duty cycles with torque control.
+            current_motor_angle: Present angles [rad].
+            current_motor_velocity: Present velocities [rad/s].
 
         Returns:
-            Torques [N m] that act, and those that the sensor tells.
+            Actual torques [N m], and those that the sensor reports.
         """
         duty = self._duty(motor_commands, current_motor_angle, current_motor_velocity, self._kp, self._kd)
         return self._torques(duty, current_motor_velocity)

@@ -9,7 +9,7 @@ from typing import Any
 import pybullet
 import pybullet_data
 
-# Two wheels each of whose gears: the links, the ratio, and the link against which they turn, if any.
+# Gear constraints: two links, the gear ratio, and the link that rotations are relative to, if any.
 _GEARS = (
     (9, 11, 1, None),
     (10, 13, -1, None),
@@ -24,26 +24,26 @@ _GEAR_FORCE = 10000
 
 
 class Racecar:
-    """The car, in a world that is there already.
+    """The car, in an existing world.
 
     Attributes:
-        racecarUniqueId: The car.
+        racecarUniqueId: Id of the car.
         steeringLinks: Joints that steer.
         motorizedwheels: Joints that drive.
         speedMultiplier: Speed of the motors at full throttle [rad/s].
         steeringMultiplier: Angle of the wheels at full lock [rad].
-        maxForce: Of each motor [N m].
+        maxForce: Maximum torque of each motor [N m].
     """
 
     def __init__(
         self, bullet_client: Any = pybullet, urdfRootPath: str | None = None, timeStep: float = 0.01
     ) -> None:
-        """Loads it.
+        """Loads the car.
 
         Args:
-            bullet_client: The world; the first connection where not given.
-            urdfRootPath: The folder of the files; that of `pybullet_data` where not given.
-            timeStep: Kept, but of no effect [s].
+            bullet_client: The world; by default the first connection.
+            urdfRootPath: Folder of the files; by default that of `pybullet_data`.
+            timeStep: No effect; kept as an attribute [s].
         """
         self._p = bullet_client
         self.urdfRootPath = urdfRootPath or pybullet_data.getDataPath()
@@ -57,7 +57,7 @@ class Racecar:
         self.reset()
 
     def reset(self) -> None:
-        """Loads the car with its motors off and its gears meshed."""
+        """Loads the car, switches its motors off and adds its gears."""
         bullet = self._p
         file = os.path.join(self.urdfRootPath, "racecar/racecar_differential.urdf")
         car = self.racecarUniqueId = bullet.loadURDF(file, [0, 0, 0.2])
@@ -71,15 +71,15 @@ class Racecar:
             bullet.changeConstraint(gear, gearRatio=ratio, maxForce=_GEAR_FORCE, **aux)
 
     def getActionDimension(self) -> int:
-        """How many numbers an action has."""
+        """Size of an action."""
         return self.nMotors
 
     def getObservationDimension(self) -> int:
-        """How many numbers `getObservation` returns."""
+        """Size of the result of `getObservation`."""
         return len(self.getObservation())
 
     def getObservation(self) -> list[float]:
-        """Position [m] and orientation of the car."""
+        """Position [m] and orientation (x, y, z, w) of the car."""
         position, orientation = self._p.getBasePositionAndOrientation(self.racecarUniqueId)
         return [*position, *orientation]
 
@@ -87,7 +87,7 @@ class Racecar:
         """Sets throttle and steering.
 
         Args:
-            motorCommands: Shares of the greatest speed and of the greatest angle.
+            motorCommands: Fractions of the maximum speed and of the maximum steering angle.
         """
         throttle, lock = motorCommands
         for joint in self.motorizedwheels:

@@ -1,4 +1,4 @@
-"""A racing car that drives to a ball."""
+"""An environment with a racing car that drives to a ball."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _LOCK = 0.6
 
 
 class RacecarGymEnv(UrdfEnv):
-    """A ball lies 5 to 7 m away; the nearer the car comes, the better.
+    """A racing car drives to a ball 5 to 7 m away.
 
-    Observation: where the ball is, as the car sees it, forward and to the left [m]. Action: throttle and
-    steering, within -1 and 1, or one of 9 choices: backward, stop, forward, each with left, straight, right.
-    Reward: the distance of car and ball, negative.
+    Observation: position of the ball in the car's frame, forward and to the left [m]. Action: throttle and
+    steering, from -1 to 1, or one of 9 choices: backward, stop, forward, each with left, straight, right.
+    Reward: the negative distance of car and ball [m].
     """
 
     _timeStep = 0.01
@@ -41,9 +41,9 @@ class RacecarGymEnv(UrdfEnv):
         """Makes the environment and its world; see `UrdfEnv`.
 
         Args:
-            urdfRoot: The folder of the files.
-            actionRepeat: Steps of the simulation for each of the environment.
-            isEnableSelfCollision: Kept, but of no effect.
+            urdfRoot: Folder of the files.
+            actionRepeat: Number of simulation steps per environment step.
+            isEnableSelfCollision: No effect.
             isDiscrete: Whether the action is one of 9 choices.
             renders: Whether to open a window.
             render_mode: `human`, `rgb_array` or none.
@@ -60,7 +60,7 @@ class RacecarGymEnv(UrdfEnv):
         return gymnasium.spaces.Box(-1000.0, 1000.0, (2,), np.float32)
 
     def _begin(self) -> None:
-        """Puts the ball down in some direction."""
+        """Builds the world, with the ball in a random direction."""
         bullet = self._p
         bullet.resetSimulation()
         bullet.setTimeStep(self._timeStep)
@@ -79,14 +79,14 @@ class RacecarGymEnv(UrdfEnv):
             bullet.stepSimulation()
 
     def getExtendedObservation(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""
         car = self._p.getBasePositionAndOrientation(self._racecar.racecarUniqueId)
         ball = self._p.getBasePositionAndOrientation(self._ballUniqueId)
         position, _ = self._p.multiplyTransforms(*self._p.invertTransform(*car), *ball)
         return np.array(position[:2], np.float32)
 
     def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Drives on."""
+        """Applies an action for one step."""
         if self._isDiscrete:
             throttle, lock = divmod(int(action), 3)
             self._racecar.applyAction([throttle - 1, _LOCK * (lock - 1)])

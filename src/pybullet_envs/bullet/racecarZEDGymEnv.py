@@ -1,4 +1,4 @@
-"""The racing car, with a camera in front."""
+"""An environment with a racing car that has a camera in front."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _PROJECTION = (
 
 
 class RacecarZEDGymEnv(RacecarGymEnv):
-    """As `RacecarGymEnv`, with pictures for observations.
+    """Like `RacecarGymEnv`, but with images as observations.
 
-    Observation: a picture (10, 100, 4) of what is ahead.
+    Observation: an image (10, 100, 4) of the view ahead.
     """
 
     _ball_file = "sphere2red.urdf"
@@ -42,7 +42,7 @@ class RacecarZEDGymEnv(RacecarGymEnv):
         return gymnasium.spaces.Box(0, 255, (self._height, self._width, 4), np.uint8)
 
     def getExtendedObservation(self) -> np.ndarray:
-        """What the camera sees now."""
+        """The present image of the camera."""
         position, orientation = self._p.getBasePositionAndOrientation(self._racecar.racecarUniqueId)
         matrix = np.reshape(self._p.getMatrixFromQuaternion(orientation), (3, 3))
         x, y, z = position

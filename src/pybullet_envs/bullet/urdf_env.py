@@ -1,4 +1,4 @@
-"""What the environments of the KUKA and of the racing car have in common."""
+"""Base class of the environments with the KUKA and with the racing car."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pybullet_envs.env_bases import BulletEnv
 
 
 class UrdfEnv(BulletEnv, ABC):
-    """A robot among things from the files of a folder, driven by numbers or by one of several choices."""
+    """A robot and objects from the files of a folder, with continuous or discrete actions."""
 
     picture_size = (960, 720)
     _timeStep: float
-    """Of the simulation [s]."""
+    """Time step of the simulation [s]."""
 
     def __init__(
         self,
@@ -31,11 +31,11 @@ class UrdfEnv(BulletEnv, ABC):
         """Makes the environment and its world.
 
         Args:
-            urdfRoot: The folder of the files; that of `pybullet_data` where not given.
-            actionRepeat: Steps of the simulation for each of the environment.
-            isEnableSelfCollision: Kept, but of no effect.
+            urdfRoot: Folder of the files; by default that of `pybullet_data`.
+            actionRepeat: Number of simulation steps per environment step.
+            isEnableSelfCollision: No effect.
             renders: Whether to open a window.
-            isDiscrete: Whether the action is one of several choices.
+            isDiscrete: Whether an action is one of several choices.
             render_mode: `human`, `rgb_array` or none.
         """
         super().__init__(renders, render_mode)
@@ -67,8 +67,8 @@ class UrdfEnv(BulletEnv, ABC):
 
     @abstractmethod
     def _begin(self) -> None:
-        """Builds the world anew, as an episode begins."""
+        """Builds the world again, at the start of an episode."""
 
     @abstractmethod
     def getExtendedObservation(self) -> np.ndarray:
-        """What is observed now."""
+        """The present observation."""

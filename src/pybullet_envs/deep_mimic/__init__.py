@@ -1,1 +1,1 @@
-"""What DeepMimic needs besides the recorded motions of people, which are not Carom's to pass on."""
+"""Parts of DeepMimic that work without recorded motions of people, which Carom may not distribute."""

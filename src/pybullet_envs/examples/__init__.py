@@ -1,1 +1,1 @@
-"""PyBullet's examples of environments and arms, as far as they are here."""
+"""Those of PyBullet's examples of environments and arms that Carom includes."""

@@ -1,4 +1,4 @@
-"""The hand of a Panda draws ellipses over a tray."""
+"""A Panda arm whose hand moves along an ellipse over a tray."""
 
 from __future__ import annotations
 
@@ -30,6 +30,6 @@ __all__ = [
 
 
 class PandaSim(panda_sim.PandaSim):
-    """An arm that moves by a sixtieth of a second with each `step`, and takes no pictures."""
+    """A Panda arm; each `step` advances the path of its hand by 1/60 s, without a camera image."""
 
     takes_pictures = False

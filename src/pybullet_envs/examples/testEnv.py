@@ -27,7 +27,7 @@ def test(args: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    """Does what the command line says."""
+    """Runs the environment that the command line names."""
     parser = argparse.ArgumentParser(description="Random actions in an environment.")
     names = ", ".join(pybullet_envs.getList())
     parser.add_argument("--env", default="AntBulletEnv-v0", help=f"one of: {names}")

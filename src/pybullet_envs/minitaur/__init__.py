@@ -1,1 +1,1 @@
-"""Environments of the Minitaur with sensors that lag, as on the real robot."""
+"""Environments of the Minitaur, with sensor latency as on the real robot."""

@@ -1,4 +1,4 @@
-"""Arms that reach and push, many at once."""
+"""Vector environments with arms that reach and push."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from pybullet_envs.vector.parts import Joints, Part
 
 
 class ReacherVectorEnv(BulletVectorEnv):
-    """Two links whose tips are to come to targets; see `pybullet_envs.gym_manipulator_envs`."""
+    """Arms of two links that move their tips to targets; see `pybullet_envs.gym_manipulator_envs`."""
 
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
-        """Makes them; see `BulletVectorEnv`."""
+        """Makes the environments; see `BulletVectorEnv`."""
         super().__init__(ReacherBulletEnv(), num_envs, **options)
 
     def take(self, single: Any) -> None:
@@ -37,19 +37,19 @@ class ReacherVectorEnv(BulletVectorEnv):
         self._reach = robot.TARG_LIMIT
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Puts targets and links anywhere."""
+        """Randomise the positions of targets and links."""
         reach = np.array([self._reach, self._reach, TURN, TURN])
         places = self.random.uniform(worlds, -reach, reach)
         self._target.put(worlds, places[:, :2])
         self._links.put(worlds, places[:, 2:])
 
     def act(self, actions: np.ndarray) -> None:
-        """Turns both joints."""
+        """Apply torques to both joints."""
         self._before = self._potential
         self._links.push(TORQUE * held(actions))
 
     def observe(self) -> np.ndarray:
-        """As `pybullet_envs.robot_manipulators.Reacher` has it."""
+        """The observations, see `pybullet_envs.robot_manipulators.Reacher`."""
         angles = self._links.between_limits()
         self._rates = 0.1 * self._links.velocities()
         self._bend = angles[:, 1]
@@ -66,7 +66,7 @@ class ReacherVectorEnv(BulletVectorEnv):
         return whole
 
     def reward(self, actions: np.ndarray) -> Array:
-        """100 times the way come nearer, less the effort."""
+        """100 times the decrease of the distance [m], minus costs of effort and of a joint at its limit."""
         pushes = np.abs(actions)
         effort = WORK * np.abs(actions * self._rates).sum(axis=1) + STALL * pushes.sum(axis=1)
         stuck = np.where(np.abs(np.abs(self._bend) - 1.0) < 0.01, 0.1, 0.0)
@@ -74,14 +74,14 @@ class ReacherVectorEnv(BulletVectorEnv):
 
 
 class PusherVectorEnv(BulletVectorEnv):
-    """Forks that are to push cylinders to discs; see `pybullet_envs.gym_manipulator_envs.PusherBulletEnv`."""
+    """Arms that push cylinders to discs; see `pybullet_envs.gym_manipulator_envs.PusherBulletEnv`."""
 
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
-        """Makes them; see `BulletVectorEnv`."""
+        """Makes the environments; see `BulletVectorEnv`."""
         super().__init__(PusherBulletEnv(), num_envs, **options)
 
     def take(self, single: Any) -> None:
-        """Find the arm and the things."""
+        """Find the arm, the object and the target."""
         robot = single.robot
         self._joints = Joints(self.worlds, robot.ordered_joints)
         self._arm = Joints(self.worlds, robot.arm)
@@ -95,7 +95,7 @@ class PusherVectorEnv(BulletVectorEnv):
         self._to_target = np.zeros((self.num_envs, 2))
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Puts all anywhere."""
+        """Randomise the positions of arms, objects and targets."""
         drawn = self.random.draw(worlds, _draw)
         target, thing = _around(drawn[:, :2], drawn[:, :2], drawn[:, 2]), drawn[:, 3:5]
         thing = _around(thing, thing - target, drawn[:, 5])
@@ -105,11 +105,11 @@ class PusherVectorEnv(BulletVectorEnv):
         self._to_target[worlds] = target - thing
 
     def act(self, actions: np.ndarray) -> None:
-        """Turns the joints."""
+        """Apply torques to the joints."""
         self._arm.push(TORQUE * held(actions))
 
     def observe(self) -> np.ndarray:
-        """As `pybullet_envs.robot_manipulators.SevenJointArm` has it."""
+        """The observations, see `pybullet_envs.robot_manipulators.SevenJointArm`."""
         count = self._joints.count
         positions, velocities = self._joints.positions(), self._joints.velocities()
         self._relative = self._joints.between_limits()
@@ -125,19 +125,19 @@ class PusherVectorEnv(BulletVectorEnv):
         return whole
 
     def reward(self, actions: np.ndarray) -> Array:
-        """Less the effort, and less 0.1 for each joint within its limits, as PyBullet has it."""
+        """Minus the effort and, as in PyBullet, minus 0.1 for each joint within its limits."""
         work = np.einsum("ij,ij->i", np.abs(actions), np.abs(self._counted.velocities()))
         inside = np.count_nonzero(np.abs(self._relative) < WELL_INSIDE, axis=1)
         return -(WORK * work + STALL * actions.sum(axis=1)) - INSIDE * inside
 
 
 def _draw(generator: np.random.Generator) -> np.ndarray:
-    """What one environment draws for an episode, in the order of the single one."""
+    """Random numbers for an episode of one environment, in the order of the single environment."""
     target = generator.uniform(-1.0, 1.0, size=2), generator.uniform(0.5, 0.8)
     thing = generator.uniform(-1.0, 1.0, size=2), generator.uniform(0.1, 0.4)
     return np.array([*target[0], target[1], *thing[0], thing[1], *generator.uniform(-TURN, TURN, size=7)])
 
 
 def _around(ways: Array, measured: Array, distances: Array) -> Array:
-    """Ways (n, 2) over the lengths of others, times distances (n,)."""
+    """Vectors `ways` (n, 2), divided by the lengths of `measured` (n, 2), times distances (n,)."""
     return ways / np.linalg.norm(measured, axis=1)[:, None] * distances[:, None]

@@ -1,4 +1,4 @@
-"""What the vector environments have in common: the scene of a single one, copied."""
+"""Base class of the vector environments: copies of the world of a single environment."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from carom.world.world import World
 from pybullet._clients.clients import client_of
 from pybullet_envs.env_bases import BulletEnv
 
-# As `BulletEnv.render` has them.
+# The same as in `BulletEnv.render`.
 _FIELD_OF_VIEW, _NEAR, _FAR = 60.0, 0.1, 100.0
 LARGEST_ACTION = 1.0
 
@@ -23,11 +23,11 @@ class BulletVectorEnv(WorldsEnv):
     """Copies of the world of a single environment.
 
     Args:
-        single: A single environment; it is closed.
-        num_envs: How many there are to be.
-        max_episode_steps: After how many steps an episode is truncated; None for never.
-        autoreset_mode: When episodes that are over begin anew; see `carom.vector.WorldsEnv`.
-        threads: How many threads share the worlds; None for as many as there are processors.
+        single: A single environment; it is closed, unless it is needed later.
+        num_envs: Number of environments.
+        max_episode_steps: Number of steps after which an episode is truncated; None for never.
+        autoreset_mode: When environments are reset after an episode; see `carom.vector.WorldsEnv`.
+        threads: Number of threads; None for the number of processors.
         render_mode: "rgb_array" or None.
     """
 
@@ -41,7 +41,7 @@ class BulletVectorEnv(WorldsEnv):
         threads: int | None = None,
         render_mode: str | None = None,
     ) -> None:
-        # What its seed changes each episode sets again.
+        # Any seed will do: each episode sets again whatever depends on it.
         single.reset(seed=0)
         super().__init__(
             world_of(single),
@@ -59,11 +59,11 @@ class BulletVectorEnv(WorldsEnv):
             single.close()
 
     _asks = False
-    """Whether the single environment is kept, to ask it for what there is for one world only."""
+    """Whether the single environment is kept, for computations that exist for one world only."""
 
     @abstractmethod
     def take(self, single: Any) -> None:
-        """Find what the environment needs to know in the single one."""
+        """Take the parameters, bodies and joints that are needed from the single environment."""
 
 
 def world_of(single: BulletEnv) -> World:
@@ -72,12 +72,12 @@ def world_of(single: BulletEnv) -> World:
 
 
 def held(actions: np.ndarray) -> np.ndarray:
-    """Actions within -1 and 1."""
+    """Actions, clipped to -1 and 1."""
     return np.clip(actions, -LARGEST_ACTION, LARGEST_ACTION)
 
 
 def _camera_of(single: BulletEnv) -> Camera:
-    """A camera that sees what `render` of the single environment shows at the beginning."""
+    """A camera with the initial view of the single environment's `render`."""
     width, height = single.picture_size
     distance, yaw, pitch = single._camera
     target = single._looked_at()

@@ -1,4 +1,4 @@
-"""Poles on carts that are pushed left or right, many at once."""
+"""Vector environments with poles on carts that are pushed left or right."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class CartPoleVectorEnv(BulletVectorEnv):
     """Poles to keep upright; see `pybullet_envs.bullet.cartpole_bullet.CartPoleBulletEnv`.
 
     Args:
-        num_envs: How many there are to be.
-        discrete_actions: Whether to push with all force to one side, or with any force.
-        **options: As for `BulletVectorEnv`.
+        num_envs: Number of environments.
+        discrete_actions: Whether to push with the full force to one side; otherwise, with any force.
+        **options: Other arguments of `BulletVectorEnv`.
     """
 
     def __init__(self, num_envs: int = 1, *, discrete_actions: bool = True, **options: Any) -> None:
@@ -33,19 +33,19 @@ class CartPoleVectorEnv(BulletVectorEnv):
         self._farthest, self._steepest = single.x_threshold, single.theta_threshold_radians
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Puts everything within 0.05 of upright and at rest."""
+        """Set positions and velocities of carts and poles to random values within ±0.05."""
         angle, rate, position, velocity = self.random.uniform(worlds, -LARGEST_START, LARGEST_START, 4).T
         for column, place, speed in ((self._pole, angle, rate), (self._cart, position, velocity)):
             self._body.joint_positions[worlds, column] = place
             self._body.joint_velocities[worlds, column] = speed
 
     def act(self, actions: np.ndarray) -> None:
-        """Pushes the carts."""
+        """Apply forces to the carts."""
         ways = np.where(actions == 1, 1.0, -1.0) if self._discrete else actions[:, 0] / self._force
         self._body.joint_torques[:, self._cart] = self._force * ways
 
     def observe(self) -> np.ndarray:
-        """Angle and rate of the pole, position and velocity of the cart."""
+        """Angle and velocity of the pole, position and velocity of the cart."""
         positions, velocities = self._body.joint_positions, self._body.joint_velocities
         whole = np.empty((self.num_envs, 4), np.float32)
         for place, column in ((0, self._pole), (2, self._cart)):
@@ -54,7 +54,7 @@ class CartPoleVectorEnv(BulletVectorEnv):
         return whole
 
     def reward(self, actions: np.ndarray) -> Array:
-        """A point."""
+        """1 for each step."""
         return np.ones(self.num_envs)
 
     def terminated(self) -> Mask:
@@ -64,7 +64,7 @@ class CartPoleVectorEnv(BulletVectorEnv):
 
 
 class CartPoleContinuousVectorEnv(CartPoleVectorEnv):
-    """The same, pushed with any force up to 10 N."""
+    """The same, but with any force up to 10 N."""
 
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
         super().__init__(num_envs, discrete_actions=False, **options)

@@ -1,7 +1,7 @@
-"""KUKAs that grasp at blocks, many at once.
+"""Vector environments with KUKA arms that grasp blocks.
 
-The worlds are stepped together. Inverse kinematics and distances of shapes are there for one world only:
-these questions are put to the single environment, for one world after the other.
+The worlds are stepped together. Inverse kinematics and distances between shapes exist for one world only:
+the single environment computes them, for one world after the other.
 """
 
 from __future__ import annotations
@@ -50,21 +50,21 @@ _CLOSENESS = 10.0
 
 
 class _Unsettled(KukaGymEnv):
-    """Stands where an episode begins, before the step that is done first."""
+    """A single environment without the first step of an episode, which `begin` makes."""
 
     def _settle(self) -> None:
         pass
 
 
 class KukaVectorEnv(BulletVectorEnv):
-    """Grippers that come down on trays; see `pybullet_envs.bullet.kukaGymEnv.KukaGymEnv`.
+    """Grippers that move down to trays; see `pybullet_envs.bullet.kukaGymEnv.KukaGymEnv`.
 
     Args:
-        num_envs: How many there are to be.
-        actionRepeat: Steps of the simulation for each of the environment.
-        isDiscrete: Whether the action is one of 7 choices.
-        maxSteps: Steps after which an episode ends.
-        **options: As for `BulletVectorEnv`.
+        num_envs: Number of environments.
+        actionRepeat: Number of simulation steps per environment step.
+        isDiscrete: Whether an action is one of 7 choices.
+        maxSteps: Number of steps after which an episode ends.
+        **options: Other arguments of `BulletVectorEnv`.
     """
 
     _asks = True
@@ -82,7 +82,7 @@ class KukaVectorEnv(BulletVectorEnv):
         super().__init__(_Unsettled(isDiscrete=isDiscrete), num_envs, **options)
 
     def take(self, single: Any) -> None:
-        """Find arm, tray and block, and what they are driven with."""
+        """Find arm and block, and the forces of the motors."""
         self._single, self._asked = single, world_of(single)
         kuka = self._kuka = single._kuka
         self._arm, self._block = self.worlds[kuka.kukaUid], self.worlds[single.blockUid]
@@ -98,7 +98,7 @@ class KukaVectorEnv(BulletVectorEnv):
         self._start_place = np.array(kuka.endEffectorPos)
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Puts the blocks somewhere on the trays."""
+        """Place the blocks at random on the trays, and make the first step."""
         drawn = self.random.uniform(worlds, self._low, self._high)
         poses = [self._block_pose(x, y, yaw) for x, y, yaw in drawn.tolist()]
         places, turns = [pose.position for pose in poses], [pose.orientation for pose in poses]
@@ -110,13 +110,13 @@ class KukaVectorEnv(BulletVectorEnv):
         self.worlds.step(where=worlds)
 
     def _block_pose(self, x: float, y: float, yaw: float) -> Pose:
-        """Where the block's inertial frame is when the block is loaded at a place: to the last digit."""
+        """Exact pose of the block's inertial frame when the block is loaded at (x, y)."""
         height, turn = self._single._block_height, p.getQuaternionFromEuler([0, 0, yaw])
         frame = self._asked.bodies[self._single.blockUid].link_inertial_frame(BASE)
         return compose(Pose((x, y, height), turn), frame)
 
     def act(self, actions: np.ndarray) -> None:
-        """Keeps what the gripper is to do in this step."""
+        """Keep the commands of the grippers for this step."""
         ways = np.array(CHOICES, dtype=np.float64)[actions] if self._discrete else actions
         self._commands = np.empty((self.num_envs, 5))
         self._commands[:, :2] = self._single._step_size * ways[:, :2]
@@ -125,7 +125,7 @@ class KukaVectorEnv(BulletVectorEnv):
         self._commands[:, 4] = FINGER_OPEN
 
     def simulate(self) -> None:
-        """Moves the grippers on; those that come to their trays grasp and lift at once."""
+        """Move the grippers; those that reach their trays grasp and lift in the same step."""
         going = np.flatnonzero(~self._grasped)
         for _ in range(self._repeat):
             self._move(going, self._commands[going])
@@ -142,7 +142,7 @@ class KukaVectorEnv(BulletVectorEnv):
                 break
 
     def _move(self, worlds: np.ndarray, commands: Array) -> None:
-        """`Kuka.applyAction` and a step of the simulation, in some worlds."""
+        """Apply commands as `Kuka.applyAction` does, and make a simulation step, in some worlds."""
         places = self._places[worlds] + commands[:, :3]
         places[:, 0] = np.clip(places[:, 0], *REACH_X)
         places[:, 1] = np.clip(places[:, 1], *REACH_Y)
@@ -169,7 +169,7 @@ class KukaVectorEnv(BulletVectorEnv):
         return bool(self._single._p.getClosestPoints(kuka.trayUid, kuka.kukaUid, GRASP_DISTANCE))
 
     def _grasp(self, worlds: np.ndarray) -> None:
-        """Closes the fingers and lifts, until the block or the wrist is high."""
+        """Close the fingers and lift, until the block or the wrist is high enough."""
         for step in range(CLOSING_STEPS):
             finger = FINGER_OPEN * (1.0 - step / CLOSING_STEPS)
             self._move(worlds, np.tile([0.0, 0.0, CLOSING_RISE, 0.0, finger], (len(worlds), 1)))
@@ -182,7 +182,7 @@ class KukaVectorEnv(BulletVectorEnv):
                 return
 
     def observe(self) -> np.ndarray:
-        """Position and roll, pitch and yaw of the gripper, then block as the gripper sees it."""
+        """Position, roll, pitch and yaw of the gripper; x, y and yaw of the block in the gripper's frame."""
         gripper, block = self._arm.stepped_link_poses[:, GRIPPER], self._block.base_poses
         whole = np.empty((self.num_envs, 9), np.float32)
         whole[:, :3] = gripper[:, :3]
@@ -193,7 +193,7 @@ class KukaVectorEnv(BulletVectorEnv):
         return whole
 
     def reward(self, actions: np.ndarray) -> Array:
-        """Ten times the distance of block and wrist, negative, less the turn; more for a lifted block."""
+        """-10 times the distance of block and wrist, minus a cost of turning, plus a bonus for lifting."""
         single = self._single
         rewards = np.array([self._closeness(world) for world in range(self.num_envs)])
         rewards[self._block.base_poses[:, 2] > single._lifted_height] += single._success
@@ -206,11 +206,11 @@ class KukaVectorEnv(BulletVectorEnv):
         return -_CLOSENESS * points[0][8] if points else _NOWHERE
 
     def terminated(self) -> Mask:
-        """Where the gripper has grasped, or the time is up."""
+        """Where the gripper has tried to grasp, or `maxSteps` is exceeded."""
         return self._grasped | (self._steps_taken > self._longest)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Ends the world that questions are put to."""
+        """Close the single environment."""
         self._single.close()
 
 

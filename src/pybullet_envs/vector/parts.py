@@ -1,4 +1,4 @@
-"""Links and joints of single environments, in many worlds."""
+"""Links and joints of a single environment's robots, in many worlds."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from pybullet_envs.robot_parts import BodyPart, Joint
 
 
 class Joints:
-    """Some joints, of one or several bodies, in the order of a robot of a single environment.
+    """Some joints of one or several bodies, in many worlds, in the order of `joints`.
 
     Attributes:
-        count: How many there are.
-        lower: Their lower limits [rad or m], (count,).
-        upper: Their upper limits.
+        count: Number of joints.
+        lower: Lower position limits [rad or m], (count,).
+        upper: Upper position limits [rad or m], (count,).
 
     Args:
         worlds: The worlds.
@@ -29,7 +29,7 @@ class Joints:
         self.count = len(joints)
         self.lower = np.array([joint.lowerLimit for joint in joints])
         self.upper = np.array([joint.upperLimit for joint in joints])
-        # Of each body: where its joints are among these, and among its own.
+        # For each body: the indices of its joints in `joints`, and among all joints of the body.
         self._groups: list[tuple[BodyBatch, slice | np.ndarray, slice | np.ndarray]] = []
         for body in dict.fromkeys(joint.body for joint in joints):
             places = [place for place, joint in enumerate(joints) if joint.body == body]
@@ -39,13 +39,13 @@ class Joints:
         self._velocities = np.empty((worlds.count, self.count))
 
     def positions(self) -> Array:
-        """[rad or m], (worlds, count); the same array is filled again by the next call."""
+        """Positions [rad or m], (worlds, count); the next call overwrites the array."""
         for body, places, columns in self._groups:
             self._positions[:, places] = body.joint_positions[:, columns]
         return self._positions
 
     def velocities(self) -> Array:
-        """[rad/s or m/s], (worlds, count); the same array is filled again by the next call."""
+        """Velocities [rad/s or m/s], (worlds, count); the next call overwrites the array."""
         for body, places, columns in self._groups:
             self._velocities[:, places] = body.joint_velocities[:, columns]
         return self._velocities
@@ -53,12 +53,12 @@ class Joints:
     def relative(self) -> Array:
         """Positions from -1 at the lower limits to 1 at the upper ones, (worlds, count).
 
-        To the last digit as `relative_joint_states` of a robot has them.
+        Equal, to the last digit, to the `relative_joint_states` of a robot.
         """
         return (2.0 * self.positions() - self.lower - self.upper) / (self.upper - self.lower)
 
     def between_limits(self) -> Array:
-        """The same, to the last digit as `current_relative_position` of a joint has it."""
+        """Like `relative`, but equal to the last digit to a joint's `current_relative_position`."""
         middle = 0.5 * (self.lower + self.upper)
         return 2.0 * (self.positions() - middle) / (self.upper - self.lower)
 
@@ -68,7 +68,7 @@ class Joints:
             body.joint_torques[:, columns] = torques[:, places]
 
     def put(self, worlds: np.ndarray, positions: Array) -> None:
-        """Put the joints of some worlds somewhere, (n, count), at rest."""
+        """Set the joint positions of some worlds [rad or m], (n, count), at rest."""
         for body, places, columns in self._groups:
             own = body.joint_positions[worlds]
             own[:, columns] = positions[:, places]
@@ -114,12 +114,12 @@ class Middle:
         links: dict[int, list[int]] = {}
         for part in parts:
             links.setdefault(part.body, []).append(part.bodyPartIndex)
-        # Of each body its base, then its links: sums are to come out the same to the last digit.
+        # For each body its base, then its links: in this order sums are equal to the last digit.
         self._links = [(worlds[body], link) for body, own in links.items() for link in _base_first(own)]
         self._total = np.empty((worlds.count, 2))
 
     def positions(self) -> Array:
-        """Along x and y [m], (worlds, 2)."""
+        """Mean positions along x and y [m], (worlds, 2)."""
         total = self._total
         total[:] = 0.0
         for body, link in self._links:
@@ -133,7 +133,7 @@ def _base_first(links: list[int]) -> list[int]:
 
 
 def _run(places: Sequence[int]) -> slice | np.ndarray:
-    """A slice if the places follow each other."""
+    """The indices, as a slice if they are consecutive."""
     if list(places) == list(range(places[0], places[0] + len(places))):
         return slice(places[0], places[-1] + 1)
     return np.array(places)

@@ -1,4 +1,4 @@
-"""Poles on carts, many at once."""
+"""Vector environments with poles on carts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class _CartVectorEnv(BulletVectorEnv):
     _single: Any
 
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
-        """Makes them; see `BulletVectorEnv`."""
+        """Makes the environments; see `BulletVectorEnv`."""
         super().__init__(self._single(), num_envs, **options)
 
     def take(self, single: Any) -> None:
@@ -34,11 +34,11 @@ class _CartVectorEnv(BulletVectorEnv):
         self._fallen = single.fallen
 
     def act(self, actions: np.ndarray) -> None:
-        """Pushes the carts."""
+        """Apply forces to the carts."""
         self._slider.push(self._push * held(actions))
 
     def _observe(self, extra: int) -> np.ndarray:
-        """Cart and hinges, with room for `extra` numbers between them."""
+        """Values of cart and hinges, with room for `extra` numbers between them."""
         count, first = self._hinges.count, 2 + extra
         whole = np.empty((self.num_envs, first + 3 * count), np.float32)
         whole[:, 0] = self._slider.positions()[:, 0]
@@ -57,16 +57,16 @@ class InvertedPendulumVectorEnv(_CartVectorEnv):
     _offset = 0.0
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Puts the poles near upright, or half a turn from there."""
+        """Place the poles near upright or, in the swing-up, near hanging."""
         offsets = self.random.uniform(worlds, -LARGEST_START, LARGEST_START, 1)
         self._hinges.put(worlds, offsets + self._offset)
 
     def observe(self) -> np.ndarray:
-        """Position and velocity of the cart, cosine, sine and rate of the pole's angle."""
+        """Position and velocity of the cart; cosine, sine and velocity of the pole's angle."""
         return self._observe(0)
 
     def reward(self, actions: np.ndarray) -> Array:
-        """A point."""
+        """1 for each step."""
         return np.ones(self.num_envs)
 
     def terminated(self) -> Mask:
@@ -75,7 +75,7 @@ class InvertedPendulumVectorEnv(_CartVectorEnv):
 
 
 class InvertedPendulumSwingupVectorEnv(InvertedPendulumVectorEnv):
-    """Poles that hang at first; each step rewards the cosine of their angle from upright."""
+    """Poles to swing up; the reward of each step is the cosine of the angle from upright."""
 
     _single = InvertedPendulumSwingupBulletEnv
     _offset = HANGING
@@ -85,7 +85,7 @@ class InvertedPendulumSwingupVectorEnv(InvertedPendulumVectorEnv):
         return np.cos(self._angles[:, 0])
 
     def terminated(self) -> Mask:
-        """Nowhere."""
+        """No environment."""
         return np.zeros(self.num_envs, dtype=bool)
 
 
@@ -101,11 +101,11 @@ class InvertedDoublePendulumVectorEnv(_CartVectorEnv):
         self._to_tip, self._aim = single.to_tip, single.aim
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Puts both poles near upright."""
+        """Place both poles near upright."""
         self._hinges.put(worlds, self.random.uniform(worlds, -LARGEST_START, LARGEST_START, 2))
 
     def observe(self) -> np.ndarray:
-        """Cart, where the upper pole is, and both angles."""
+        """Values of the cart, x of the upper pole, values of both angles."""
         whole = self._observe(1)
         self._place = self._pole.poses()[:, :3]
         whole[:, 2] = self._place[:, 0]
@@ -113,9 +113,9 @@ class InvertedDoublePendulumVectorEnv(_CartVectorEnv):
         return whole
 
     def reward(self, actions: np.ndarray) -> Array:
-        """10 less the squared distance of the tip from its highest place."""
+        """10, minus the squared height error of the tip [m], minus 0.01 times the squared x of the pole."""
         return 10.0 + (-0.01 * self._place[:, 0] ** 2 - (self._tip - self._aim) ** 2)
 
     def terminated(self) -> Mask:
-        """Where the tip is low."""
+        """Where the tip is too low."""
         return self._tip <= self._fallen

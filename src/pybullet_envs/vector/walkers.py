@@ -1,4 +1,4 @@
-"""Robots that learn to run, many at once."""
+"""Vector environments in which robots learn to run."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ from pybullet_envs.robot_walker import LARGEST_OBSERVED, LARGEST_START, NEAR_LIM
 from pybullet_envs.vector.base import BulletVectorEnv, held
 from pybullet_envs.vector.parts import Joints, Middle, Part
 
-# Numbers of an observation about the body; those of joints and feet come after them.
+# Number of values for the body in an observation; those of joints and feet come after them.
 _OF_BODY = 8
 
 
 class WalkerVectorEnv(BulletVectorEnv):
-    """Robots that are to run to a goal; see `pybullet_envs.gym_locomotion_envs.WalkerBaseBulletEnv`.
+    """Robots that learn to run to a goal; see `pybullet_envs.gym_locomotion_envs.WalkerBaseBulletEnv`.
 
     Attributes:
-        feet_contact: Of each foot whether it was on the ground before the last step, (num_envs, feet).
+        feet_contact: Whether each foot was on the ground before the last step, (num_envs, feet).
         initial_z: Height of the bodies at the start [m], (num_envs,).
-        heights: Of the bodies, as observed, from the ground [m], (num_envs,).
+        heights: Heights of the bodies above the ground, as observed [m], (num_envs,).
         rpy: Roll, pitch and yaw of the bodies [rad], (num_envs, 3).
     """
 
     _single: Any
     _start_height: float | None = None
-    """The height that an observation takes for that at the start; None for the true one [m]."""
+    """Initial height for observations [m]; None for the true initial height."""
 
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
-        """Makes them; see `BulletVectorEnv`."""
+        """Makes the environments; see `BulletVectorEnv`."""
         super().__init__(self._single(), num_envs, **options)
 
     def take(self, single: Any) -> None:
-        """Find joints, links, powers and costs."""
+        """Find joints and links, motor torques and costs."""
         robot = single.robot
         self._joints = Joints(self.worlds, robot.ordered_joints)
         self._motors = Joints(self.worlds, robot.motors)
@@ -61,7 +61,7 @@ class WalkerVectorEnv(BulletVectorEnv):
         self.initial_z = np.full(self.num_envs, np.nan)
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Turns the joints a little."""
+        """Randomise the joint angles a little."""
         angles = self.random.uniform(worlds, -LARGEST_START, LARGEST_START, self._joints.count)
         self._joints.put(worlds, angles)
         self.feet_contact[worlds] = False
@@ -69,15 +69,15 @@ class WalkerVectorEnv(BulletVectorEnv):
         self.initial_z[worlds] = self._body.poses()[worlds, 2] if height is None else height
 
     def act(self, actions: np.ndarray) -> None:
-        """Drives the joints; remembers what the step before ended with."""
+        """Apply torques to the joints; keep potential and foot contacts of the previous step."""
         self._before = self._potential
-        # As in PyBullet an observation has the feet of the step before.
+        # As in PyBullet an observation has the foot contacts of the previous step.
         touching = self.worlds.links_in_contact(self._runner, self._ground, self._ground_link)
         self.feet_contact = touching[:, self._foot_columns]
         self._motors.push(self._torques * held(actions))
 
     def observe(self) -> np.ndarray:
-        """As `WalkerBase` has it, (num_envs, numbers)."""
+        """The observations of `WalkerBase`, (num_envs, size of an observation)."""
         count = self._joints.count
         whole = np.empty((self.num_envs, _OF_BODY + 2 * count + self.feet_contact.shape[1]), np.float32)
         self._observe_body(whole)
@@ -92,7 +92,7 @@ class WalkerVectorEnv(BulletVectorEnv):
         return whole
 
     def _observe_body(self, whole: np.ndarray) -> None:
-        """Fill in the numbers about the body, and find how near the goal is."""
+        """Fill in the values of the body, and compute the potential of the goal."""
         poses = self._body.poses()
         self.rpy = euler_from_quaternions(poses[:, 3:])
         yaw = self.rpy[:, 2]
@@ -111,7 +111,7 @@ class WalkerVectorEnv(BulletVectorEnv):
         whole[:, 6:_OF_BODY] = self.rpy[:, :2]
 
     def reward(self, actions: np.ndarray) -> Array:
-        """Being alive, coming nearer, less effort and joints at their limits."""
+        """Alive bonus and progress, minus costs of effort and of joints at their limits."""
         self._alive = np.where(self.standing(), self.alive_bonus, -1.0)
         electricity, stall, limits = self._costs
         work = electricity * np.abs(actions * self._rates).mean(axis=1)
@@ -126,63 +126,63 @@ class WalkerVectorEnv(BulletVectorEnv):
         """Where the robot has not failed, (num_envs,)."""
 
     def terminated(self) -> Mask:
-        """Where it has failed."""
+        """Where the robot has failed."""
         return self._alive < 0.0
 
 
 class HopperVectorEnv(WalkerVectorEnv):
-    """One leg."""
+    """Hoppers with one leg."""
 
     _single = HopperBulletEnv
 
     def standing(self) -> Mask:
-        """Where it is upright."""
+        """Where the robot is upright."""
         return (self.heights > 0.8) & (np.abs(self.rpy[:, 1]) < 1.0)
 
 
 class Walker2DVectorEnv(HopperVectorEnv):
-    """Two legs in a plane."""
+    """Bipeds in a plane."""
 
     _single = Walker2DBulletEnv
 
 
 class HalfCheetahVectorEnv(WalkerVectorEnv):
-    """A runner in a plane. To fall costs, but ends no episode."""
+    """Runners with two legs in a plane. A fall is penalised, but does not end the episode."""
 
     _single = HalfCheetahBulletEnv
 
     def take(self, single: Any) -> None:
-        """Find the links that are not to touch the ground as well."""
+        """Find also the links that must not touch the ground."""
         super().take(single)
         self._not_feet = [k for k, name in enumerate(single.robot.foot_list) if not name.endswith("foot")]
 
     def standing(self) -> Mask:
-        """Where it is on its feet."""
+        """Where only feet touch the ground and the body is level enough."""
         fallen = self.feet_contact[:, self._not_feet].any(axis=1)
         return (np.abs(self.rpy[:, 1]) < 1.0) & ~fallen
 
     def terminated(self) -> Mask:
-        """Nowhere."""
+        """No environment."""
         return np.zeros(self.num_envs, dtype=bool)
 
 
 class AntVectorEnv(WalkerVectorEnv):
-    """Four legs around a ball."""
+    """Quadrupeds: four legs around a sphere."""
 
     _single = AntBulletEnv
 
     def standing(self) -> Mask:
-        """Where the ball is off the ground."""
+        """Where the sphere is off the ground."""
         return self.heights > 0.26
 
 
 class HumanoidVectorEnv(WalkerVectorEnv):
-    """People."""
+    """Humanoids."""
 
     _single = HumanoidBulletEnv
     _start_height = 0.8
     alive_bonus = 2.0
 
     def standing(self) -> Mask:
-        """Where they are upright."""
+        """Where the robot is upright."""
         return self.heights > 0.78

@@ -1,6 +1,6 @@
 """A Laikago with a slider for each joint: `python -m pybullet_robots.laikago.laikago`.
 
-In PyBullet it plays a recorded gait first (`data1.txt`), which Carom does not have.
+PyBullet's script first plays a recorded gait (`data1.txt`), which Carom does not include.
 """
 
 from __future__ import annotations

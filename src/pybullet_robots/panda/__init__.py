@@ -1,4 +1,4 @@
-"""The Panda over a tray: it moves above it (`panda_sim`) or grasps what is in it (`panda_sim_grasp`)."""
+"""A Panda arm over a tray: it follows a path (`panda_sim`) or grasps a brick (`panda_sim_grasp`)."""
 
 from pybullet_utils._absent import announce
 

@@ -1,4 +1,4 @@
-"""The Panda beside a tray, y up: what `panda_sim` and `panda_sim_grasp` share."""
+"""Shared code of `panda_sim` and `panda_sim_grasp`: a Panda arm over a tray, with y as the up axis."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ class PandaOverTray:
     """An arm, a tray, three bricks and three balls.
 
     Attributes:
-        bullet_client: `pybullet`, or a client of it.
-        offset: Where the arm stands [m].
-        legos: The bricks.
-        sphereId: The first ball.
-        panda: The arm.
-        t: Time of the path that the hand follows [s].
+        bullet_client: `pybullet` or a `BulletClient`.
+        offset: Position of the arm's base [m].
+        legos: Ids of the bricks.
+        sphereId: Id of the first ball.
+        panda: Id of the arm.
+        t: Time along the path of the hand [s].
     """
 
     def __init__(self, bullet_client: Any, offset: Sequence[float]) -> None:
-        """Loads everything.
+        """Loads arm, tray, bricks and balls.
 
         Args:
-            bullet_client: `pybullet`, or a client of it; gravity, time step and search path are set already.
-            offset: Where the arm is to stand [m].
+            bullet_client: `pybullet` or a `BulletClient`, with gravity, time step and search path set.
+            offset: Position of the arm's base [m].
         """
         self.bullet_client = bullet_client
         self.offset = np.array(offset)
@@ -55,10 +55,10 @@ class PandaOverTray:
         self.t = 0.0
 
     def reset(self) -> None:
-        """Does nothing; scripts load the world anew."""
+        """Does nothing; scripts load the world again instead."""
 
     def _move_hand(self, position: Sequence[float], iterations: int) -> None:
-        """Sets the motors of the arm so that the hand, pointing down, comes to a place [m]."""
+        """Sets the motors of the arm so that the hand moves to a position [m] and points down."""
         client = self.bullet_client
         down = client.getQuaternionFromEuler([pi / 2, 0.0, 0.0])
         angles = client.calculateInverseKinematics(

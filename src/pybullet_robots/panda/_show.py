@@ -1,4 +1,4 @@
-"""Shows one of the simulations of the Panda in a window."""
+"""Shows one of the Panda simulations in a window."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ def show(make: Callable[[Any, list[float]], Any], time_step: float) -> None:
     """Steps a simulation in real time, until the window is closed.
 
     Args:
-        make: Makes it of `pybullet` and the place of the arm.
-        time_step: [s].
+        make: Makes the simulation, given `pybullet` and the position of the arm's base [m].
+        time_step: Time step of the simulation [s].
     """
     pybullet.connect(pybullet.GUI)
     pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_Y_AXIS_UP, 1)

@@ -1,4 +1,4 @@
-"""The hand of a Panda draws ellipses over a tray, and takes pictures as it goes."""
+"""A Panda arm whose hand moves along an ellipse over a tray, with a camera image at each step."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ jointPositions = rp = FIRST_POSE
 
 
 class PandaSim(PandaOverTray):
-    """An arm that moves by a sixtieth of a second with each `step`."""
+    """A Panda arm; each `step` advances the path of its hand by 1/60 s."""
 
     takes_pictures = True
 
     def step(self) -> None:
-        """Sets the motors; `stepSimulation` is for the script to call."""
+        """Sets the motors; the script calls `stepSimulation`."""
         if self.takes_pictures:
             self.bullet_client.getCameraImage(320, 200)
         x, y, z = self.offset

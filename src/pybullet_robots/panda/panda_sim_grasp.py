@@ -1,4 +1,4 @@
-"""A Panda grasps a brick, lifts it and lets it go, by itself or at the keys 1 to 6."""
+"""A Panda arm that grasps, lifts and releases a brick, by itself or controlled by the keys 1 to 6."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ pandaNumDofs = ARM_JOINTS
 ll, ul, jr = LOWER, UPPER, RANGES
 jointPositions = rp = FIRST_POSE
 
-# What the arm can be at.
+# States of the arm.
 _WAIT, _CIRCLE_LOW, _CIRCLE_HIGH, _OVER_BRICK, _AT_BRICK, _OPEN, _CLOSE, _TO_MIDDLE = range(8)
 _LOW, _HIGH = 0.03, 0.2
 _KEPT = 0.9
-"""Share of the height of the hand that is kept in a step; the rest comes from where it is to be."""
+"""Weight of the hand's present height in a step; the rest is the weight of its target height."""
 
 
 class PandaSim(PandaOverTray):
-    """An arm that does what the keys say.
+    """A Panda arm controlled by keys.
 
     Attributes:
-        state: What it is at: 0 waits, 1 and 2 circle low and high, 3 goes over a brick, 4 down to it, 5 opens
-            and 6 closes the hand, 7 brings the hand to the middle.
-        control_dt: Time of a step [s].
-        finger_target: Where the fingers are to be [m].
+        state: 0 waits, 1 and 2 circle low and high, 3 moves above a brick, 4 down to it, 5 opens and 6
+            closes the hand, 7 moves the hand to the middle.
+        control_dt: Time that `step` adds to `t` [s].
+        finger_target: Target position of the fingers [m].
         gripper_height: Height of the hand [m].
     """
 
@@ -62,7 +62,7 @@ class PandaSim(PandaOverTray):
         client.changeConstraint(gear, gearRatio=-1, erp=0.1, maxForce=50)
 
     def update_state(self) -> None:
-        """Sets `state` by the keys 1 to 6; it ends when they are released."""
+        """Sets `state` from the keys 1 to 6; releasing a key sets it to 0."""
         client = self.bullet_client
         for key, what in client.getKeyboardEvents().items():
             if what & client.KEY_WAS_TRIGGERED and ord("1") <= key <= ord("6"):
@@ -71,7 +71,7 @@ class PandaSim(PandaOverTray):
                 self.state = _WAIT
 
     def step(self) -> None:
-        """Sets the motors; `stepSimulation` is for the script to call."""
+        """Sets the motors; the script calls `stepSimulation`."""
         client = self.bullet_client
         self.finger_target = {_CLOSE: 0.01, _OPEN: 0.04}.get(self.state, self.finger_target)
         client.submitProfileTiming("step")
@@ -88,7 +88,7 @@ class PandaSim(PandaOverTray):
         client.submitProfileTiming()
 
     def _next_place(self) -> list[float]:
-        """Where the hand is to be [m]."""
+        """Advances the path and returns the target position of the hand [m]."""
         self.gripper_height = _KEPT * self.gripper_height + (1 - _KEPT) * _LOW
         if self.state in (_CIRCLE_HIGH, _OVER_BRICK, _TO_MIDDLE):
             self.gripper_height = _KEPT * self.gripper_height + (1 - _KEPT) * _HIGH
@@ -106,13 +106,13 @@ class PandaSim(PandaOverTray):
 
 
 class PandaSimAuto(PandaSim):
-    """An arm that goes through its states by itself, each for its time.
+    """A Panda arm that repeats a fixed sequence of states.
 
     Attributes:
-        states: The states, over and over.
-        state_durations: How long each lasts [s].
-        cur_state: Place in these.
-        state_t: Time in the present one [s].
+        states: The sequence of states.
+        state_durations: Duration of each state [s].
+        cur_state: Index of the present state in `states`.
+        state_t: Time spent in the present state [s].
     """
 
     def __init__(self, bullet_client: Any, offset: Sequence[float]) -> None:
@@ -124,7 +124,7 @@ class PandaSimAuto(PandaSim):
         self.state_durations = [1, 1, 1, 2, 1, 1, 10]
 
     def update_state(self) -> None:
-        """Goes on to the next state when the time of this one is over."""
+        """Changes to the next state when the duration of the present one is over."""
         self.state_t += self.control_dt
         if self.state_t > self.state_durations[self.cur_state]:
             self.cur_state = (self.cur_state + 1) % len(self.states)

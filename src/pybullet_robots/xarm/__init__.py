@@ -1,1 +1,1 @@
-"""The xArm over a tray (`xarm_sim`)."""
+"""An xArm over a tray (`xarm_sim`)."""

@@ -1,4 +1,4 @@
-"""The hand of an xArm draws circles over a tray."""
+"""An xArm whose hand moves along a circle over a tray."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ _FORCE = 5 * 240.0
 
 
 class XArm6Sim:
-    """An arm that moves by a sixtieth of a second with each `step`.
+    """An xArm; each `step` advances the path of its hand by 1/60 s.
 
     Attributes:
-        bullet_client: `pybullet`, or a client of it.
-        offset: Where the arm stands [m].
-        xarm: The arm.
-        jointPoses: Where its joints were sent last.
-        t: Time of the path that the hand follows [s].
+        bullet_client: `pybullet` or a `BulletClient`.
+        offset: Position of the arm's base [m].
+        xarm: Id of the arm.
+        jointPoses: Last target positions of the joints [rad].
+        t: Time along the path of the hand [s].
     """
 
     def __init__(self, bullet_client: Any, offset: Sequence[float]) -> None:
         """Loads the arm, a tray, three bricks and three balls.
 
         Args:
-            bullet_client: `pybullet`, or a client of it; gravity, time step and search path are set already.
-            offset: Where the arm is to stand [m].
+            bullet_client: `pybullet` or a `BulletClient`, with gravity, time step and search path set.
+            offset: Position of the arm's base [m].
         """
         self.bullet_client = bullet_client
         self.offset = np.array(offset)
@@ -57,10 +57,10 @@ class XArm6Sim:
         self.t = 0.0
 
     def reset(self) -> None:
-        """Does nothing; scripts load the world anew."""
+        """Does nothing; scripts load the world again instead."""
 
     def step(self) -> None:
-        """Sets the motors and draws how far the hand is from its path; scripts call `stepSimulation`."""
+        """Sets the motors and draws a line from target to hand; the script calls `stepSimulation`."""
         client = self.bullet_client
         x, y, z = self.offset
         place = [x + 0.407 + 0.2 * sin(1.5 * self.t), y + 0.2 * cos(1.5 * self.t), z + 0.12]

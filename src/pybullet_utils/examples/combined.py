@@ -1,4 +1,4 @@
-"""Shows what `combineUrdf` has written: `python -m pybullet_utils.examples.combined`."""
+"""Shows the robot that `combineUrdf` has written: `python -m pybullet_utils.examples.combined`."""
 
 from __future__ import annotations
 

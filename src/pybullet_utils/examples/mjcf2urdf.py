@@ -1,4 +1,4 @@
-"""The bodies of an MJCF file as URDF files: `python -m pybullet_utils.examples.mjcf2urdf --mjcf file`."""
+"""Converts an MJCF file to URDF files: `python -m pybullet_utils.examples.mjcf2urdf --mjcf file`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pybullet_utils.urdfEditor import UrdfEditor
 
 
 def main() -> None:
-    """Writes a file for each body, named by body and number."""
+    """Writes a file for each body, named after the robot or root link and the id."""
     parser = argparse.ArgumentParser(description="Writes the bodies of an MJCF file as URDF files.")
     parser.add_argument("--mjcf", default="mjcf/humanoid.xml", help="file to load")
     client = BulletClient(pybullet.DIRECT)

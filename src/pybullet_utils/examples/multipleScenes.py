@@ -8,7 +8,7 @@ from pybullet_utils.bullet_client import BulletClient
 
 
 def main() -> None:
-    """Loads a robot into one world and a stadium into another, and counts what is in each."""
+    """Loads a robot into one world and a stadium into another, and prints the number of bodies in each."""
     robots, stadium = BulletClient(pybullet.DIRECT), BulletClient(pybullet.DIRECT)
     for world in (robots, stadium):
         world.setAdditionalSearchPath(pybullet_data.getDataPath())

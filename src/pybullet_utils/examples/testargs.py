@@ -1,4 +1,4 @@
-"""Arguments as `ArgParser` has them: `python -m pybullet_utils.examples.testargs --bodies 1 2 --name x`."""
+"""Arguments parsed by `ArgParser`: `python -m pybullet_utils.examples.testargs --bodies 1 2 --name x`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pybullet_utils.arg_parser import ArgParser
 
 
 def main() -> None:
-    """Prints what the command line says."""
+    """Prints the arguments of the command line."""
     arguments = ArgParser()
     arguments.load_args(sys.argv[1:])
     print("name =", arguments.parse_string("name", "nobody"))

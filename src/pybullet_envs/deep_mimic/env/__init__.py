@@ -1,1 +1,1 @@
-"""Kinds of actions, and files of recorded motions."""
+"""Types of action spaces, and files of recorded motions."""

@@ -1,4 +1,4 @@
-"""Kinds of actions."""
+"""Types of action spaces."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class ActionSpace(Enum):
-    """What kind of actions an agent has."""
+    """Type of an agent's action space."""
 
     Null = 0
     Continuous = 1

@@ -1,4 +1,4 @@
-"""Tasks for the Minitaur: to walk, to trot, to step, to stand, to come to a ball."""
+"""Tasks for the Minitaur: walking, trotting, stepping, standing, walking to a ball."""
 
 from pybullet_envs.minitaur.envs.minitaur_alternating_legs_env import MinitaurAlternatingLegsEnv
 from pybullet_envs.minitaur.envs.minitaur_ball_gym_env import MinitaurBallGymEnv

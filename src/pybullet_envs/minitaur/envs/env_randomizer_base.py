@@ -1,4 +1,4 @@
-"""What changes a Minitaur from one episode to the next, and disturbs it on the way."""
+"""Base class of randomizers, which change a Minitaur between episodes and disturb it in steps."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from pybullet_envs.bullet import env_randomizer_base
 
 
 class EnvRandomizerBase(env_randomizer_base.EnvRandomizerBase):
-    """Something that an environment calls at each `reset`, and in each step."""
+    """A randomizer, called by an environment at each `reset` and in each step."""
 
     def randomize_step(self, env: Any) -> None:
-        """Called before each step of the environment."""
+        """Called before each environment step."""
 
     def randomize_sub_step(self, env: Any, sub_step_index: int, num_sub_steps: int) -> None:
-        """Called before each step of the simulation; forces last for one of them.
+        """Called before each simulation step; forces last for one of these.
 
         Args:
             env: The environment.
-            sub_step_index: The number of the step within that of the environment, from 0.
-            num_sub_steps: How many there are.
+            sub_step_index: Index of the simulation step within the environment step, from 0.
+            num_sub_steps: Number of simulation steps per environment step.
         """

@@ -1,4 +1,4 @@
-"""What the environments share in which actions are small changes to poses of the legs."""
+"""Base classes of environments in which actions are added to poses of the legs."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ import numpy as np
 from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, MinitaurGymEnv
 
 NUM_LEGS = 4
-# A swing takes the motors of the legs on the left one way, and those on the right the other way.
+# Signs of the motor angles for a swing: those of left and right legs are opposite.
 _SWING = np.array((-1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0))
 _MOST_LEANING = 0.3
 
 
 def motor_angles_of(pose: Any) -> np.ndarray:
-    """Angles of the motors [rad], (8,), of a pose: swing of each leg and then its extension [rad], (8,)."""
+    """Motor angles [rad], (8,), of a pose: swings of the legs, then extensions of the legs [rad], (8,)."""
     swing, extension = np.reshape(pose, (2, NUM_LEGS)).repeat(2, axis=1)
     return extension + _SWING * swing
 
 
 def pose_of(motor_angles: Any) -> np.ndarray:
-    """The pose of the legs [rad], (8,), of angles of the motors; the inverse of `motor_angles_of`."""
+    """Pose of the legs [rad], (8,), at given motor angles; the inverse of `motor_angles_of`."""
     angles = np.asarray(motor_angles)
     swing, extension = (_SWING * angles).reshape(NUM_LEGS, 2), angles.reshape(NUM_LEGS, 2)
     return np.concatenate((swing.mean(axis=1), extension.mean(axis=1)))
 
 
 class LegPoseEnv(MinitaurGymEnv):
-    """A Minitaur whose legs follow a signal, to which actions add.
+    """A Minitaur whose legs follow a signal, to which actions are added.
 
-    Observation: roll and pitch [rad]; then, as it is made, their rates [rad/s], the angles [rad] that the
-    motors are to have by the signal alone, and those that they have.
+    Observation: roll and pitch [rad]; then, depending on the arguments, their rates [rad/s], the motor angles
+    [rad] of the signal alone, and the observed motor angles [rad].
     """
 
     _reset_duration = 0.5
@@ -52,14 +52,14 @@ class LegPoseEnv(MinitaurGymEnv):
         """Makes the environment.
 
         Args:
-            actions: How many numbers an action has.
-            bound: The most that they are [rad].
-            init_swing: Of each leg when an episode begins [rad].
-            init_extension: Of each leg [rad].
+            actions: Size of an action.
+            bound: Largest magnitude of its numbers [rad].
+            init_swing: Swing of each leg at the start of an episode [rad].
+            init_extension: Extension of each leg at the start of an episode [rad].
             tells_rates: Whether the rates are observed.
-            tells_signal: Whether the signal is.
-            tells_angles: Whether the angles of the motors are.
-            **keywords: Of `MinitaurGymEnv`.
+            tells_signal: Whether the motor angles of the signal are observed.
+            tells_angles: Whether the motor angles are observed.
+            **keywords: Arguments of `MinitaurGymEnv`.
         """
         self._init_pose = np.repeat((init_swing, init_extension), NUM_LEGS)
         self._offset = np.zeros(NUM_MOTORS)
@@ -70,18 +70,18 @@ class LegPoseEnv(MinitaurGymEnv):
         self._set_spaces(actions, bound, self._get_observation_upper_bound())
 
     def set_swing_offset(self, value: Any) -> None:
-        """Sets how bent the legs are, one by one [rad], (4,)."""
+        """Sets the offset of each leg's swing [rad], (4,)."""
         self._offset[:NUM_LEGS] = value
 
     def set_extension_offset(self, value: Any) -> None:
-        """Sets how much longer the legs are, one by one [rad], (4,)."""
+        """Sets the offset of each leg's extension [rad], (4,)."""
         self._offset[NUM_LEGS:] = value
 
     def _initial_motor_angles(self) -> np.ndarray:
         return motor_angles_of(self._init_pose)
 
     def _signal(self, t: float) -> np.ndarray:
-        """The pose of the legs [rad], (8,), at a time [s]."""
+        """The signal: pose of the legs [rad], (8,), at a time [s]."""
         return self._init_pose
 
     def _transform_action_to_motor_command(self, action: np.ndarray) -> np.ndarray:
@@ -89,7 +89,7 @@ class LegPoseEnv(MinitaurGymEnv):
         return motor_angles_of(pose + self._offset + action)
 
     def is_fallen(self) -> bool:
-        """Whether the base leans by more than 0.3 to a side, or forward or backward."""
+        """Whether roll or pitch of the base is larger than 0.3 rad."""
         return bool((np.abs(self.minitaur.GetTrueBaseRollPitchYaw()[:2]) > _MOST_LEANING).any())
 
     def _get_observation(self) -> np.ndarray:
@@ -102,7 +102,7 @@ class LegPoseEnv(MinitaurGymEnv):
         return self._told(robot.GetTrueBaseRollPitchYaw(), robot.GetTrueBaseRollPitchYawRate())
 
     def _told(self, angles: np.ndarray, rates: np.ndarray) -> np.ndarray:
-        """An observation, of what the base does."""
+        """An observation with given roll, pitch and yaw of the base [rad], and their rates [rad/s]."""
         parts = [angles[:2]]
         if self._tells_rates:
             parts.append(rates[:2])
@@ -119,7 +119,7 @@ class LegPoseEnv(MinitaurGymEnv):
 
 
 class BentLegsEnv(LegPoseEnv):
-    """Legs whose offsets count from the beginning of an episode on, and a pitch that is wished for."""
+    """Legs whose offsets also apply to the initial pose, and a desired pitch of the base."""
 
     def __init__(self, **keywords: Any) -> None:
         """Makes the environment; see `LegPoseEnv`."""
@@ -127,7 +127,7 @@ class BentLegsEnv(LegPoseEnv):
         super().__init__(**keywords)
 
     def set_desired_pitch(self, value: float) -> None:
-        """Sets the pitch that the base is to have, until the episode ends [rad]."""
+        """Sets the desired pitch of the base until the episode ends [rad]."""
         self.desired_pitch = value
 
     def _begin_episode(self) -> None:

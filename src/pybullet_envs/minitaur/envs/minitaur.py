@@ -1,4 +1,4 @@
-"""A Minitaur whose sensors lag and are noisy, as those of the real one."""
+"""A Minitaur with sensor latency and noise, as on the real robot."""
 
 from __future__ import annotations
 
@@ -44,26 +44,26 @@ _PD_KD = 0.3
 _REMEMBERED_STEPS = 100
 _STANDING_STEPS = 100
 
-# Where in what is remembered of a step the sensors' readings are.
+# Slices of the recorded sensor readings of a step.
 _ANGLES, _VELOCITIES, _TORQUES = slice(0, 8), slice(8, 16), slice(16, 24)
 _ORIENTATION, _TURNING = slice(24, 28), slice(28, 31)
 
 
 def MapToMinusPiToPi(angles: Any) -> np.ndarray:
-    """Angles between -π and π that stand for the same directions [rad]."""
+    """Angles wrapped to the interval from -π to π [rad]."""
     within_a_turn = np.fmod(angles, 2 * pi)
     too_far = np.where(within_a_turn >= pi, 1.0, np.where(within_a_turn < -pi, -1.0, 0.0))
     return within_a_turn - 2 * pi * too_far
 
 
 class Minitaur(MinitaurDynamics):
-    """A Minitaur in a world that is there already; see `MinitaurBody`.
+    """A Minitaur in an existing world; see `MinitaurBody`.
 
-    What its sensors tell is what was `control_latency` ago, with noise; its motors' controllers see what was
-    `pd_latency` ago. Methods with `True` in their names tell what is.
+    Observed sensor readings are `control_latency` old, with noise; the motors' controllers use readings that
+    are `pd_latency` old. Methods with `True` in their names return present values without noise.
 
     Attributes:
-        np_random: Where noise comes from.
+        np_random: Random number generator of the noise.
     """
 
     def __init__(
@@ -86,27 +86,27 @@ class Minitaur(MinitaurDynamics):
         motor_overheat_protection: bool = False,
         on_rack: bool = False,
     ) -> None:
-        """Loads it.
+        """Loads the robot.
 
         Args:
             pybullet_client: The world.
-            urdf_root: The folder of the files; that of `pybullet_data` where not given.
-            time_step: Of the simulation [s].
-            action_repeat: How many steps of the simulation `Step` makes.
-            self_collision_enabled: Whether its links touch each other.
-            motor_velocity_limit: How fast commands may lead the motors [rad/s].
+            urdf_root: Folder of the files; by default that of `pybullet_data`.
+            time_step: Time step of the simulation [s].
+            action_repeat: Number of simulation steps of `Step`.
+            self_collision_enabled: Whether the links collide with each other.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
-            accurate_motor_model_enabled: Whether torques of a model of the motors do.
-            remove_default_joint_damping: Whether its links move through the air without damping.
-            motor_kp: Gain for angles, of the model of the motors.
-            motor_kd: Gain for velocities.
-            pd_latency: How old what the motors' controllers see is [s].
-            control_latency: How old what the sensors tell is [s].
-            observation_noise_stdev: Standard deviations of angles, velocities and torques of the motors, and
-                of the angles and angular velocities of the base.
-            torque_control_enabled: Whether commands are duty cycles for the model of the motors.
-            motor_overheat_protection: Whether a motor of that model that strains for a second is shut off.
-            on_rack: Whether the base is fixed, in the air.
+            accurate_motor_model_enabled: Whether torques of a motor model drive the motors.
+            remove_default_joint_damping: Whether linear and angular damping of the robot are 0.
+            motor_kp: Position gain of the motor model.
+            motor_kd: Velocity gain of the motor model.
+            pd_latency: Age of the readings that the motors' controllers use [s].
+            control_latency: Age of the observed sensor readings [s].
+            observation_noise_stdev: Standard deviations of the noise of motor angles, velocities and
+                torques, and of angles and angular velocities of the base.
+            torque_control_enabled: Whether commands are duty cycles for the motor model.
+            motor_overheat_protection: Whether the motor model shuts a motor off after 1 s of high torque.
+            on_rack: Whether the base is fixed in the air.
         """
         model = (
             MotorModel(torque_control_enabled, motor_kp, motor_kd) if accurate_motor_model_enabled else None
@@ -138,13 +138,13 @@ class Minitaur(MinitaurDynamics):
     def Reset(
         self, reload_urdf: bool = True, default_motor_angles: Any = None, reset_time: float = 3.0
     ) -> None:
-        """Takes it to where it begins, and lets it come to stand.
+        """Resets the robot to its start, and lets it settle on its legs.
 
         Args:
-            reload_urdf: Whether to load it anew, or to put back the one that is there.
-            default_motor_angles: Where the motors go after a hundred steps at a quarter turn [rad], (8,).
-            reset_time: How long they do [s]. Where it is not positive, and under torque control, the robot
-                does not come to stand at all.
+            reload_urdf: Whether to load it again; otherwise, it is moved to the start.
+            default_motor_angles: Motor angles to hold, after 100 steps at a quarter turn [rad], (8,).
+            reset_time: Time for which they are held [s]. If it is not positive, or with torque control, the
+                robot does not settle at all.
         """
         position = INIT_RACK_POSITION if self._on_rack else INIT_POSITION
         if reload_urdf:
@@ -162,15 +162,15 @@ class Minitaur(MinitaurDynamics):
             self._advance(np.full(self.num_motors, pi / 2), _STANDING_STEPS)
             if default_motor_angles is not None:
                 self._advance(default_motor_angles, int(reset_time / self.time_step))
-        # Delayed readings of the first steps depend on this one, which tells the last again, as in PyBullet.
+        # As in PyBullet the last reading is recorded twice; delayed readings of the first steps depend on it.
         self.ReceiveObservation()
 
     def Step(self, action: Any, before_each: Callable[[int], None] | None = None) -> None:
-        """Applies commands for as many steps of the simulation as an action is repeated.
+        """Applies commands for one environment step, that is for `action_repeat` simulation steps.
 
         Args:
-            action: As `ApplyAction` takes it.
-            before_each: Called before each of the steps, with its number.
+            action: Commands, see `ApplyAction`.
+            before_each: Called before each simulation step, with its index.
         """
         self._advance(action, self._action_repeat, before_each)
         self._step_counter += self._action_repeat
@@ -184,14 +184,14 @@ class Minitaur(MinitaurDynamics):
             self.ReceiveObservation()
 
     def Terminate(self) -> None:
-        """Ends an episode; a real robot would be shut down."""
+        """Called at the end of an episode; does nothing (a real robot would be shut down)."""
 
     def GetTimeSinceReset(self) -> float:
-        """How long `Step` has moved it since it was reset [s]."""
+        """Simulated time of all calls of `Step` since the reset [s]."""
         return self._step_counter * self.time_step
 
     def SetTimeSteps(self, action_repeat: int, simulation_step: float) -> None:
-        """Sets how often an action is repeated, and the step of the simulation [s]."""
+        """Sets the number of simulation steps of `Step`, and the time step of the simulation [s]."""
         self.time_step = simulation_step
         self._action_repeat = action_repeat
 
@@ -199,9 +199,9 @@ class Minitaur(MinitaurDynamics):
         """Sets the motors for the next step of the simulation.
 
         Args:
-            motor_commands: Angles [rad] for the motors, or duty cycles under torque control, shape (8,).
-            motor_kps: Gains for angles, (8,); the robot's where not given. For torques only.
-            motor_kds: Gains for velocities, (8,).
+            motor_commands: Angles [rad] for the motors, or duty cycles with torque control, shape (8,).
+            motor_kps: Position gains, (8,); by default the robot's. Only for motors driven by torques.
+            motor_kds: Velocity gains, (8,), likewise.
         """
         self._drive(motor_commands, motor_kps, motor_kds)
 
@@ -215,15 +215,15 @@ class Minitaur(MinitaurDynamics):
         return torques, torques
 
     def IsObservationValid(self) -> bool:
-        """Whether the sensors tell something; in a simulation they do."""
+        """Whether the sensor readings are valid; in a simulation they always are."""
         return True
 
     def ReceiveObservation(self) -> None:
-        """Reads the sensors; until it is called again they tell the same."""
+        """Reads the sensors; observed readings stay the same until the next call."""
         self._observation_history.appendleft(self.GetTrueObservation())
 
     def _delayed(self, latency: float) -> np.ndarray:
-        """What the sensors read so long ago, between two readings where it falls there."""
+        """Sensor readings that are `latency` old, interpolated between two recorded ones."""
         history = self._observation_history
         ago = max(0.0, latency / self.time_step)
         before = int(ago)
@@ -240,7 +240,7 @@ class Minitaur(MinitaurDynamics):
         return values + self.np_random.normal(scale=deviation, size=values.shape) if deviation > 0 else values
 
     def GetTrueObservation(self) -> np.ndarray:
-        """All that sensors read, as it is now.
+        """Present values of all sensors.
 
         Returns:
             Angles [rad], velocities [rad/s] and torques [N m] of the motors, orientation and angular velocity
@@ -250,58 +250,58 @@ class Minitaur(MinitaurDynamics):
         return np.concatenate((*self._motor_states(), self._orientation(), turning))
 
     def GetTrueMotorAngles(self) -> np.ndarray:
-        """Angles of the motors now [rad], (8,)."""
+        """Present angles of the motors [rad], (8,)."""
         return self._motor_states()[0]
 
     def GetMotorAngles(self) -> np.ndarray:
-        """Angles of the motors as sensed, between -π and π [rad], (8,)."""
+        """Observed angles of the motors, between -π and π [rad], (8,)."""
         return MapToMinusPiToPi(self._noisy(self._sensed(_ANGLES), 0))
 
     def GetTrueMotorVelocities(self) -> np.ndarray:
-        """Velocities of the motors now [rad/s], (8,)."""
+        """Present velocities of the motors [rad/s], (8,)."""
         return self._motor_states()[1]
 
     def GetMotorVelocities(self) -> np.ndarray:
-        """Velocities of the motors as sensed [rad/s], (8,)."""
+        """Observed velocities of the motors [rad/s], (8,)."""
         return self._noisy(self._sensed(_VELOCITIES), 1)
 
     def GetTrueMotorTorques(self) -> np.ndarray:
-        """Torques of the motors now [N m], (8,)."""
+        """Present torques of the motors [N m], (8,)."""
         return self._motor_states()[2]
 
     def GetMotorTorques(self) -> np.ndarray:
-        """Torques of the motors as sensed [N m], (8,)."""
+        """Observed torques of the motors [N m], (8,)."""
         return self._noisy(self._sensed(_TORQUES), 2)
 
     def GetTrueBaseOrientation(self) -> tuple[float, float, float, float]:
-        """Orientation of the base now (x, y, z, w)."""
+        """Present orientation of the base (x, y, z, w)."""
         return self._orientation()
 
     def GetBaseOrientation(self) -> tuple[float, float, float, float]:
-        """Orientation of the base as sensed (x, y, z, w)."""
+        """Observed orientation of the base (x, y, z, w)."""
         return self._pybullet_client.getQuaternionFromEuler(self.GetBaseRollPitchYaw())
 
     def GetTrueBaseRollPitchYaw(self) -> np.ndarray:
-        """Euler angles of the base now [rad], (3,)."""
+        """Present Euler angles of the base [rad], (3,)."""
         return np.array(self._pybullet_client.getEulerFromQuaternion(self._orientation()))
 
     def GetBaseRollPitchYaw(self) -> np.ndarray:
-        """Euler angles of the base as sensed [rad], (3,)."""
+        """Observed Euler angles of the base [rad], (3,)."""
         angles = self._pybullet_client.getEulerFromQuaternion(self._sensed(_ORIENTATION))
         return self._noisy(np.array(angles), 3)
 
     def GetTrueBaseRollPitchYawRate(self) -> np.ndarray:
-        """Angular velocity of the base now, in the world's frame [rad/s], (3,)."""
+        """Present angular velocity of the base, in world axes [rad/s], (3,)."""
         return np.array(self._pybullet_client.getBaseVelocity(self.quadruped)[1])
 
     def GetBaseRollPitchYawRate(self) -> np.ndarray:
-        """Angular velocity of the base as sensed, in the world's frame [rad/s], (3,)."""
+        """Observed angular velocity of the base, in world axes [rad/s], (3,)."""
         return self._noisy(self._sensed(_TURNING), 4)
 
     def SetControlLatency(self, latency: float) -> None:
-        """Sets how old what the sensors tell is [s]."""
+        """Sets the age of the observed sensor readings [s]."""
         self._control_latency = latency
 
     def GetControlLatency(self) -> float:
-        """How old what the sensors tell is [s]."""
+        """Age of the observed sensor readings [s]."""
         return self._control_latency

@@ -1,4 +1,4 @@
-"""A Minitaur that lifts two of its legs, then the two others."""
+"""An environment with a Minitaur that alternately lifts two legs and the other two."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ STEP_PERIOD = 1.0 / 3.0
 STEP_AMPLITUDE = 0.75
 _MOST_ACTION = 0.1
 _UPRIGHT = 0.85
-# Which legs are lifted in a period, and which in the next: those at opposite corners.
+# Legs that are lifted in one period and in the next: those at opposite corners.
 _LIFTED = ((0.0, 1.0, 1.0, 0.0), (1.0, 0.0, 0.0, 1.0))
 
 
 class MinitaurAlternatingLegsEnv(BentLegsEnv):
-    """A Minitaur steps on the spot, with three steps a second; it is to keep its balance.
+    """A Minitaur steps on the spot, with three steps per second, and learns to keep its balance.
 
-    Observation: roll, pitch less what is wished for [rad], and their rates [rad/s]. Action: swing of each leg
-    and then its extension, added to those of the gait, up to 0.1 rad. Reward: 1 for each step. An episode
-    ends when the robot leans by more than 32 degrees.
+    Observation: roll, pitch minus desired pitch [rad], and their rates [rad/s]. Action: swing of each leg,
+    then extension of each leg, added to the gait, up to 0.1 rad. Reward: 1 per step. An episode ends when the
+    base is tilted by more than 32 degrees.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 66}  # noqa: RUF012  # as Gymnasium has it
@@ -46,7 +46,7 @@ class MinitaurAlternatingLegsEnv(BentLegsEnv):
         log_path: str | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """Makes the environment; all arguments are as of `MinitaurGymEnv`."""
+        """Makes the environment; for the arguments see `MinitaurGymEnv`."""
         super().__init__(
             actions=NUM_MOTORS,
             bound=_MOST_ACTION,
@@ -78,7 +78,7 @@ class MinitaurAlternatingLegsEnv(BentLegsEnv):
         return pose
 
     def is_fallen(self) -> bool:
-        """Whether the base leans by more than 32 degrees."""
+        """Whether the base is tilted by more than 32 degrees."""
         return bool(self._up()[2] < _UPRIGHT)
 
     def _reward(self) -> float:

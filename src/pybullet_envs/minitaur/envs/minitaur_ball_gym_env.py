@@ -1,4 +1,4 @@
-"""A Minitaur that walks to a ball."""
+"""An environment with a Minitaur that walks to a ball."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ _RATE = 200.0
 
 
 class MinitaurBallGymEnv(MinitaurGymEnv):
-    """A ball lies 5 m away; a Minitaur that walks by itself is to be steered to it.
+    """A Minitaur with a given gait is steered to a ball 5 m away.
 
-    Observation: the direction [rad] and the distance [m] of the ball, as the robot sees it. Action: steering,
-    within -1 and 1. Reward: the distance in km, negative, and 1 on arrival, which ends the episode.
+    Observation: direction [rad], positive to the right, and distance [m] of the ball in the robot's frame.
+    Action: steering, from -1 to 1. Reward: the negative distance in km, plus 1 on arrival, which ends the
+    episode.
     """
 
     _camera = (2.0, -70.0, -30.0)
@@ -41,7 +42,7 @@ class MinitaurBallGymEnv(MinitaurGymEnv):
     ) -> None:
         """Makes the environment; see `MinitaurGymEnv` for the arguments.
 
-        Without `leg_model_enabled` the robot does not walk, and an action is the angle of all motors [rad].
+        Without `leg_model_enabled` there is no gait, and an action is the angle of all motors [rad].
         """
         super().__init__(
             urdf_root=urdf_root,

@@ -1,4 +1,4 @@
-"""The Minitaur called Derpy: lower legs of different lengths, measured on the real one."""
+"""The Minitaur called Derpy: lower legs of different lengths, measured on the real robot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ KNEE_CONSTRAINT_POINT_SHORT = (0.0, 0.0055, 0.100)
 
 
 class MinitaurDerpy(Minitaur):
-    """As `Minitaur`, from another file; neighbouring links do not touch."""
+    """Like `Minitaur`, but from another file; links do not collide with their parents."""
 
     _file = "quadruped/minitaur_derpy.urdf"
     _knee_joint = "knee_{}{}_joint"

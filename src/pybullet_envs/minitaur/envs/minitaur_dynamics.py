@@ -1,4 +1,4 @@
-"""What of a Minitaur can be changed: masses, inertias, friction, and the strength of its motors."""
+"""Parameters of a Minitaur that can be changed: masses, inertias, friction and motor strength."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from pybullet_envs.minitaur_bases import MinitaurBody
 
 
 class MinitaurDynamics(MinitaurBody):
-    """A Minitaur that remembers what its file says of masses and inertias.
+    """A Minitaur that stores the masses and inertias of its file.
 
-    Lists for the base have an entry for each link of the chassis; lists for the legs have one for each link
-    of the legs, 16, and then one for each motor, 8.
+    Lists for the base have a value for each link of the chassis; lists for the legs have one for each of the
+    16 leg links, and then one for each of the 8 motors.
     """
 
     def _record_dynamics(self) -> None:
@@ -33,11 +33,11 @@ class MinitaurDynamics(MinitaurBody):
 
     @property
     def chassis_link_ids(self) -> list[int]:
-        """Links of the chassis; -1 is the base."""
+        """Indices of the links of the chassis; -1 is the base."""
         return self._chassis_link_ids
 
     def GetBaseMassesFromURDF(self) -> list[float]:
-        """Masses of the chassis in its file [kg]."""
+        """Masses of the chassis in the file [kg]."""
         return self._base_mass_urdf
 
     def GetBaseInertiasFromURDF(self) -> list[tuple[float, float, float]]:
@@ -56,7 +56,7 @@ class MinitaurDynamics(MinitaurBody):
         """Sets the masses of the chassis [kg].
 
         Raises:
-            ValueError: There are more or fewer than links.
+            ValueError: The number of values is not the number of links.
         """
         self._set_each(self._chassis_link_ids, base_mass, "mass")
 
@@ -64,7 +64,7 @@ class MinitaurDynamics(MinitaurBody):
         """Sets the masses of legs and motors [kg].
 
         Raises:
-            ValueError: There are more or fewer than links.
+            ValueError: The number of values is not the number of links.
         """
         self._set_each(self._moved_links(), leg_masses, "mass")
 
@@ -72,7 +72,7 @@ class MinitaurDynamics(MinitaurBody):
         """Sets the principal moments of inertia of the chassis [kg m²].
 
         Raises:
-            ValueError: There are more or fewer than links, or one is negative.
+            ValueError: The number of values is not the number of links, or one is negative.
         """
         self._set_each(self._chassis_link_ids, base_inertias, "localInertiaDiagonal")
 
@@ -80,7 +80,7 @@ class MinitaurDynamics(MinitaurBody):
         """Sets the principal moments of inertia of legs and motors [kg m²].
 
         Raises:
-            ValueError: There are more or fewer than links, or one is negative.
+            ValueError: The number of values is not the number of links, or one is negative.
         """
         self._set_each(self._moved_links(), leg_inertias, "localInertiaDiagonal")
 
@@ -92,7 +92,7 @@ class MinitaurDynamics(MinitaurBody):
         self._set_dynamics(links, values, what)
 
     def SetFootRestitution(self, foot_restitution: float) -> None:
-        """Sets how much all feet bounce."""
+        """Sets the restitution of all feet."""
         self._set_dynamics(self._foot_link_ids, [foot_restitution] * self.GetNumKneeJoints(), "restitution")
 
     def SetJointFriction(self, joint_frictions: Sequence[float]) -> None:
@@ -103,25 +103,25 @@ class MinitaurDynamics(MinitaurBody):
             )
 
     def GetNumKneeJoints(self) -> int:
-        """How many knees there are, two for each leg."""
+        """The number of knees: two for each leg."""
         return len(self._foot_link_ids)
 
     def SetMotorGains(self, kp: float, kd: float) -> None:
-        """Sets the gains of all motors, for angles and for velocities."""
+        """Sets the position gain and the velocity gain of all motors."""
         self._kp = kp
         self._kd = kd
         if self._motor_model is not None:
             self._motor_model.set_motor_gains(kp, kd)
 
     def GetMotorGains(self) -> tuple[float, float]:
-        """The gains of the motors, for angles and for velocities."""
+        """Position gain and velocity gain of the motors."""
         return self._kp, self._kd
 
     def SetMotorStrengthRatio(self, ratio: float) -> None:
-        """Sets the share of its torque that every motor has, where there is a model of them."""
+        """Sets the torque factor of all motors, if there is a motor model."""
         self.SetMotorStrengthRatios([ratio] * self.num_motors)
 
     def SetMotorStrengthRatios(self, ratios: Any) -> None:
-        """Sets the shares of its torque that each motor has, where there is a model of them."""
+        """Sets the torque factor of each motor, (8,), if there is a motor model."""
         if self._motor_model is not None:
             self._motor_model.set_strength_ratios(ratios)

@@ -1,4 +1,4 @@
-"""A Minitaur that remembers what it saw and did."""
+"""An environment with a Minitaur whose observations contain earlier actions and observations."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _JERKINESS = 0.1
 
 
 class MinitaurExtendedEnv(MinitaurReactiveEnv):
-    """As `MinitaurReactiveEnv`, with the latest actions and observations among what is observed.
+    """Like `MinitaurReactiveEnv`, but observations also contain the latest actions and observations.
 
-    Observation: that of `MinitaurReactiveEnv`; then, as it is made, earlier ones and earlier actions, the
-    latest first, changes of the motors' angles and of these changes [rad], the base's position [m], and the
-    pose of the legs [rad]. Action: within -1 and 1. Reward: the velocity along x, up to 0.5 m/s, less a tenth
-    of how unsteady the actions are. An episode ends after 500 steps, or when a leg of the left swings by more
-    than 0.8 rad in front, or on the right in front.
+    Observation: that of `MinitaurReactiveEnv`; then, depending on the arguments, earlier observations and
+    earlier actions, the latest first, first and second differences of the motor angles [rad], position of the
+    base [m], and pose of the legs [rad]. Action: from -1 to 1. Reward: the velocity along x, up to 0.5 m/s,
+    minus a tenth of the mean magnitude of the second differences of the actions. An episode ends after 500
+    steps, or when a front leg swings by more than 0.8 rad.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 50}  # noqa: RUF012  # as Gymnasium has it
@@ -46,16 +46,16 @@ class MinitaurExtendedEnv(MinitaurReactiveEnv):
         """Makes the environment.
 
         Args:
-            history_length: How many steps are remembered in observations.
-            history_include_actions: Whether their actions are.
-            history_include_states: Whether what was observed is.
-            include_state_difference: Whether changes of the motors' angles are observed.
-            include_second_state_difference: Whether changes of these changes are.
-            include_base_position: Whether the position of the base is.
-            include_leg_model: Whether the pose of the legs is.
+            history_length: Number of earlier steps in observations.
+            history_include_actions: Whether the actions of these steps are observed.
+            history_include_states: Whether the observations of these steps are observed.
+            include_state_difference: Whether differences of the motor angles are observed.
+            include_second_state_difference: Whether second differences of the motor angles are observed.
+            include_base_position: Whether the position of the base is observed.
+            include_leg_model: Whether the pose of the legs is observed.
             never_terminate: Whether episodes never end by themselves.
-            action_scale: What an action of 1 stands for [rad].
-            **kwargs: Of `MinitaurReactiveEnv`; angles of the motors are observed in any case.
+            action_scale: Motor angle for an action of 1 [rad].
+            **kwargs: Arguments of `MinitaurReactiveEnv`; motor angles are always observed.
         """
         self._keywords = {
             "history_length": history_length,
@@ -100,10 +100,10 @@ class MinitaurExtendedEnv(MinitaurReactiveEnv):
         self._past_actions.clear()
 
     def step(self, action: Any) -> Step:
-        """Moves on.
+        """Applies an action for one step.
 
         Returns:
-            As always; the dictionary has the reward as `base_reward`.
+            The five values of `step`; the info dictionary has the reward as `base_reward`.
 
         Raises:
             ValueError: The action is not eight finite numbers.
@@ -123,7 +123,7 @@ class MinitaurExtendedEnv(MinitaurReactiveEnv):
         if self._remembers_states:
             parts += [_back(self._past_states, step) for step in steps]
         if self._remembers_actions:
-            # Before there are any, the legs stand.
+            # Before the first action, the legs stand.
             actions = self._past_actions or [np.zeros(NUM_MOTORS)]
             parts += [_back(actions, step - 1) for step in steps]
         now, before, earlier = (_back(self._past_states, step)[-NUM_MOTORS:] for step in range(3))
@@ -150,19 +150,19 @@ class MinitaurExtendedEnv(MinitaurReactiveEnv):
         return float(velocity - _JERKINESS * np.abs(now - 2 * before + earlier).mean())
 
     def reward(self) -> float:
-        """The reward of the step that was made last."""
+        """The reward of the last step."""
         return self._reward()
 
     @staticmethod
     def convert_to_leg_model(motor_angles: Any) -> np.ndarray:
-        """The pose of the legs: swing of each and then its extension [rad], (8,), of angles of the motors."""
+        """Pose of the legs at given motor angles: swings, then extensions [rad], (8,)."""
         return pose_of(motor_angles)
 
     def terminate(self) -> None:
-        """Ends the world, as `close`."""
+        """Closes the world, like `close`."""
         self.close()
 
 
 def _back(past: list[np.ndarray], steps: int) -> np.ndarray:
-    """What was so many steps before the last, or at first."""
+    """The entry `steps` before the last one, or the first one if there are fewer."""
     return past[max(len(past) - 1 - steps, 0)]

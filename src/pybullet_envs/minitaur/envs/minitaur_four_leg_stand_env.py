@@ -1,4 +1,4 @@
-"""A Minitaur that stands on a floor which tilts."""
+"""An environment with a Minitaur that stands on a tilting floor."""
 
 from __future__ import annotations
 
@@ -17,12 +17,11 @@ _AT_ORIGIN, _LEVEL = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
 class MinitaurFourLegStandEnv(BentLegsEnv):
-    """The floor tilts this way and that, and a Minitaur on it is to stay level.
+    """A Minitaur learns to stay level on a floor that tilts at random.
 
-    Observation: roll and pitch [rad]; their rates [rad/s] and the angles of the motors [rad], if wished.
-    Action: extension of each leg, added to that of a stand, up to 1 rad. Reward: the greater, the less the
-    robot leans, up to 1000. An episode ends when it leans by more than 32 degrees, or is less than 15 cm
-    high.
+    Observation: roll and pitch [rad]; optionally their rates [rad/s] and the motor angles [rad]. Action:
+    extension of each leg, added to that of a stand, up to 1 rad. Reward: 1 / (0.001 + |roll| + |pitch|), at
+    most 1000. An episode ends when the base is tilted by more than 32 degrees, or is less than 15 cm high.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 166}  # noqa: RUF012  # as Gymnasium has it
@@ -48,8 +47,8 @@ class MinitaurFourLegStandEnv(BentLegsEnv):
     ) -> None:
         """Makes the environment; see `MinitaurGymEnv` for the arguments that have the same names.
 
-        `use_angular_velocity_in_observation` says whether the rates of roll and pitch are observed,
-        `use_motor_angle_in_observation` whether the angles of the motors are.
+        With `use_angular_velocity_in_observation` the rates of roll and pitch are observed, with
+        `use_motor_angle_in_observation` the motor angles.
         """
         self._tilts = np.array((_LEVEL, _LEVEL))
         super().__init__(
@@ -78,7 +77,7 @@ class MinitaurFourLegStandEnv(BentLegsEnv):
         )
 
     def _disturb(self) -> None:
-        """Tilts the floor a little further to where it goes, which changes once in a hundred steps."""
+        """Tilts the floor a little further to its target, which changes every 100 steps."""
         part, whole = self._env_step_counter % MOVING_FLOOR_TOTAL_STEP, MOVING_FLOOR_TOTAL_STEP
         if part == 0:
             _, now = self._p.getBasePositionAndOrientation(self._ground_id)
@@ -92,7 +91,7 @@ class MinitaurFourLegStandEnv(BentLegsEnv):
         return super()._transform_action_to_motor_command(np.concatenate((np.zeros(NUM_LEGS), action)))
 
     def is_fallen(self) -> bool:
-        """Whether the base leans by more than 32 degrees, or is less than 15 cm high."""
+        """Whether the base is tilted by more than 32 degrees, or less than 15 cm high."""
         return bool(self._up()[2] < _UPRIGHT or self.minitaur.GetBasePosition()[2] < _LOWEST)
 
     def _reward(self) -> float:

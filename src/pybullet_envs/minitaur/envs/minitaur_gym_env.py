@@ -1,4 +1,4 @@
-"""A Minitaur with lagging sensors that learns to walk, and what all its environments are made from."""
+"""An environment with a Minitaur with sensor latency that learns to walk; base class of the other ones."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ MINIATUR_URDF_VERSION_MAP: dict[str, Callable[..., Minitaur]] = {
     RAINBOW_DASH_V0_URDF_VERSION: MinitaurRainbowDash,
 }
 NUM_SIMULATION_ITERATION_STEPS = 300
-# With torques, without, in seconds and steps of the simulation.
+# With and without torque-driven motors: environment step [s], and its number of simulation steps.
 _STEPS = {True: (0.01, 5), False: (0.01, 1)}
 
 Randomizers = EnvRandomizerBase | Iterable[EnvRandomizerBase] | None
 
 
 class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
-    """A Minitaur is to come far along x, and to spend little.
+    """A Minitaur learns to walk far along x with little energy.
 
-    Observation: angles [rad], velocities [rad/s] and torques [N m] of the eight motors, and the orientation
-    of the base, all as sensed. Action: how each leg swings and then how far each is stretched, within -1 and
-    1. Reward: the way forward, less energy, drift and leaning, by their weights. An episode ends with a fall.
+    Observation: observed angles [rad], velocities [rad/s] and torques [N m] of the eight motors, and
+    orientation of the base. Action: swing of each leg, then extension of each leg, from -1 to 1. Reward:
+    weighted sum of forward progress, minus energy, drift and tilt. An episode ends with a fall.
 
     Attributes:
-        control_time_step: How long a step of the environment is [s].
+        control_time_step: Duration of an environment step [s].
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 100}  # noqa: RUF012  # as Gymnasium has it
@@ -84,42 +84,41 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         """Makes the environment.
 
         Args:
-            urdf_root: The folder of the files; that of `pybullet_data` where not given.
-            urdf_version: Which robot: `default`, `derpy_v0` or `rainbow_dash_v0`; the first where not given.
-            distance_weight: Of the way forward [1/m].
-            energy_weight: Of the energy spent [1/J].
-            shake_weight: Of leaning, to the sum of the sines of both angles.
-            drift_weight: Of the way aside [1/m].
-            distance_limit: How far away from its start the robot may walk [m].
-            observation_noise_stdev: Of the sensors; see `Minitaur`.
-            self_collision_enabled: Whether the robot's links touch each other.
-            motor_velocity_limit: How fast commands may lead the motors [rad/s].
+            urdf_root: Folder of the files; by default that of `pybullet_data`.
+            urdf_version: The robot: `default`, `derpy_v0` or `rainbow_dash_v0`; by default the first.
+            distance_weight: Weight of forward progress [1/m].
+            energy_weight: Weight of the energy spent [1/J].
+            shake_weight: Weight of the tilt: of the sum of the sines of both angles.
+            drift_weight: Weight of sideways motion [1/m].
+            distance_limit: Distance from the start at which an episode ends [m].
+            observation_noise_stdev: Standard deviations of the sensor noise; see `Minitaur`.
+            self_collision_enabled: Whether the robot's links collide with each other.
+            motor_velocity_limit: Velocity limit [rad/s]: commands are clipped to the range of one time step.
             pd_control_enabled: Whether torques of a PD controller drive the motors.
-            leg_model_enabled: Whether actions say how legs swing and stretch, or where motors go [rad].
-            accurate_motor_model_enabled: Whether torques of a model of the motors drive them.
-            remove_default_joint_damping: Whether links move through the air without damping.
-            motor_kp: Gain for angles, of the model of the motors.
-            motor_kd: Gain for velocities.
-            control_latency: How old what the sensors tell is [s].
-            pd_latency: How old what the motors' controllers see is [s].
-            torque_control_enabled: Whether commands are duty cycles for the model of the motors.
-            motor_overheat_protection: Whether a motor of that model that strains for a second is shut off.
-            hard_reset: Whether each `reset` loads everything anew, or puts the robot back.
-            on_rack: Whether the robot's base is fixed, in the air.
+            leg_model_enabled: Whether actions are swing and extension of legs, or motor angles [rad].
+            accurate_motor_model_enabled: Whether torques of a motor model drive the motors.
+            remove_default_joint_damping: Whether linear and angular damping of the robot are 0.
+            motor_kp: Position gain of the motor model.
+            motor_kd: Velocity gain of the motor model.
+            control_latency: Age of the observed sensor readings [s].
+            pd_latency: Age of the readings that the motors' controllers use [s].
+            torque_control_enabled: Whether commands are duty cycles for the motor model.
+            motor_overheat_protection: Whether the motor model shuts a motor off after 1 s of high torque.
+            hard_reset: Whether each `reset` loads everything again, or restores the state.
+            on_rack: Whether the base is fixed in the air.
             render: Whether to open a window.
-            num_steps_to_log: How many steps of an episode are logged at most.
-            action_repeat: Steps of the simulation for each of the environment. Of effect with
-                `control_time_step`; else it is 5 where torques drive the motors, and 1 where not.
-            control_time_step: How long a step of the environment is [s]; 0.01 where not given.
-            env_randomizer: What changes the robot at each `reset`, and disturbs it: one or several.
-            forward_reward_cap: The most that a step's way forward counts [m].
-            reflection: Whether the ground reflects; pictures here have no reflections.
-            log_path: A folder for logs of the episodes, for which `protobuf` is needed; none are written
-                where not given.
+            num_steps_to_log: Maximum number of logged steps per episode.
+            action_repeat: Number of simulation steps per environment step. It is used with
+                `control_time_step` only; otherwise it is 5 if torques drive the motors, and 1 if not.
+            control_time_step: Duration of an environment step [s]; by default 0.01.
+            env_randomizer: One or several randomizers that change the robot at each `reset`, and disturb it.
+            forward_reward_cap: Upper limit of the forward progress per step in the reward [m].
+            reflection: No effect; images of Carom have no reflections.
+            log_path: Folder for logs of the episodes, which need `protobuf`; by default, no logs are written.
             render_mode: `human`, `rgb_array` or none.
 
         Raises:
-            ValueError: There is no such `urdf_version`.
+            ValueError: `urdf_version` is unknown.
         """
         version = DEFAULT_URDF_VERSION if urdf_version is None else urdf_version
         if version not in MINIATUR_URDF_VERSION_MAP:
@@ -166,7 +165,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         self.logging: Any = None
         self._episode: Any = None
         if log_path is not None:
-            # Logs alone need protobuf.
+            # Only logs need protobuf.
             from pybullet_envs.minitaur.envs.minitaur_logging import MinitaurLogging
 
             self.logging = MinitaurLogging(log_path)
@@ -180,7 +179,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
 
     @property
     def ground_id(self) -> int:
-        """The ground."""
+        """Id of the ground."""
         self._begin_if_needed()
         return self._ground_id
 
@@ -190,27 +189,27 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
 
     @property
     def env_step_counter(self) -> int:
-        """Steps since the episode began."""
+        """Number of environment steps since the episode began."""
         return self._env_step_counter
 
     @property
     def objective_weights(self) -> list[float]:
-        """The weights of what `get_objectives` lists."""
+        """The weights of the terms in `get_objectives`."""
         return self._objective_weights
 
     def add_env_randomizer(self, env_randomizer: EnvRandomizerBase) -> None:
-        """Adds something that changes or disturbs the robot."""
+        """Adds a randomizer that changes or disturbs the robot."""
         self._env_randomizers.append(env_randomizer)
 
     def set_time_step(self, control_step: float, simulation_step: float = 0.001) -> None:
-        """Sets how long steps are, from now on.
+        """Sets the duration of steps, from now on.
 
         Args:
-            control_step: Of the environment [s].
-            simulation_step: Of the simulation [s].
+            control_step: Duration of an environment step [s].
+            simulation_step: Time step of the simulation [s].
 
         Raises:
-            ValueError: The environment's is shorter than the simulation's.
+            ValueError: The environment step is shorter than the simulation step.
         """
         if control_step < simulation_step:
             raise ValueError("Control step should be larger than or equal to simulation step.")
@@ -233,7 +232,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         )
 
     def _initial_motor_angles(self) -> np.ndarray | None:
-        """Where the motors are when an episode begins [rad], (8,); where they come to stand if none."""
+        """Motor angles at the start of an episode [rad], (8,); None for those of the settled robot."""
         return None
 
     def reset(
@@ -247,16 +246,16 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         """Begins an episode.
 
         Args:
-            initial_motor_angles: Where the motors are to be [rad], (8,); the environment's where not given.
-            reset_duration: How long the robot has to come there [s].
-            seed: Of the random numbers.
-            options: Of no effect.
+            initial_motor_angles: Initial motor angles [rad], (8,); by default those of the environment.
+            reset_duration: Time for the motors to reach them [s].
+            seed: Seed of the random numbers.
+            options: No effect.
         """
         super().reset(seed=seed)
         self._save_log()
         self._renew_world()
-        # In PyBullet the robot comes to stand with a cone of friction where it was loaded just now, and with
-        # the pyramid that everything else has where it was put back.
+        # In PyBullet the robot settles with a friction cone if it has just been loaded, and with the friction
+        # pyramid of all other steps if its state was restored.
         self._p.setPhysicsEngineParameter(enableConeFriction=int(self._hard_reset))
         self.minitaur.np_random = self.np_random
         self.minitaur.Reset(
@@ -274,13 +273,13 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         return self._observe(), {}
 
     def _add_targets(self) -> None:
-        """Loads what comes into the world when the robot stands."""
+        """Loads bodies after the robot has settled; for subclasses."""
 
     def step(self, action: Any) -> Step:
-        """Moves on.
+        """Applies an action for one step.
 
         Raises:
-            ValueError: The action is not as many finite numbers as it should be, or one is out of bounds.
+            ValueError: The action has a wrong shape, a number that is not finite, or one out of bounds.
         """
         checked = self._checked(action)
         self._last_base_position: Place = self.minitaur.GetBasePosition()
@@ -302,14 +301,14 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         return self._observe(), reward, ended, False, {}
 
     def _disturb(self) -> None:
-        """Changes the surroundings before a step."""
+        """Changes the world before a step; for subclasses."""
 
     def _randomize_sub_step(self, number: int) -> None:
         for env_randomizer in self._env_randomizers:
             env_randomizer.randomize_sub_step(self, number, self._action_repeat)
 
     def close(self) -> None:
-        """Writes the log of the episode, and ends the world."""
+        """Writes the log of the episode, and closes the world."""
         self._save_log()
         self._env_step_counter = 0
         super().close()
@@ -336,7 +335,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         return np.array(self._get_observation(), np.float32)
 
     def _get_observation(self) -> np.ndarray:
-        """What is sensed."""
+        """The present observation, with latency and noise."""
         robot = self.minitaur
         self._observation = np.concatenate(
             (
@@ -349,9 +348,9 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
         return self._observation
 
     def _get_true_observation(self) -> np.ndarray:
-        """What would be sensed without delay and noise."""
+        """The present observation, without latency and noise."""
         return self.minitaur.GetTrueObservation()[:28]
 
     def _get_observation_upper_bound(self) -> np.ndarray:
-        """The greatest values of `_get_observation`."""
+        """Upper bounds of `_get_observation`."""
         return observation_bound()

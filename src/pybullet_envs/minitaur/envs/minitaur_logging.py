@@ -13,10 +13,10 @@ NUM_MOTORS = 8
 
 
 def preallocate_episode_proto(episode_proto: Any, max_num_steps: int) -> None:
-    """Makes room for so many steps at the end of an episode, a `MinitaurEpisode`."""
+    """Appends `max_num_steps` empty steps to an episode, a `MinitaurEpisode`."""
     for _ in range(max_num_steps):
         step = episode_proto.state_action.add()
-        # In PyBullet's logs these are there where nothing is known yet, and have no length.
+        # PyBullet's logs contain these messages, empty, also in steps that are not recorded.
         for name in ("time", "base_position", "base_orientation", "base_angular_vel"):
             getattr(step, name).SetInParent()
         for _ in range(NUM_MOTORS):
@@ -24,13 +24,13 @@ def preallocate_episode_proto(episode_proto: Any, max_num_steps: int) -> None:
 
 
 def update_episode_proto(episode_proto: Any, minitaur: Any, action: Any, step: int) -> None:
-    """Notes a step of an episode.
+    """Records a step of an episode.
 
     Args:
-        episode_proto: The episode; a step that it has no room for is left out, with a warning.
+        episode_proto: The episode; steps beyond those it has are not recorded, with a warning.
         minitaur: The robot.
-        action: What its motors were commanded, (8,).
-        step: The number of the step, from 0.
+        action: The commands of its motors, (8,).
+        step: Index of the step, from 0.
     """
     room = len(episode_proto.state_action)
     if step >= room:
@@ -63,11 +63,11 @@ class MinitaurLogging:
     """A folder of logs."""
 
     def __init__(self, log_path: str | None = None) -> None:
-        """Takes the folder, which is made when it is needed; without one nothing is written."""
+        """Sets the folder, which is created when needed; without one nothing is written."""
         self._log_path = log_path
 
     def save_episode(self, episode_proto: Any) -> str | None:
-        """Writes an episode; tells the file, whose name has the time, or the folder if there is nothing."""
+        """Writes an episode; returns the file, named by the time, or the folder if nothing is written."""
         if not self._log_path or not episode_proto.state_action:
             return self._log_path
         os.makedirs(self._log_path, exist_ok=True)
@@ -80,7 +80,7 @@ class MinitaurLogging:
         """Reads a `MinitaurEpisode` from a file.
 
         Raises:
-            google.protobuf.message.DecodeError: It is no log.
+            google.protobuf.message.DecodeError: The file is not a log.
         """
         with open(log_path, "rb") as log:
             return MinitaurEpisode.FromString(log.read())

@@ -1,6 +1,6 @@
 """The messages of the Minitaur's logs, in the format that PyBullet writes; needs `protobuf`.
 
-Made from the table below, and not by protoc, whose code goes with few versions of the library.
+Made from the table below, not by protoc, whose code works with few versions of the library only.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 _FIELD = descriptor_pb2.FieldDescriptorProto
 _PACKAGE = "robotics.reinforcement_learning.minitaur.envs"
 _VECTOR = dict.fromkeys("xyz", _FIELD.TYPE_DOUBLE)
-# Fields by name: a kind of number, or the name of a message, in a list where there may be many. Their numbers
-# count from 1.
+# Fields by name: a scalar type or the name of a message, in a list for repeated fields. Field numbers count
+# from 1.
 _MESSAGES: dict[str, dict[str, Any]] = {
     "Timestamp": {"seconds": _FIELD.TYPE_INT64, "nanos": _FIELD.TYPE_INT32},
     "Vector3d": _VECTOR,
@@ -46,7 +46,7 @@ def _classes() -> dict[str, Any]:
                 declared.type_name = f".{_PACKAGE}.{kind[0] if many else kind}"
             else:
                 declared.type = kind
-    # A pool of their own: scripts may have PyBullet's descriptions in the common one.
+    # A separate pool, because scripts may have PyBullet's descriptors in the default one.
     pool = descriptor_pool.DescriptorPool()
     pool.Add(file)
     return {

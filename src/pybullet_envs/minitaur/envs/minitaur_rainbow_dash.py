@@ -1,4 +1,4 @@
-"""The Minitaur called Rainbow Dash, measured on the real one."""
+"""The Minitaur called Rainbow Dash, measured on the real robot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ KNEE_CONSTRAINT_POINT_SHORT = (0.0, 0.0045, 0.100)
 
 
 class MinitaurRainbowDash(MinitaurDerpy):
-    """As `MinitaurDerpy`, from another file and with knees that meet elsewhere."""
+    """Like `MinitaurDerpy`, but from another file and with other knee constraints."""
 
     _file = "quadruped/minitaur_rainbow_dash.urdf"
     _long, _short = KNEE_CONSTRAINT_POINT_LONG, KNEE_CONSTRAINT_POINT_SHORT

@@ -1,4 +1,4 @@
-"""A Minitaur that walks without any gait given."""
+"""An environment with a Minitaur that learns to walk without a given gait."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ _MOST_ACTION = 0.5
 
 
 class MinitaurReactiveEnv(LegPoseEnv):
-    """A Minitaur is to come far along x, by what it does with its legs.
+    """A Minitaur learns to walk far along x, by swing and extension of its legs.
 
-    Observation: roll, pitch [rad], their rates [rad/s], and the angles of the motors [rad]. Action: swing of
-    each leg and then its extension, added to those of a stand, up to 0.5 rad. Reward: as `MinitaurGymEnv`. An
-    episode ends when the robot leans by more than 0.3 rad.
+    Observation: roll, pitch [rad], their rates [rad/s], and the motor angles [rad]. Action: swing of each
+    leg, then extension of each leg, added to those of a stand, up to 0.5 rad. Reward: that of
+    `MinitaurGymEnv`. An episode ends when roll or pitch is larger than 0.3 rad.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 166}  # noqa: RUF012  # as Gymnasium has it
@@ -43,7 +43,7 @@ class MinitaurReactiveEnv(LegPoseEnv):
     ) -> None:
         """Makes the environment; see `MinitaurGymEnv` for the arguments that have the same names.
 
-        `use_angle_in_observation` says whether the angles of the motors are observed.
+        With `use_angle_in_observation` the motor angles are observed.
         """
         super().__init__(
             actions=NUM_MOTORS,

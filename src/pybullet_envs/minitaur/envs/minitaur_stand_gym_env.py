@@ -1,4 +1,4 @@
-"""A Minitaur that stands up on its hind legs and stays there."""
+"""An environment with a Minitaur that stands up on its hind legs and balances."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ _MOST_RISING_STEPS = 5000
 _RISEN = 0.9
 _SHORTENED = 0.7
 _FRONT = np.array((1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0))
-# Up, the front legs stretch away from the ground and the hind legs to it.
+# Motor angles when upright: the front legs point away from the ground, the hind legs to it.
 _STANDING = np.array((pi, 0.0, 0.0, pi, 0.0, pi, pi, 0.0)) - _SHORTENED
 _BALANCING = np.array((0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 1.0, -1.0))
-# As the body rises, the front legs turn upward, and the hind legs downward.
+# Signs of the motor angles as the body rises: front legs rotate upward, hind legs downward.
 _RISING = np.array((1.0, -1.0, -1.0, 1.0, -1.0, 1.0, 1.0, -1.0))
-# Kicks with the front legs come when a slow sine is near its top.
+# The front legs kick when a slow sine is near its maximum.
 _KICK, _KICK_RATE, _KICK_ABOVE = 1.9, 0.01, 0.94
 
 
 class MinitaurStandGymEnv(MinitaurGymEnv):
-    """A Minitaur rises by itself, in the first step; then it is to keep upright.
+    """A Minitaur rises by itself, in the first step; then it learns to stay upright.
 
-    Observation: as `MinitaurGymEnv`. Action: how far the hind legs swing, within -1 and 1. Reward: the fourth
-    power of the sine of its pitch. An episode ends when that sine is less than 0.7.
+    Observation: that of `MinitaurGymEnv`. Action: swing of the hind legs, from -1 to 1. Reward: the fourth
+    power of the sine of the pitch. An episode ends when that sine is less than 0.7.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 50}  # noqa: RUF012  # as Gymnasium has it
@@ -48,7 +48,7 @@ class MinitaurStandGymEnv(MinitaurGymEnv):
         render: bool = False,
         render_mode: str | None = None,
     ) -> None:
-        """Makes the environment; all arguments are as of `MinitaurGymEnv`."""
+        """Makes the environment; for the arguments see `MinitaurGymEnv`."""
         super().__init__(
             urdf_root=urdf_root,
             action_repeat=action_repeat,
@@ -64,7 +64,7 @@ class MinitaurStandGymEnv(MinitaurGymEnv):
         self._set_spaces(1, self._action_bound, self._get_observation_upper_bound())
 
     def step(self, action: Any) -> Step:
-        """Rises, in the first step of an episode, whatever the action; moves on after that.
+        """Applies an action for one step; the first step of an episode ignores it and lets the robot rise.
 
         Raises:
             ValueError: The action is not one finite number.
@@ -84,7 +84,7 @@ class MinitaurStandGymEnv(MinitaurGymEnv):
         return self._observe(), self._reward(), self._termination(), False, {}
 
     def _rise(self, moment: int) -> np.ndarray:
-        """Angles of the motors [rad], (8,), to rise with at a step of the simulation."""
+        """Motor angles [rad], (8,), at a simulation step of rising."""
         up = pybullet.getMatrixFromQuaternion(self.minitaur.GetTrueBaseOrientation())[8]
         angles = pi / 2 - _SHORTENED + (1.0 - up) * pi / 2 * _RISING
         phase = _KICK_RATE * moment
@@ -93,7 +93,7 @@ class MinitaurStandGymEnv(MinitaurGymEnv):
         return angles
 
     def _steepness(self) -> float:
-        """Sine of the pitch, without its sign."""
+        """Magnitude of the sine of the pitch."""
         return abs(float(self._up()[0]))
 
     def _reward(self) -> float:

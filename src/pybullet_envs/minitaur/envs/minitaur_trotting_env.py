@@ -1,4 +1,4 @@
-"""A Minitaur that trots."""
+"""An environment with a Minitaur that trots."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ _PHASES = np.array((0.0, pi, pi, 0.0))
 
 
 class MinitaurTrottingEnv(LegPoseEnv):
-    """A Minitaur's feet go round in ellipses; it is to keep its balance and come far along x.
+    """A Minitaur whose feet move along ellipses learns to keep its balance and to walk far along x.
 
-    Observation: roll, pitch [rad] and their rates [rad/s]; angles of the motors, as they are to be by the
-    gait and as they are, if wished. Action: swing of each leg and then its extension, added to those of the
-    gait, up to 0.25 rad. Reward: as `MinitaurGymEnv`. An episode ends when the robot leans by more than 0.3
-    rad.
+    Observation: roll, pitch [rad] and their rates [rad/s]; optionally the motor angles of the gait and the
+    observed motor angles [rad]. Action: swing of each leg, then extension of each leg, added to those of the
+    gait, up to 0.25 rad. Reward: that of `MinitaurGymEnv`. An episode ends when roll or pitch is larger than
+    0.3 rad.
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 166}  # noqa: RUF012  # as Gymnasium has it
@@ -53,10 +53,10 @@ class MinitaurTrottingEnv(LegPoseEnv):
     ) -> None:
         """Makes the environment; see `MinitaurGymEnv` for the arguments that have the same names.
 
-        `use_signal_in_observation` says whether the angles of the motors are observed that the gait wants,
-        `use_angle_in_observation` whether those are that they have. In the middle of the gait legs have
-        `init_swing` and `init_extension` [rad]; the gait has the `step_frequency` [1/s] and takes them up to
-        `swing_amplitude` and `extension_amplitude` [rad] from there.
+        With `use_signal_in_observation` the motor angles of the gait are observed, with
+        `use_angle_in_observation` the observed motor angles. The gait moves swing and extension of the legs
+        around `init_swing` and `init_extension` [rad], with `step_frequency` [1/s] and the amplitudes
+        `swing_amplitude` and `extension_amplitude` [rad].
         """
         self._step_frequency = step_frequency
         self._extension_amplitude = extension_amplitude

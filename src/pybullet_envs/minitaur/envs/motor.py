@@ -1,4 +1,4 @@
-"""The motors of `pybullet_envs.minitaur.envs.minitaur`."""
+"""Motor model of `pybullet_envs.minitaur.envs.minitaur`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ NUM_MOTORS = 8
 
 
 class MotorModel(DcMotor):
-    """Motors whose controllers see the past, each with its own strength."""
+    """Motors whose controllers use delayed readings, each with its own torque factor."""
 
     def __init__(self, torque_control_enabled: bool = False, kp: float = 1.2, kd: float = 0) -> None:
         """Makes motors; see `DcMotor`."""
@@ -42,7 +42,7 @@ class MotorModel(DcMotor):
         self._strength_ratios = np.ones(NUM_MOTORS)
 
     def set_strength_ratios(self, ratios: Any) -> None:
-        """Sets the shares of its torque that each motor has."""
+        """Sets the torque factor of each motor, (8,)."""
         self._strength_ratios = np.array(ratios, dtype=float)
 
     def set_motor_gains(self, kp: float, kd: float) -> None:
@@ -59,18 +59,18 @@ class MotorModel(DcMotor):
         kp: Any = None,
         kd: Any = None,
     ) -> Torques:
-        """What the motors do for commands.
+        """The torques of the motors for commands.
 
         Args:
-            motor_commands: Angles [rad], or duty cycles under torque control.
-            motor_angle: Angles as the controllers see them [rad].
-            motor_velocity: Velocities as the controllers see them [rad/s].
-            true_motor_velocity: Velocities now, which back-EMF comes from [rad/s].
-            kp: Gains for angles, one for all or one for each motor; those of all motors where not given.
-            kd: Gains for velocities.
+            motor_commands: Angles [rad], or duty cycles with torque control.
+            motor_angle: Angles that the controllers use [rad].
+            motor_velocity: Velocities that the controllers use [rad/s].
+            true_motor_velocity: Present velocities, for the back-EMF [rad/s].
+            kp: Position gains, one for all motors or one for each; by default those that have been set.
+            kd: Velocity gains, likewise.
 
         Returns:
-            Torques [N m] that act, and those that the sensor tells.
+            Actual torques [N m], and those that the sensor reports.
         """
         gains = (self._kp if kp is None else kp, self._kd if kd is None else kd)
         acting, seen = self._torques(

@@ -1,1 +1,1 @@
-"""What makes Minitaurs differ, pushes them, and puts blocks in their way."""
+"""Randomizers of Minitaurs: different parameters, pushes, uneven ground."""

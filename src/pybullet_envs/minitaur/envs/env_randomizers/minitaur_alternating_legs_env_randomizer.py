@@ -1,4 +1,4 @@
-"""Minitaurs with bent legs, and with wishes for their pitch."""
+"""Randomizer of leg poses and of the desired pitch."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NUM_LEGS = 4
 
 
 class MinitaurAlternatingLegsEnvRandomizer(EnvRandomizerBase):
-    """Changes a `MinitaurAlternatingLegsEnv`, or a `MinitaurFourLegStandEnv`, at each `reset`."""
+    """Randomizer of a `MinitaurAlternatingLegsEnv` or `MinitaurFourLegStandEnv`, at each `reset`."""
 
     def __init__(
         self,
@@ -19,19 +19,19 @@ class MinitaurAlternatingLegsEnvRandomizer(EnvRandomizerBase):
         perturb_extension_bound: float = 0.1,
         perturb_desired_pitch_bound: float = 0.01,
     ) -> None:
-        """Makes one.
+        """Makes a randomizer.
 
         Args:
-            perturb_swing_bound: The most that a leg's swing is off [rad].
-            perturb_extension_bound: The most that its extension is [rad].
-            perturb_desired_pitch_bound: The greatest pitch that is wished for [rad].
+            perturb_swing_bound: Largest magnitude of the offset of a leg's swing [rad].
+            perturb_extension_bound: Largest magnitude of the offset of a leg's extension [rad].
+            perturb_desired_pitch_bound: Largest magnitude of the desired pitch [rad].
         """
         self.perturb_swing_bound = perturb_swing_bound
         self.perturb_extension_bound = perturb_extension_bound
         self.perturb_desired_pitch_bound = perturb_desired_pitch_bound
 
     def randomize_env(self, env: Any) -> None:
-        """Draws offsets of the legs, the pitch, voltage and damping."""
+        """Randomises offsets of the legs, desired pitch, battery voltage and damping."""
         draw = env.np_random.uniform
         env.set_swing_offset(draw(-self.perturb_swing_bound, self.perturb_swing_bound, NUM_LEGS))
         env.set_extension_offset(draw(-self.perturb_extension_bound, self.perturb_extension_bound, NUM_LEGS))

@@ -1,4 +1,4 @@
-"""Minitaurs that differ in mass, battery, damping and grip."""
+"""Randomizer of masses, battery voltage, damping and foot friction."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ __all__ = [
 
 
 class MinitaurEnvRandomizer(minitaur_env_randomizer.MinitaurEnvRandomizer, EnvRandomizerBase):
-    """Changes a `MinitaurGymEnv`: all of the chassis by the same share, each link of the legs by its own."""
+    """Randomizer of a `MinitaurGymEnv`: one mass factor for the chassis, one for each link of the legs."""
 
     def _draw_base_mass(self, robot: Any, share: float) -> None:
         robot.SetBaseMasses(np.multiply(share, robot.GetBaseMassesFromURDF()))

@@ -1,13 +1,13 @@
-"""Ranges from which `MinitaurEnvRandomizerFromConfig` draws; each function here is a configuration."""
+"""Ranges for `MinitaurEnvRandomizerFromConfig`; each function here is a configuration."""
 
 from __future__ import annotations
 
 PARAM_RANGE: dict[str, tuple[float, float]] = {
-    # Shares of what the robot has.
+    # Factors on the robot's own values.
     "mass": (0.8, 1.2),
     "inertia": (0.5, 1.5),
     "motor strength": (0.8, 1.2),
-    # V s/rad, seconds, seconds, a coefficient, volts and N m.
+    # Units in this order: V s/rad, s, s, none (a coefficient), V, N m.
     "motor friction": (0, 0.05),
     "control step": (0.003, 0.02),
     "latency": (0.0, 0.04),
@@ -18,5 +18,5 @@ PARAM_RANGE: dict[str, tuple[float, float]] = {
 
 
 def all_params() -> dict[str, tuple[float, float]]:
-    """Everything is drawn."""
+    """All parameters."""
     return PARAM_RANGE

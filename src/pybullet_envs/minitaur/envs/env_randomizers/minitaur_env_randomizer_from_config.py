@@ -1,4 +1,4 @@
-"""Minitaurs that differ in what a configuration lists."""
+"""Randomizer of the parameters in a configuration."""
 
 from __future__ import annotations
 
@@ -14,30 +14,30 @@ from pybullet_envs.minitaur.envs.env_randomizers import minitaur_env_randomizer_
 SIMULATION_TIME_STEP = 0.001
 
 Draw = Callable[..., Any]
-"""Draws one number, or as many as asked for."""
+"""Draws one random number, or an array of a given length."""
 
 
 class MinitaurEnvRandomizerFromConfig(EnvRandomizerBase):
-    """Changes a `MinitaurGymEnv` at each `reset`."""
+    """Randomizer of a `MinitaurGymEnv`, at each `reset`."""
 
     def __init__(self, config: str | None = None) -> None:
-        """Makes one.
+        """Makes a randomizer.
 
         Args:
-            config: The name of a function of `minitaur_env_randomizer_config`; `all_params` where not given.
+            config: Name of a function of `minitaur_env_randomizer_config`; by default `all_params`.
 
         Raises:
-            ValueError: There is none, or it lists what cannot be drawn.
+            ValueError: There is no such function, or it has unknown parameters.
         """
         ranges_of: Any = getattr(minitaur_env_randomizer_config, config or "all_params", None)
         if not isinstance(ranges_of, FunctionType):
             raise ValueError(f"Config {config} is not found.")
         self._ranges: dict[str, tuple[float, float]] = ranges_of()
         if unknown := self._ranges.keys() - _CHANGES.keys():
-            raise ValueError(f"Config {config} has {sorted(unknown)}, of which nothing is known.")
+            raise ValueError(f"Config {config} has unknown parameters: {sorted(unknown)}.")
 
     def randomize_env(self, env: Any) -> None:
-        """Draws all that the configuration lists."""
+        """Randomises all parameters of the configuration."""
         for name, (low, high) in self._ranges.items():
 
             def draw(count: int | None = None, low: float = low, high: float = high) -> Any:

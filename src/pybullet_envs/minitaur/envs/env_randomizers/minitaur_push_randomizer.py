@@ -1,4 +1,4 @@
-"""Minitaurs that are pushed now and then."""
+"""Randomizer that pushes a Minitaur at regular intervals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _VERTICAL: Range = (300.0, 500.0)
 
 
 class MinitaurPushRandomizer(EnvRandomizerBase):
-    """Pushes a link of the chassis of a `MinitaurGymEnv`, to some side and downward, for a few steps."""
+    """Pushes a random link of the chassis, in a random horizontal direction and downward, for some steps."""
 
     def __init__(
         self,
@@ -24,14 +24,14 @@ class MinitaurPushRandomizer(EnvRandomizerBase):
         horizontal_force_bound: Range | None = None,
         vertical_force_bound: Range | None = None,
     ) -> None:
-        """Makes one.
+        """Makes a randomizer.
 
         Args:
-            perturbation_start_step: The step of the environment before which it does nothing.
-            perturbation_interval_steps: From one push to the next.
-            perturbation_duration_steps: Of a push.
-            horizontal_force_bound: The least and the greatest force to a side [N]; 120 and 240 if not given.
-            vertical_force_bound: The least and the greatest force downward [N]; 300 and 500 if not given.
+            perturbation_start_step: Environment step before which there are no pushes.
+            perturbation_interval_steps: Number of environment steps from one push to the next.
+            perturbation_duration_steps: Number of environment steps of a push.
+            horizontal_force_bound: Minimum and maximum horizontal force [N]; by default 120 and 240.
+            vertical_force_bound: Minimum and maximum downward force [N]; by default 300 and 500.
         """
         self._start = perturbation_start_step
         self._interval = perturbation_interval_steps
@@ -43,11 +43,11 @@ class MinitaurPushRandomizer(EnvRandomizerBase):
         self._pushes = False
 
     def randomize_env(self, env: Any) -> None:
-        """Ends the push of the last episode."""
+        """Ends a push of the previous episode."""
         self._pushes = False
 
     def randomize_step(self, env: Any) -> None:
-        """Draws the next push where it is time, and begins or ends it."""
+        """Draws the next push when it is due, and begins or ends it."""
         draw, links = env.np_random, env.minitaur.chassis_link_ids
         since = env.env_step_counter % self._interval
         if since == 0:
@@ -57,7 +57,7 @@ class MinitaurPushRandomizer(EnvRandomizerBase):
         self._pushes = since < self._duration and env.env_step_counter >= self._start
 
     def randomize_sub_step(self, env: Any, sub_step_index: int, num_sub_steps: int) -> None:
-        """Pushes."""
+        """Applies the force of the push."""
         if self._pushes:
             body, origin = env.minitaur.quadruped, [0.0, 0.0, 0.0]
             env.pybullet_client.applyExternalForce(body, self._link, self._force, origin, pybullet.LINK_FRAME)

@@ -1,4 +1,4 @@
-"""Uneven ground: blocks at random places, or hills from a mesh."""
+"""Randomizer of the ground: blocks at random positions, or a mesh of hills."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ import pybullet_data
 from pybullet_envs.minitaur.envs.env_randomizer_base import EnvRandomizerBase
 
 _FIELD = (15.0, 10.0)
-# The field begins so far behind the robot, which stands in the middle of its width, on a free square.
+# Distance of the robot, at the middle of the field's width, from its rear edge; half the edge length of the
+# free square around the robot.
 _BEHIND, _FREE = 2.0, 1.0
 _DISTANCE = 0.7
 _TRIES = 30
@@ -25,7 +26,7 @@ Point = tuple[float, float]
 
 
 class PoissonDisc2D:
-    """Random points that are all at least so far apart, and leave no gaps (Bridson 2007)."""
+    """Poisson disc sampling: random points with a minimum distance and without gaps (Bridson 2007)."""
 
     def __init__(
         self,
@@ -35,27 +36,27 @@ class PoissonDisc2D:
         max_sample_size: int,
         np_random: Any = None,
     ) -> None:
-        """Begins with one point.
+        """Starts with one point.
 
         Args:
-            grid_length: Of the field [m].
-            grid_width: Of the field [m].
-            min_radius: The least distance of two points [m].
-            max_sample_size: How often a place near a point is tried.
-            np_random: Where random numbers come from.
+            grid_length: Length of the field [m].
+            grid_width: Width of the field [m].
+            min_radius: Minimum distance between two points [m].
+            max_sample_size: Number of tries to place points near a point.
+            np_random: Random number generator.
         """
         self._size = (grid_length, grid_width)
         self._radius = min_radius
         self._tries = max_sample_size
         self._random = np.random.default_rng() if np_random is None else np_random
-        # A cell's diagonal is the least distance, so that it has one point at the most.
+        # The diagonal of a cell is the minimum distance, so that a cell contains at most one point.
         self._cell = min_radius / sqrt(2)
         self._points: dict[tuple[int, int], Point] = {}
         self._active: list[Point] = []
         self._add((self._random.uniform(0, grid_length), self._random.uniform(0, grid_width)))
 
     def sample(self) -> None:
-        """Adds points around one that has not been looked at yet."""
+        """Adds points around an active point, which is then no longer active."""
         x, y = self._active.pop()
         for _ in range(self._tries):
             away, way = self._random.uniform(self._radius, 2 * self._radius), self._random.uniform(0, 2 * pi)
@@ -64,13 +65,13 @@ class PoissonDisc2D:
                 self._add(point)
 
     def generate(self) -> list[Point]:
-        """All points, as many as find room."""
+        """Adds points until the field is full; returns all points."""
         while self._active:
             self.sample()
         return list(self._points.values())
 
     def _add(self, point: Point) -> None:
-        """Adds a point, unless another one is too near."""
+        """Adds a point, unless another one is too close."""
         column, row = (int(place / self._cell) for place in point)
         near = [(column + across, row + along) for across in range(-2, 3) for along in range(-2, 3)]
         others = [self._points[cell] for cell in near if cell in self._points]
@@ -80,14 +81,14 @@ class PoissonDisc2D:
 
 
 class TerrainType(enum.Enum):
-    """Kinds of uneven ground."""
+    """Types of uneven ground."""
 
     RANDOM_BLOCKS = 1
     TRIANGLE_MESH = 2
 
 
 class MinitaurTerrainRandomizer(EnvRandomizerBase):
-    """Changes the ground of a `MinitaurGymEnv` at each `reset`."""
+    """Randomizer of the ground of a `MinitaurGymEnv`, at each `reset`."""
 
     def __init__(
         self,
@@ -95,19 +96,19 @@ class MinitaurTerrainRandomizer(EnvRandomizerBase):
         mesh_filename: str | None = None,
         mesh_scale: Sequence[float] | None = None,
     ) -> None:
-        """Makes one.
+        """Makes a randomizer.
 
         Args:
-            terrain_type: Whether blocks are put on the ground, or a mesh takes its place.
-            mesh_filename: The mesh; `terrain.obj` of `pybullet_data` where not given.
-            mesh_scale: Its scale along its axes; (1, 1, 0.3) where not given.
+            terrain_type: Whether blocks are placed on the ground, or a mesh replaces it.
+            mesh_filename: File of the mesh; by default `terrain.obj` of `pybullet_data`.
+            mesh_scale: Scale of the mesh along its axes; by default (1, 1, 0.3).
         """
         self._terrain_type = terrain_type
         self._mesh = mesh_filename or os.path.join(pybullet_data.getDataPath(), "terrain.obj")
         self._mesh_scale = list(mesh_scale or (1.0, 1.0, 0.3))
 
     def randomize_env(self, env: Any) -> None:
-        """Makes the ground anew."""
+        """Changes the ground."""
         if self._terrain_type is TerrainType.TRIANGLE_MESH:
             self._lay_mesh(env)
         else:
@@ -130,7 +131,7 @@ class MinitaurTerrainRandomizer(EnvRandomizerBase):
             x, y = along - _BEHIND, across - _FIELD[1] / 2
             if abs(x) < _FREE and abs(y) < _FREE:
                 continue
-            # A block's diagonal is at most the distance of two blocks, so that they do not overlap.
+            # The diagonal of a block is at most the minimum distance, so that blocks do not overlap.
             half, height = draw(*_LENGTHS) / (2 * sqrt(2)), draw(*_HEIGHTS) / 2
             shape = bullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[half, half, height])
             bullet.createMultiBody(0, shape, basePosition=[x, y, height])
