@@ -6,6 +6,7 @@ import os
 import tempfile
 from collections.abc import Sequence
 from typing import TextIO
+from xml.sax.saxutils import quoteattr
 
 import pybullet as p
 from carom.formats.urdf_writer import roll_pitch_yaw
@@ -189,7 +190,7 @@ class UrdfEditor:
             self._write(file, saveVisuals)
 
     def _write(self, file: TextIO, visuals: bool) -> None:
-        file.write(f'<?xml version="1.0" ?>\n<robot name="{self.robotName}">\n')
+        file.write(f'<?xml version="1.0" ?>\n<robot name={quoteattr(self.robotName)}>\n')
         for link in self.urdfLinks:
             file.write(link_element(link, visuals))
         for joint in self.urdfJoints:

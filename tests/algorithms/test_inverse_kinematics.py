@@ -122,6 +122,28 @@ def test_an_orientation_is_reached_from_singular_poses_where_pybullet_is_stuck(p
     assert arrived >= 0.9 * asked
 
 
+def test_more_steps_within_limits_come_nearer(panda):
+    """300 steps that follow are the fewest within limits; more are taken if they are asked for."""
+    random = np.random.RandomState(5)
+    body = clients[panda.client].world.bodies[panda.body]
+    limits = {"lower": panda.lower.tolist(), "upper": panda.upper.tolist()}
+    limits |= {"ranges": (panda.upper - panda.lower).tolist(), "rest": panda.home.tolist()}
+    nearer = 0
+    for _ in range(60):
+        position, orientation = panda.place(random.uniform(panda.lower, panda.upper))
+        panda.place(panda.home)
+        few, many = (
+            inverse_kinematics(
+                body, [panda.arm.link], [position], [orientation], iterations=1, further=further, **limits
+            )
+            for further in (300, 3000)
+        )
+        first, second = (sum(panda.distances((position, orientation), joints)) for joints in (few, many))
+        assert second <= first + CLOSE
+        nearer += second < first - CLOSE
+    assert nearer > 0
+
+
 # With the others PyBullet has not come to rest when it stops.
 @pytest.mark.parametrize("name", [name for name, arm in ARMS.items() if not arm.slow])
 def test_single_calls_agree_with_pybullet(reach, name):

@@ -60,6 +60,14 @@ def test_without_looks_nothing_is_seen(client: int, tmp_path: Path) -> None:
     assert "<visual>" not in path.read_text()
 
 
+def test_names_may_have_any_characters(client: int, tmp_path: Path) -> None:
+    editor = editor_of("cartpole.urdf", client)
+    editor.robotName = 'cart & "pole" <1>'
+    path = tmp_path / "named.urdf"
+    editor.saveUrdf(str(path))
+    assert p.getBodyInfo(p.loadURDF(str(path)))[1].decode() == 'cart & "pole" <1>'
+
+
 def test_joined_robots_are_one_body(client: int) -> None:
     arm, cube = editor_of("TwoJointRobot_w_fixedJoints.urdf", client), editor_of("cube_small.urdf", client)
     joint = arm.joinUrdf(cube, 1, [0.1, 0, 0], [0, 0, 0], [0, 0, 0.1], [0, 0, 0], client, client)

@@ -107,9 +107,6 @@ ROW_SOFTNESS, ROW_FRICTION = 6, 7
 # Columns of `PairRows.contact_rows`, the rows of a contact; -1 for none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
-# Columns of `Pairs.candidate_terms`, contact candidates: point on shape b, normal on b, distance.
-CANDIDATE_POINT, CANDIDATE_NORMAL, CANDIDATE_DISTANCE = 0, 3, 6
-
 # Kernels read codes as Warp constants.
 REVOLUTE = int(JointCode.REVOLUTE)
 PRISMATIC = int(JointCode.PRISMATIC)

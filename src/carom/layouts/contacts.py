@@ -135,7 +135,7 @@ class Pairs:
     pair_shapes: Index4Rows  # shape a, shape b, 0, 0; sorted
     pair_found: Index4Rows  # the same in the order in which they were found
 
-    candidate_terms: Vector8Rows  # see the CANDIDATE_ columns in `codes`
+    candidate_terms: Vector8Rows  # of contact candidates; columns as in `kernels/contact/candidates.py`
     polygon_a: Vector3Rows  # corners of touching faces
     polygon_b: Vector3Rows
     polygon_clipped: Vector3Rows

@@ -1,8 +1,9 @@
 """Contact candidates of one pair of shapes, and the choice of at most four of them.
 
-A candidate is a row of `Pairs.candidate_terms`: a point on shape b, the normal there towards shape a,
-and the distance along the normal to shape a, negative where the shapes overlap. Of candidates that are
-equally good within a tolerance the first is chosen, so that rounding seldom affects the choice.
+A candidate is a row of `Pairs.candidate_terms`: a point on shape b (columns 0 to 2), the normal there towards
+shape a (3 to 5), and the distance along the normal to shape a (6), negative where the shapes overlap. Column
+7 is `FLAT` of `kernels/shapes/surfaces.py`. Of candidates that are equally good within a tolerance the first
+is chosen, so that rounding seldom affects the choice.
 """
 
 import warp as wp

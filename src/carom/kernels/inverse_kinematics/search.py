@@ -257,7 +257,7 @@ def inverse_kinematics_kernel(
         search.dof[dof].step = real(0.0)
     left = further
     if bounded == 1 and not content:
-        left = wp.max(iterations, _WITHIN_LIMITS)
+        left = wp.max(further, _WITHIN_LIMITS)
     spread = _FIRST_SPREAD
     worth = real(1.0)
     seed = Int32(1)

@@ -109,7 +109,7 @@ def time_to_leave(place: real, speed: real, cell: Int32) -> real:
         return (real(cell) + 1.0 - place) / speed
     if speed < 0.0:
         return (real(cell) - place) / speed
-    return 1.0e30
+    return HUGE
 
 
 @func
