@@ -14,9 +14,9 @@ from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.soft_spec import SHORT, Skin, SoftSpec
 from carom.native.products import determinants
 from carom.soft.materials import NeoHookean, Springs
-from carom.soft.paint import Paint, squares
 from carom.soft.shapes import oriented
 from carom.soft.skin import bind
+from carom.soft.texture_mapping import TextureMapping, checkered
 from carom.soft.topology import bending_pairs, edges_of, surface_of
 
 MOST_NODES = 1_000_000
@@ -42,7 +42,7 @@ def soft_body(
     friction: float = 0.0,
     self_collision: bool = False,
     seen: tuple[NDArray[np.float64], NDArray[np.int32]] | None = None,
-    paint: Paint | None = None,
+    textured: TextureMapping | None = None,
     source: Path | None = None,
 ) -> BodySpec:
     """A soft body of nodes of equal mass.
@@ -58,7 +58,7 @@ def soft_body(
         friction: Coulomb coefficient, multiplied by that of the other surface.
         self_collision: Its nodes collide with its own faces.
         seen: (v, 3) vertices and (t, 3) triangles that are drawn instead of its surface.
-        paint: Texture coordinates of what is drawn; None for a solid's checkered surface, or plain cloth.
+        textured: Texture mapping of what is drawn; None for checkered solids and plain cloth.
         source: The file it comes from, for error messages.
 
     Raises:
@@ -96,27 +96,29 @@ def soft_body(
     vertices, triangles = (nodes, soft.faces) if seen is None else seen
     if seen is not None:
         soft.skin = Skin(*bind(vertices, nodes, cells), triangles)
-    elif paint is None and cells.shape[1] == 4:
-        paint = squares(vertices, triangles)
-    soft.checkered = paint is not None and paint.checkered
+    elif textured is None and cells.shape[1] == 4:
+        textured = checkered(vertices, triangles)
+    soft.checkered = textured is not None and textured.checkered
     x, y, z = center.tolist()
     base = LinkSpec(
         name,
         inertial_frame=Pose((x, y, z)),
         contact=ContactParameters(lateral_friction=friction),
-        visuals=(_visual(vertices, triangles, paint),) if len(triangles) else (),
+        visuals=(_visual(vertices, triangles, textured),) if len(triangles) else (),
     )
     return BodySpec(name, base, fixed_base=True, source=source, soft=soft)
 
 
-def _visual(vertices: NDArray[np.float64], triangles: NDArray[np.int32], paint: Paint | None) -> Visual:
-    if paint is None:
+def _visual(
+    vertices: NDArray[np.float64], triangles: NDArray[np.int32], textured: TextureMapping | None
+) -> Visual:
+    if textured is None:
         return Visual(TriangleMesh(vertices, triangles))
     # A vertex may have another texture coordinate in each of its triangles.
     corners = vertices[triangles.reshape(-1)]
     apart = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
-    material = Material(rgba=_WHITE, texture=paint.texture)
-    return Visual(TriangleMesh(corners, apart, uvs=paint.uvs), material=material)
+    material = Material(rgba=_WHITE, texture=textured.texture)
+    return Visual(TriangleMesh(corners, apart, uvs=textured.uvs), material=material)
 
 
 def _check_parameters(

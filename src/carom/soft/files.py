@@ -13,7 +13,7 @@ from carom.formats.mesh.vtk import read_vtk
 from carom.model.body_spec import BodySpec
 from carom.soft.build import soft_body
 from carom.soft.materials import NeoHookean, Springs
-from carom.soft.paint import paint_of_file
+from carom.soft.texture_mapping import mapping_of_file
 
 SOLIDS = (".vtk",)
 SURFACES = (".obj",)
@@ -55,13 +55,13 @@ def soft_body_from_file(
         DescriptionError: The file is missing, damaged or of another kind, or its mesh cannot be used.
     """
     nodes, cells = mesh_of(path if simulated is None else simulated)
-    seen = paint = None
+    seen = textured = None
     if simulated is not None:
         part = read_mesh(path)[0]
         seen = part.vertices * scale, part.triangles
-        paint = paint_of_file(path, part.vertices, part.triangles)
+        textured = mapping_of_file(path, part.vertices, part.triangles)
     elif not is_solid(path):
-        paint = paint_of_file(path, nodes, cells)
+        textured = mapping_of_file(path, nodes, cells)
     return soft_body(
         path.stem,
         nodes * scale,
@@ -73,7 +73,7 @@ def soft_body_from_file(
         friction=friction,
         self_collision=self_collision,
         seen=seen,
-        paint=paint,
+        textured=textured,
         source=path,
     )
 

@@ -9,7 +9,7 @@ from carom.model.body_spec import BodySpec
 from carom.soft.build import soft_body
 from carom.soft.files import is_solid, mesh_of
 from carom.soft.materials import Springs
-from carom.soft.paint import paint_of_file
+from carom.soft.texture_mapping import mapping_of_file
 
 # Angular frequency of one node on a spring [rad/s]. Bullet projects the springs of such cloth 20 times in a
 # step, whatever its mass. With this frequency, 1 m of cloth that hangs from an edge stretches by 0.1 mm;
@@ -49,6 +49,6 @@ def older_cloth_from_file(path: Path, *, scale: float, mass: float, margin: floa
         springs=springs,
         margin=margin,
         friction=_FRICTION,
-        paint=paint_of_file(path, nodes, triangles),
+        textured=mapping_of_file(path, nodes, triangles),
         source=path,
     )

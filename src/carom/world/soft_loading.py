@@ -55,8 +55,8 @@ class SoftLoading(BodyAdding):
         from carom.soft.build import soft_body
         from carom.soft.files import soft_body_from_file
         from carom.soft.materials import Springs
-        from carom.soft.paint import spread
         from carom.soft.shapes import grid
+        from carom.soft.texture_mapping import stretched
 
         kind = Springs(stiffness, damping, bending)
         common: dict[str, Any] = {
@@ -66,8 +66,10 @@ class SoftLoading(BodyAdding):
         if mesh is not None:
             return self._soft(soft_body_from_file(Path(mesh), **common), position, orientation)
         nodes, triangles = grid(_lengths(size, 2), _counts(cells, 2))
-        paint = spread(nodes, triangles)
-        return self._soft(soft_body("cloth", nodes, triangles, paint=paint, **common), position, orientation)
+        textured = stretched(nodes, triangles)
+        return self._soft(
+            soft_body("cloth", nodes, triangles, textured=textured, **common), position, orientation
+        )
 
     def load_rope(
         self,

@@ -1,4 +1,4 @@
-"""Texture coordinates and textures of soft bodies."""
+"""Texture mapping of soft bodies: texture coordinates of what is drawn, and an image."""
 
 from __future__ import annotations
 
@@ -14,19 +14,18 @@ from carom.record import record
 
 _log = Logger(__name__)
 
-# Squares of a solid on each metre, as in PyBullet: the texture has two by two.
+# Repeats of the texture on each metre of a solid, as in PyBullet.
 _REPEATS = 10.0
 
 
 @record(eq=False)
-class Paint:
-    """What is painted on the visible triangles of a soft body.
+class TextureMapping:
+    """How a texture lies on the visible triangles of a soft body.
 
     Attributes:
         uvs: (3 t, 2) texture coordinates of the corners of all triangles, one triangle after the other.
-        texture: Image file; it may be missing or broken. Without one, colours are plain until
-            `changeVisualShape` sets a texture.
-        checkered: The texture is that of floors: white and blue squares.
+        texture: Image file; it may be missing or broken. None: no texture until one is set.
+        checkered: The texture is that of floors: white and blue squares, two by two.
     """
 
     uvs: NDArray[np.float64]
@@ -34,7 +33,9 @@ class Paint:
     checkered: bool = False
 
 
-def paint_of_file(file: Path, vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> Paint | None:
+def mapping_of_file(
+    file: Path, vertices: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> TextureMapping | None:
     """Texture coordinates and texture that an OBJ file has for its first object.
 
     Args:
@@ -57,15 +58,15 @@ def paint_of_file(file: Path, vertices: NDArray[np.float64], triangles: NDArray[
     ):
         return None
     uvs = mesh.uvs[corners.reshape(-1)].astype(np.float64)
-    return Paint(uvs, mesh.texture_file) if np.ptp(uvs, axis=0).any() else None
+    return TextureMapping(uvs, mesh.texture_file) if np.ptp(uvs, axis=0).any() else None
 
 
-def squares(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> Paint:
-    """The squares that PyBullet paints on solids from VTK files, from above: 5 cm wide."""
-    return Paint(_REPEATS * np.abs(vertices[triangles.reshape(-1), :2]), checkered=True)
+def checkered(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> TextureMapping:
+    """Squares of 5 cm, projected along z, as on PyBullet's solids from VTK files."""
+    return TextureMapping(_REPEATS * np.abs(vertices[triangles.reshape(-1), :2]), checkered=True)
 
 
-def spread(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> Paint:
-    """One image over the whole of a flat cloth, by x and y."""
+def stretched(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> TextureMapping:
+    """One image stretched over the whole of a flat cloth."""
     low, size = vertices[:, :2].min(axis=0), np.maximum(np.ptp(vertices[:, :2], axis=0), np.finfo(float).tiny)
-    return Paint((vertices[triangles.reshape(-1), :2] - low) / size)
+    return TextureMapping((vertices[triangles.reshape(-1), :2] - low) / size)

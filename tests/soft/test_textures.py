@@ -67,7 +67,7 @@ def test_every_corner_keeps_its_texture_coordinate(tmp_path: Path) -> None:
     assert material.texture == tmp_path / "paint.png"
 
 
-def test_a_second_object_of_a_file_is_neither_simulated_nor_painted(tmp_path: Path) -> None:
+def test_a_second_object_of_a_file_is_neither_simulated_nor_drawn(tmp_path: Path) -> None:
     spec = cloth(write_seam(tmp_path, f"o first\n{SEAM}o second\nf 1/1 2/2 4/6\n"))
     assert np.asarray(uvs_of(spec)).tolist() == CORNERS
 
@@ -93,12 +93,12 @@ def test_an_image_that_is_missing_leaves_the_cloth_plain(tmp_path: Path) -> None
 
 def test_the_window_has_vertices_apart_where_there_is_a_texture(tmp_path: Path) -> None:
     world = World()
-    painted, plain = world.load_cloth(mesh=write_seam(tmp_path)), world.load_rope()
-    assert isinstance(painted, SoftBody)
+    textured, plain = world.load_cloth(mesh=write_seam(tmp_path)), world.load_rope()
+    assert isinstance(textured, SoftBody)
     assert not appearance_of(world).shapes(plain, -1)
-    first = appearance_of(world).shapes(painted, -1)[0].mesh
-    painted.set_nodes([[0, 0, 0], [1, 0, 0], [1, 1, 0], [-1, 2, 0]])
-    mesh = surface_mesh(painted, first)
+    first = appearance_of(world).shapes(textured, -1)[0].mesh
+    textured.set_nodes([[0, 0, 0], [1, 0, 0], [1, 1, 0], [-1, 2, 0]])
+    mesh = surface_mesh(textured, first)
     assert mesh.uvs.tolist() == CORNERS
     assert mesh.positions[4] - mesh.positions[3] == pytest.approx(np.array([1, 1, 0]), abs=1e-6)
     assert mesh.positions[5] - mesh.positions[3] == pytest.approx(np.array([-1, 2, 0]), abs=1e-6)
@@ -135,7 +135,7 @@ def test_textures_of_soft_bodies_have_no_number_for_scripts(tmp_path: Path) -> N
         p.disconnect(client)
 
 
-def test_a_saved_world_keeps_the_paint(tmp_path: Path) -> None:
+def test_a_saved_world_keeps_the_texture(tmp_path: Path) -> None:
     world = World()
     world.load_cloth(mesh=write_seam(tmp_path))
     world.save(tmp_path / "world.carom")
