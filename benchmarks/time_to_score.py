@@ -24,8 +24,8 @@ from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 COUNT = 16
 SEED = 1
 THREADS = 2
-# Those of RL Baselines3 Zoo for these environments, but larger batches at a higher rate, and half the epochs: learning
-# costs both engines the same, and should not hide what is compared.
+# Those of RL Baselines3 Zoo for these environments, but larger batches at a higher rate, and half the epochs:
+# learning costs both engines the same, and should not hide what is compared.
 HYPERPARAMETERS: dict[str, Any] = {
     "n_steps": 512,
     "batch_size": 1024,
