@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from threading import RLock
 
 import numpy as np
+from tests.soft.test_textures import write_seam
+from tests.viewer.browser import Page, needs_browser
 
+import pybullet as p
 from carom import Camera, World
 from carom.viewer import scene_feed
 from carom.viewer.board import Board
@@ -55,3 +59,18 @@ def test_images_are_drawn_while_a_page_looks_on(monkeypatch) -> None:
         world.step(10)
         feed.frame({})
         assert camera.capture(world).mask(solid).any()
+
+
+@needs_browser
+def test_textures_of_soft_bodies_are_seen(page: Page, tmp_path: Path) -> None:
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+    body = p.loadSoftBody(str(write_seam(tmp_path)), [-0.5, -0.5, 0.5], mass=1, useMassSpring=1)
+    p.resetDebugVisualizerCamera(2, 0, -60, [0, 0, 0.5])
+
+    def most(picture: np.ndarray) -> tuple[float, float]:
+        red, green, blue = (picture[..., channel] for channel in range(3))
+        return (red > green + 80).mean(), (blue > red + 40).mean()
+
+    page.wait_for_picture(lambda picture: most(picture)[0] > 0.02)
+    p.changeVisualShape(body, -1, textureUniqueId=-1, rgbaColor=[0.1, 0.1, 1, 1])
+    page.wait_for_picture(lambda picture: most(picture)[0] < 0.01 and most(picture)[1] > 0.02)
