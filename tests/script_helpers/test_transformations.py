@@ -22,7 +22,7 @@ def test_angles_of_a_rotation_make_it_again(axes: str, a: float, b: float, c: fl
 
 @pytest.mark.parametrize("axes", ["", "xyz", "txyz", "sxxy", "sxyw", "sxyzx"])
 def test_axes_that_make_no_sense_are_refused(axes: str) -> None:
-    with pytest.raises(ValueError, match="axes are"):
+    with pytest.raises(ValueError, match="axes must be"):
         transform.euler_matrix(0.1, 0.2, 0.3, axes)
 
 
