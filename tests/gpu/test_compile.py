@@ -15,6 +15,7 @@ SPILLS = {
     "island_contacts_kernel": 11_000,
     "restless_sweeps_kernel": 1_500,
     "resting_sweeps_kernel": 200,
+    "small_steps_kernel": 1_000,
     "closest_points_kernel": 5_000,
     "rays_kernel": 1_600,
 }

@@ -119,10 +119,3 @@ def test_too_many_worlds_are_refused_before_there_is_any(arm) -> None:
 def test_threads_are_of_the_processor_only(arm) -> None:
     with pytest.raises(ValueError, match="threads share worlds on the device 'cpu' only"):
         Worlds(arm[0], 2, device=NativeDevice(), threads=2)
-
-
-def test_soft_bodies_are_stepped_on_processors_only() -> None:
-    world = World()
-    world.load_rope(0.2, 4)
-    with pytest.raises(ValueError, match="soft bodies, which are stepped on processors only"):
-        Worlds(world, 2, device=NativeDevice())

@@ -26,9 +26,10 @@ from carom.model.builder import WorldArrays
 class DeviceEngine(Engine):
     """Performs steps of many worlds on a device.
 
-    State, contacts and intermediate results are there and nowhere else; model, shapes and user constraints
-    are on the host, with a copy on the device. What steps consist of is said by other programs than on the
-    processor; how they are asked for, and repeated where something did not fit, is the same.
+    State, contacts and intermediate results are there and nowhere else; model, shapes, user constraints and
+    what soft bodies are made of are on the host, with a copy on the device. What steps consist of is said by
+    other programs than on the processor; how they are asked for, and repeated where something did not fit, is
+    the same.
 
     Args:
         device: Where.
@@ -57,10 +58,7 @@ class DeviceEngine(Engine):
 
         Raises:
             MemoryError: There is no room for them.
-            ValueError: There are soft bodies, which are stepped on processors only.
         """
-        if contact_arrays.soft.bodies:
-            raise ValueError("there are soft bodies, which are stepped on processors only in this version")
         check_room(device, count, lambda counter: cls.made(counter, arrays, contact_arrays, count).structs())
         return cls.made(device, arrays, contact_arrays, count)
 
@@ -77,6 +75,7 @@ class DeviceEngine(Engine):
         own_arrays.state = DeviceTable.repeated(device, own_arrays.state, State, count, rows)
         own_contact_arrays.shapes.table = MirroredTable(device, own_contact_arrays.shapes.table)
         own_contact_arrays.users = MirroredTable(device, own_contact_arrays.users)
+        own_contact_arrays.soft.table = MirroredTable(device, own_contact_arrays.soft.table)
         own_contact_arrays.contacts = DeviceTable.repeated(
             device, own_contact_arrays.contacts, Contacts, count, own_contact_arrays.contacts.capacity
         )

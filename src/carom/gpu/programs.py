@@ -25,21 +25,19 @@ def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
     """
     launches = _Launches(structs)
     if not plan.coupled:
-        return launches.uncoupled()
+        return launches.uncoupled(plan)
     return _program(
-        begin=[launches.begin(moves=1)],
+        begin=launches.begin(plan),
         detection=launches.detection() if plan.touching else (),
         motion=launches.motion(plan),
-        end=launches.end(moves=1),
+        end=launches.end(plan),
     )
 
 
 def parallel_detection_program(structs: KernelStructs) -> Program:
     """The launches that find all contacts for the present coordinates."""
     launches = _Launches(structs)
-    return _program(
-        begin=[launches.begin(moves=0)], detection=launches.detection(), end=launches.end(moves=0)
-    )
+    return _program(begin=launches.begin(), detection=launches.detection(), end=launches.end())
 
 
 def _program(
@@ -63,22 +61,29 @@ class _Launches:
         self._worlds = (extent.worlds,)
         self._trees = (extent.trees, extent.worlds)
         self._shapes = (extent.shapes, extent.worlds)
+        self._soft_bodies = (extent.soft_bodies, extent.worlds)
 
     def _launch(self, module: str, kernel: str, dim: tuple[int, ...], **scalars: int) -> Any:
         return self._structs.launch_over(module, kernel, dim, **scalars)
 
-    def begin(self, moves: int) -> FineLaunch:
-        return self._launch("parallel.trees", "begin_kernel", self._trees, moves=moves)
+    def begin(self, plan: Plan | None = None) -> Iterator[FineLaunch]:
+        """Of a step; without a plan only contacts are to be found."""
+        yield self._launch("parallel.trees", "begin_kernel", self._trees, moves=int(plan is not None))
+        if plan is not None and plan.soft:
+            yield self._launch("parallel.soft_nodes", "soft_begin_kernel", self._soft_bodies)
 
-    def end(self, moves: int) -> Iterator[FineLaunch]:
-        yield self._launch("parallel.trees", "end_kernel", self._trees, moves=moves)
+    def end(self, plan: Plan | None = None) -> Iterator[FineLaunch]:
+        """Of what `begin` began with the same plan."""
+        yield self._launch("parallel.trees", "end_kernel", self._trees, moves=int(plan is not None))
+        if plan is not None and plan.soft:
+            yield self._launch("parallel.soft_nodes", "soft_end_kernel", self._soft_bodies)
         yield self._launch("parallel.runs", "finish_kernel", self._worlds)
 
-    def uncoupled(self) -> Program:
+    def uncoupled(self, plan: Plan) -> Program:
         """A step of worlds whose bodies have nothing to do with each other, all substeps at once."""
         batches = self._launch("parallel.batches", "batch_step_kernel", self._trees, substeps=1)
         faults = self._launch("parallel.trees", "faults_kernel", self._worlds)
-        return _program(begin=[batches, faults], end=self.end(moves=1))
+        return _program(begin=[batches, faults], end=self.end(plan))
 
     def detection(self) -> Iterator[FineLaunch]:
         yield self._launch("parallel.trees", "tree_poses_kernel", self._trees)
@@ -90,13 +95,28 @@ class _Launches:
     def motion(self, plan: Plan) -> Iterator[FineLaunch]:
         if plan.sleeping:
             yield self._launch("solver.sleeping", "settle_kernel", self._worlds, touching=int(plan.touching))
+        if plan.soft:
+            yield self._launch("parallel.soft_nodes", "tree_velocities_kernel", self._trees)
         yield self._launch("parallel.trees", "world_islands_kernel", self._worlds)
         yield self._launch("parallel.trees", "tree_free_motion_kernel", self._trees)
+        if plan.soft:
+            yield from self._soft_motion()
         yield from self._solver()
         yield self._launch("parallel.trees", "tree_motion_kernel", self._trees)
         yield self._launch("parallel.trees", "faults_kernel", self._worlds)
+        if plan.soft:
+            # After the motion of trees, which also moves fixed bases by their velocities.
+            yield self._launch("parallel.soft_nodes", "soft_poses_kernel", self._soft_bodies)
         if plan.sleeping:
             yield self._launch("solver.sleeping", "watch_kernel", self._worlds)
+
+    def _soft_motion(self) -> Iterator[FineLaunch]:
+        yield self._launch("parallel.soft_contact", "soft_start_kernel", self._worlds)
+        yield self._launch("parallel.soft_contact", "soft_touches_kernel", self._soft_bodies)
+        yield self._launch("parallel.soft_contact", "soft_rows_kernel", self._worlds)
+        yield self._launch("parallel.soft_contact", "soft_neighbours_kernel", self._worlds)
+        yield self._launch("parallel.soft_motion", "small_steps_kernel", self._worlds)
+        yield self._launch("parallel.soft_motion", "soft_pushes_kernel", self._worlds)
 
     def _solver(self) -> Iterator[FineLaunch]:
         yield self._launch("parallel.joint_rows", "island_rows_kernel", self._trees)

@@ -21,7 +21,6 @@ from carom.layouts.soft import SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs
-from carom.native.tables import ArrayTable
 
 MOST_WORKERS = 32768
 """Threads that look for contacts: more than a GPU runs at a time. Each needs 23 kB."""
@@ -41,6 +40,7 @@ class Extent:
         shapes: Collision shapes of each.
         contacts: Contacts of each that there is room for.
         pairs: Pairs of shapes of each that there is room for; 0 if nothing can touch.
+        soft_bodies: Soft bodies of each.
     """
 
     worlds: int
@@ -48,6 +48,7 @@ class Extent:
     shapes: int
     contacts: int
     pairs: int
+    soft_bodies: int
 
     @property
     def workers(self) -> int:
@@ -68,7 +69,7 @@ class DeviceStructs(KernelStructs):
     def __init__(self, device: Device) -> None:
         super().__init__()
         self.device = device
-        self.extent = Extent(1, 0, 0, 0, 0)
+        self.extent = Extent(1, 0, 0, 0, 0, 0)
         self.arrays: dict[str, dict[str, Any]] = {}
         self.parts: np.ndarray = np.zeros(0, dtype=np.int32)
 
@@ -103,18 +104,19 @@ class DeviceWorkspace(Workspace):
         self.scratch = DeviceTable(device, Scratch, world_count, ENTRY_VIEWS, lasts=False)
         self.pairs = DeviceTable(device, Pairs, world_count, lasts=False)
         self.pair_rows = DeviceTable(device, PairRows, world_count, ROW_ENTRY_VIEWS, lasts=False)
-        # Stays empty and on the host: worlds with soft bodies are refused.
-        self.soft_work = ArrayTable(SoftWork, world_count)
+        self.soft_work = DeviceTable(device, SoftWork, world_count, lasts=False)
         self.structs = self._on_device = DeviceStructs(device)
         self._extent: Extent | None = None
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Resize arrays to the length of the arrays they belong to."""
         touching = can_collide(arrays, contact_arrays)
+        soft_bodies = len(contact_arrays.soft.bodies)
         if touching:
             self.pairs.reserve(_FIRST_ROOM)
+        if touching or soft_bodies:
             self.pair_rows.reserve(_FIRST_ROOM)
-        if touching or contact_arrays.user_count > 0 or can_sleep(arrays):
+        if touching or soft_bodies or contact_arrays.user_count > 0 or can_sleep(arrays):
             super().fit(arrays, contact_arrays)
         else:
             # Nothing ties bodies together, and there are no rows over two of them.
@@ -126,6 +128,7 @@ class DeviceWorkspace(Workspace):
             contact_arrays.shapes.shape_count,
             contact_arrays.contacts.capacity["contact"],
             self.pairs.capacity["pair"] if touching else 0,
+            soft_bodies,
         )
         if extent != self._extent:
             self._make_work(extent)

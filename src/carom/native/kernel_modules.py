@@ -28,7 +28,10 @@ PARALLEL_MODULES = (
     "carom.kernels.parallel.batches",
     "carom.kernels.parallel.sweeps",
     "carom.kernels.parallel.trees",
+    "carom.kernels.parallel.soft_contact",
+    "carom.kernels.parallel.soft_motion",
     "carom.kernels.parallel.joint_rows",
+    "carom.kernels.parallel.soft_nodes",
     "carom.kernels.parallel.runs",
 )
 # Kernels that work on arrays on a GPU between steps.

@@ -26,12 +26,11 @@ from carom.layouts.status import STATUS, WELL
 
 
 @func
-def keep_velocities(settings: Settings, model: Model, state: State, work: SoftWork, world: Int32):
-    """Save the velocities of all trees at the start of a substep."""
-    for tree in range(settings.tree_count):
-        first = model.tree[tree].first_dof
-        for dof in range(first, first + model.tree[tree].dof_count):
-            work.dof_start[world, dof] = state.dof_velocity[world, dof]
+def keep_velocities(model: Model, state: State, work: SoftWork, world: Int32, tree: Int32):
+    """Save the velocities of a tree at the start of a substep."""
+    first = model.tree[tree].first_dof
+    for dof in range(first, first + model.tree[tree].dof_count):
+        work.dof_start[world, dof] = state.dof_velocity[world, dof]
 
 
 @func

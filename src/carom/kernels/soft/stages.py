@@ -25,7 +25,7 @@ from carom.kernels.structs import (
 )
 from carom.kernels.types import Index4, Int32, Vector3, func, kernel, real
 from carom.layouts.soft import BODIES
-from carom.layouts.status import OVERFLOW, STATUS
+from carom.layouts.status import OVERFLOW, STATUS, WELL
 
 # Largest phase of the fastest vibration in one small step [rad], as long as the number of small steps stays
 # within its limit.
@@ -118,14 +118,99 @@ def take_small_steps(
             damp_tetras(soft, state, world, body, h)
 
 
+@func
+def keep_nodes(soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32):
+    """Save the positions and velocities of a body's nodes at the start of a step."""
+    for node in range(soft.soft[body].first_node, node_end(soft, body)):
+        soft_work.node_start_position[world, node] = state.node_position[world, node]
+        soft_work.node_start_velocity[world, node] = state.node_velocity[world, node]
+
+
+@func
+def clear_node_forces(soft: SoftModel, state: State, world: Int32, body: Int32):
+    """Clear the users' forces on a body's nodes; they act for one step."""
+    for node in range(soft.soft[body].first_node, node_end(soft, body)):
+        state.node_force[world, node] = Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def return_nodes(soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32):
+    """Restore a body's nodes as they were at the start of the step; clear their forces if the step failed.
+
+    A step that is to be repeated with longer arrays needs them.
+    """
+    for node in range(soft.soft[body].first_node, node_end(soft, body)):
+        state.node_position[world, node] = soft_work.node_start_position[world, node]
+        state.node_velocity[world, node] = soft_work.node_start_velocity[world, node]
+    if state.status_entry[world, STATUS] > WELL:
+        clear_node_forces(soft, state, world, body)
+
+
+@func
+def start_soft_motion(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    pairs: Pairs,
+    soft_work: SoftWork,
+    world: Int32,
+):
+    """Place all shapes, and give all trees the velocities that they had at the start of the substep."""
+    place_shapes(shapes, state, settings, pairs, world)
+    for tree in range(settings.tree_count):
+        soft_work.tree_ready[world, tree] = 0
+    exchange_velocities(settings, model, state, soft_work, world)
+
+
+@func
+def write_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pair_rows: PairRows,
+    soft: SoftModel,
+    soft_work: SoftWork,
+    world: Int32,
+):
+    """Write the rows of all touches and anchors; the status of the world tells if they do not fit."""
+    place = Index4(0, 0, 0, 0)
+    for body in range(soft.count_soft[BODIES]):
+        place = write_touches(
+            settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, place
+        )
+    place = write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, place)
+    wake_held(model, state, soft, world)
+    if place[2] != 0:
+        state.status_entry[world, STATUS] = OVERFLOW
+
+
+@func
+def end_soft_motion(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    soft: SoftModel,
+    soft_work: SoftWork,
+    world: Int32,
+):
+    """Give all trees their velocities back, with the pushes of soft bodies; report faulty bodies."""
+    # Reported before the trees that faulty nodes have pushed are found to be not finite as well.
+    for body in range(soft.count_soft[BODIES]):
+        report_nodes(state, soft, world, body)
+    exchange_velocities(settings, model, state, soft_work, world)
+    take_over_pushes(settings, model, state, scratch, world)
+
+
 @kernel
 def begin_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, first_world: Int32):
     """Save the positions and velocities of nodes at the start of a step."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
-        for node in range(soft.soft[body].first_node, node_end(soft, body)):
-            soft_work.node_start_position[world, node] = state.node_position[world, node]
-            soft_work.node_start_velocity[world, node] = state.node_velocity[world, node]
+        keep_nodes(soft, state, soft_work, world, body)
 
 
 @kernel
@@ -133,7 +218,9 @@ def keep_velocities_kernel(
     settings: Settings, model: Model, state: State, soft_work: SoftWork, first_world: Int32
 ):
     """Save the velocities of trees at the start of a substep."""
-    keep_velocities(settings, model, state, soft_work, first_world + wp.tid())
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        keep_velocities(model, state, soft_work, world, tree)
 
 
 @kernel
@@ -151,22 +238,11 @@ def soft_motion_kernel(
 ):
     """Move all soft bodies through a substep, after the free motion of trees."""
     world = first_world + wp.tid()
-    place_shapes(shapes, state, settings, pairs, world)
-    for tree in range(settings.tree_count):
-        soft_work.tree_ready[world, tree] = 0
-    exchange_velocities(settings, model, state, soft_work, world)
+    start_soft_motion(settings, model, state, shapes, pairs, soft_work, world)
     for body in range(soft.count_soft[BODIES]):
         find_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
-    place = Index4(0, 0, 0, 0)
-    for body in range(soft.count_soft[BODIES]):
-        place = write_touches(
-            settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, place
-        )
-    place = write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, place)
-    wake_held(model, state, soft, world)
-    if place[2] != 0:
-        state.status_entry[world, STATUS] = OVERFLOW
-    else:
+    write_rows(settings, model, state, scratch, shapes, pair_rows, soft, soft_work, world)
+    if state.status_entry[world, STATUS] == WELL:
         neighbours = have_neighbours(soft)
         if neighbours:
             find_neighbours(settings, shapes, model, state, soft, soft_work, world)
@@ -174,11 +250,7 @@ def soft_motion_kernel(
             settings, model, shapes, scratch, pair_rows, soft, state, soft_work, world, neighbours
         )
         report_pushes(settings, shapes, model, state, scratch, soft, soft_work, world)
-    # Reported before the trees that faulty nodes have pushed are found to be not finite as well.
-    for body in range(soft.count_soft[BODIES]):
-        report_nodes(state, soft, world, body)
-    exchange_velocities(settings, model, state, soft_work, world)
-    take_over_pushes(settings, model, state, scratch, world)
+    end_soft_motion(settings, model, state, scratch, soft, soft_work, world)
 
 
 @kernel
@@ -204,8 +276,7 @@ def end_soft_kernel(soft: SoftModel, state: State, first_world: Int32):
     """Clear the users' forces on nodes after a complete step."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
-        for node in range(soft.soft[body].first_node, node_end(soft, body)):
-            state.node_force[world, node] = Vector3(0.0, 0.0, 0.0)
+        clear_node_forces(soft, state, world, body)
 
 
 @kernel
@@ -213,11 +284,7 @@ def abandon_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, firs
     """Restore the nodes as they were at the start of the step; clear their forces if the step failed."""
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
-        for node in range(soft.soft[body].first_node, node_end(soft, body)):
-            state.node_position[world, node] = soft_work.node_start_position[world, node]
-            state.node_velocity[world, node] = soft_work.node_start_velocity[world, node]
-            if state.status_entry[world, STATUS] > 0:
-                state.node_force[world, node] = Vector3(0.0, 0.0, 0.0)
+        return_nodes(soft, state, soft_work, world, body)
 
 
 @kernel
