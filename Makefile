@@ -217,7 +217,7 @@ GPU ?= cuda
 
 gpu: $(VENV)/dev
 	$(RUN) benchmarks/gpu.py --device $(GPU) --counts 1024 --seconds 0.2
-	CAROM_TEST_DEVICE=$(GPU) $(RUN) -m pytest tests/gpu/test_warp_device.py
+	CAROM_TEST_DEVICE=$(GPU) $(RUN) -m pytest tests/gpu/test_warp_device.py tests/gpu/test_soft_bodies.py
 	$(RUN) benchmarks/gpu.py --device $(GPU)
 
 fuzz: $(VENV)/dev

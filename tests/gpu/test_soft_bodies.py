@@ -97,9 +97,11 @@ def last_body(scene: World) -> int:
 
 
 def stirred(scene: World, device: str | Device) -> Worlds:
-    """Worlds of a scene, each disturbed in its own way, with a force on a node in the next step."""
+    """Worlds of a scene, each with its gravity, friction and motion; a force acts on a node for one step."""
     worlds = Worlds(scene, COUNT, device=device)
     soft = worlds[last_body(scene)]
+    worlds.gravity = [[0.1 * number, 0.0, -9.81] for number in range(COUNT)]
+    soft.change_dynamics(-1, lateral_friction=np.linspace(0.2, 0.8, COUNT))
     for number in range(COUNT):
         soft.node_velocities[number, :, 0] += 0.1 * number
     soft.node_forces[:, 5, 2] = 0.5
