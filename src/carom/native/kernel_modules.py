@@ -22,6 +22,7 @@ KERNEL_MODULES = (
 )
 # Kernels of steps in fine launches, for GPUs; those that take longest to compile come first.
 PARALLEL_MODULES = (
+    "carom.kernels.parallel.soft_motion",
     "carom.kernels.parallel.detection",
     "carom.kernels.parallel.contact_rows",
     "carom.kernels.parallel.restless_sweeps",
@@ -29,7 +30,6 @@ PARALLEL_MODULES = (
     "carom.kernels.parallel.sweeps",
     "carom.kernels.parallel.trees",
     "carom.kernels.parallel.soft_contact",
-    "carom.kernels.parallel.soft_motion",
     "carom.kernels.parallel.joint_rows",
     "carom.kernels.parallel.soft_nodes",
     "carom.kernels.parallel.runs",
