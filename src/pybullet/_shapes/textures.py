@@ -188,7 +188,7 @@ def resetVisualShapeData(
     Args:
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
-        shapeIndex: Which of the link's visual shapes, from 0; -1 for all.
+        shapeIndex: Index of the visual shape, from 0; -1 for all.
         textureUniqueId: From `loadTexture`; -1 removes the texture, -2: no change.
         rgbaColor: Red, green, blue, opacity, each from 0 to 1.
         specularColor: Red, green, blue of highlights, each from 0 to 1.
