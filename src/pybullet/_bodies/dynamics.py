@@ -116,10 +116,10 @@ def changeDynamics(
 ) -> None:
     """Changes parameters of a link, of its joint, or of the whole body. Negative numbers change nothing.
 
-    PyBullet has a trap here, which is kept: damping, activation state, maximum velocity and collision margin
-    belong to the body. If one of them is the last of the arguments given, in the order written below, all
-    others in the same call go to the base as well. Use one call for the body and another for the link; a
-    warning is logged if it happens. A body or link that does not exist is no error.
+    Carom keeps a trap of PyBullet: damping, activation state, maximum velocity and collision margin belong to
+    the body. If one of them is the last of the arguments given, in the order below, all others in the same
+    call go to the base as well, with a warning. Use one call for the body and another for the link. A body or
+    link that does not exist is no error.
 
     The order: jointLimitForce, joint limits, mass, anisotropicFriction, localInertiaDiagonal,
     lateralFriction, spinningFriction, rollingFriction, linearDamping*, angularDamping*, jointDamping,
@@ -152,7 +152,7 @@ def changeDynamics(
         jointLowerLimit: [rad or m]; limits are changed if it is not greater than the upper one.
         jointUpperLimit: [rad or m].
         jointLimitForce: Maximum force of the limits [N m or N].
-        sleepThreshold: Sum of all its squared velocities below which a body may sleep; default 0.05.
+        sleepThreshold: Sum of the body's squared velocities below which it may sleep; default 0.05.
         physicsClientId: The connection.
 
     Raises:
@@ -245,7 +245,7 @@ def changeDynamics(
 def enableJointForceTorqueSensor(
     bodyUniqueId: int, jointIndex: int, enableSensor: int = 1, physicsClientId: int = 0
 ) -> None:
-    """Switches the force-torque sensor of a joint on or off, which `getJointState` reads.
+    """Switches the force-torque sensor of a joint on or off; `getJointState` returns its values.
 
     Args:
         bodyUniqueId: The body.

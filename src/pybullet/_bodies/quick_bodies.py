@@ -33,11 +33,11 @@ _MOST_ROOM = 1 << 20
 
 
 class QuickBodies:
-    """The records of a connection's bodies for quick calls, until it is closed.
+    """The records of a connection's bodies for quick calls; in use until `close`.
 
     Args:
         calls: The quick calls.
-        number: Of the connection.
+        number: Number of the connection.
         client: The connection.
     """
 

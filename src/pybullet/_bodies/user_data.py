@@ -65,7 +65,7 @@ def addUserData(
 
 @exported
 def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
-    """A text.
+    """The text with an id.
 
     Args:
         userDataId: Its id.

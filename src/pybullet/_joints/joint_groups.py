@@ -23,7 +23,7 @@ _MOST_GROUPS = 64
 
 
 class JointGroup:
-    """A group of joints of any types, used one after the other; base class for the other groups."""
+    """A group of joints of any types, handled one by one; base class for the other groups."""
 
     def __init__(self, client: Client, joints: Sequence[JointAccess]) -> None:
         self.client = client

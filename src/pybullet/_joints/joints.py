@@ -291,7 +291,9 @@ def resetJointStatesMultiDof(
     targetVelocities: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> None:
-    """Sets the states of several joints: `resetJointStateMultiDof` for each. Nothing changes if one is wrong.
+    """Sets the states of several joints: `resetJointStateMultiDof` for each.
+
+    Nothing changes if an argument is wrong.
 
     Args:
         bodyUniqueId: The body.

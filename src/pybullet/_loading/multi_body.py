@@ -124,9 +124,9 @@ def createMultiBody(
     """Makes a body: a base and, if there are link lists, links on joints.
 
     Links are named `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`..., and the
-    base `link0`. As in a file, link indices are depth first, or with
-    `URDF_MAINTAIN_LINK_ORDER` in the order of the lists. Joints have no limits and, as always, a motor
-    that holds their velocity at 0. Moments of inertia are those of the collision shapes.
+    base `link0`. Link indices are depth first, as for files; with `URDF_MAINTAIN_LINK_ORDER` they follow the
+    order of the lists. Joints have no limits and, as always, a motor that holds their velocity at 0. Moments
+    of inertia are those of the collision shapes.
 
     Args:
         baseMass: [kg]; 0 fixes the base in the world.
@@ -278,7 +278,7 @@ def _rotation(values: Any, name: str) -> Quaternion:
 def _joint_type(value: Any, name: str) -> JointType:
     kind = integer(value, name)
     if kind not in JOINT_TYPES:
-        fail(_FAILED, f"{name} is {kind}, which is not a joint type that can be made here.")
+        fail(_FAILED, f"{name} is {kind}; a joint has to be revolute, prismatic, spherical or fixed.")
     return JOINT_TYPES[kind]
 
 

@@ -106,7 +106,7 @@ def _collision(shapes: tuple[Collision, ...]) -> Raw:
 
 
 def _visual(link: LinkSpec) -> Raw:
-    """The call that creates the visual shape of a link; -1 if the collision shape serves or no call can."""
+    """The call that creates a link's visual shape; -1 if its collision shape is drawn or no call can."""
     shapes = link.visuals
     touching = [(shape.geometry, shape.frame) for shape in link.collisions]
     plain = all(shape.material is None for shape in shapes)

@@ -244,7 +244,7 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
     if shape is None:
         logger.warning("removeCollisionShape: there is no shape %d.", number)
     elif shape.used:
-        logger.warning("removeCollisionShape: a body has been made of shape %d, so it stays.", number)
+        logger.warning("removeCollisionShape: shape %d stays, because a body has been made of it.", number)
     else:
         client.shapes.collisions.remove(number)
 

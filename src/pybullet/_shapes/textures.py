@@ -80,8 +80,8 @@ def changeTexture(
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, there is no such texture, or the numbers are not 3 * width * height
-            whole numbers from 0 to 255.
+        pybullet.error: Not connected, there is no such texture, or `pixels` has fewer than 3 * width * height
+            numbers or a number that is not a whole number from 0 to 255.
 
     Examples:
         >>> texture = p.loadTexture("checker_blue.png")
