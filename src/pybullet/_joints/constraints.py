@@ -272,8 +272,8 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
         (parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis,
         parentFramePosition, childFramePosition, parentFrameOrientation, childFrameOrientation, maxForce,
         gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world, and gearAuxLink
-        is also 0 if there is none. Of the anchor of a soft body, a point-to-point constraint, the parent
-        is the soft body and its link the node.
+        is also 0 if there is none. An anchor of a soft body is reported as a point-to-point constraint
+        whose parent is the soft body and whose parentLinkIndex is the node.
 
     Raises:
         pybullet.error: Not connected, or there is no such constraint.
@@ -338,7 +338,7 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
 
 
 def _numbers(client: Client) -> list[int]:
-    """The numbers of all constraints, in order of creation."""
+    """The numbers of all constraints and anchors, in order of creation."""
     world = client.world
     return sorted(
         [constraint.id for constraint in world.user_constraints.all] + [*world.contact_arrays.soft.anchors]
@@ -377,7 +377,7 @@ def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
 
 
 def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:
-    """A gear needs a joint of one degree of freedom on each side."""
+    """Check that both links of a gear have a joint with one degree of freedom."""
     for body, link, name in ((parent, parent_link, "parent"), (child, child_link, "child")):
         if body is None or link < 0 or body.velocity_count[link] != 1:
             fail(_FAILED, f"The {name} of a gear has to be a revolute or prismatic joint.")
