@@ -24,6 +24,7 @@ from carom.description import (
 from carom.description.joint import JOINT_CODE
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import LinkSpec
+from pybullet._calls.errors import logger
 from pybullet._loading.multi_body import JOINT_TYPES
 
 if TYPE_CHECKING:
@@ -151,6 +152,11 @@ def _shape(kind: str, parts: list[Any], colours: Sequence[Any] = ()) -> Raw:
     if colours:
         arguments["rgbaColors"] = [colour or (1.0, 1.0, 1.0, 1.0) for colour in colours]
     if any("vertices" in column or "heightfieldData" in column for column in columns):
+        logger.warning(
+            "saveWorld: no call can create a %s shape of several parts, one of them made of vertices or "
+            "heights; it is left out. saveBullet keeps it.",
+            kind.lower(),
+        )
         return Raw("-1")
     return Raw(call(f"create{kind}ShapeArray", **arguments))
 
