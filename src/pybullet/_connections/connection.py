@@ -57,7 +57,7 @@ _API_VERSION = 202010061
 _WITH_WINDOW = (GUI, GUI_SERVER, GUI_MAIN_THREAD, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _SERVERS = (SHARED_MEMORY_SERVER, GUI_SERVER, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _TO_A_SERVER = (SHARED_MEMORY, UDP, TCP)
-# Without a server these have a world of their own without a window.
+# Without a server these methods make a world without a window.
 _TO_GRAPHICS = (GRAPHICS_CLIENT, GRAPHICS_SERVER_TCP)
 _METHODS = {DIRECT, *_WITH_WINDOW, *_SERVERS, *_TO_A_SERVER, *_TO_GRAPHICS}
 _NO_SERVER = -1
@@ -101,8 +101,8 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
             servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the secret key that both sides
             need; otherwise it is the environment variable `CAROM_SERVER_KEY`. Processes of one user on one
             machine need no key.
-        hostName: Of a server.
-        port: Of a server; 6667 for TCP and 1234 for UDP if it is negative.
+        hostName: Host of the server.
+        port: Port of the server; 6667 for TCP and 1234 for UDP if it is negative.
 
     Returns:
         The id of the connection, from 0; it is the `physicsClientId` of the other functions. -1 when no
@@ -176,7 +176,7 @@ def _new_client(method: int, target: Target) -> Client:
 
 
 def _let_quick_calls_in(slot: int) -> None:
-    """Lets the native library use the bodies of a client without window and server."""
+    """Lets the native library access the bodies of a client that has neither a window nor a server."""
     from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._calls.quick import install
 
@@ -200,7 +200,7 @@ def _serve(slot: int, target: Target) -> None:
 def disconnect(physicsClientId: int = 0) -> None:
     """Ends a connection and removes its world.
 
-    A connection that the user has ended, by closing the window, may be ended once more.
+    If the user has ended it by closing the window, the first call afterwards is no error.
 
     Args:
         physicsClientId: The connection.
