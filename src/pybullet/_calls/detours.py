@@ -3,7 +3,8 @@
 Whether a call is redirected depends on its `physicsClientId`. Checking that in every call would slow down all
 scripts, most of which use no servers. So calls are checked only while a connection has a detour: the code of
 each Python function behind a builtin is then replaced by code that checks, and restored when the last detour
-is removed. The functions need no code for this. The native library leaves all such calls to Python meanwhile.
+is removed. The functions need no code for this. While there are detours, quick calls leave these functions to
+Python.
 """
 
 from __future__ import annotations

@@ -61,8 +61,8 @@ def getCameraImage(
             given, the camera is that of the window, or without a window one near the origin that looks at it.
         lightDirection: Towards the light, world axes; default (-50, 30, 100).
         lightColor: Red, green and blue of the light; default (1, 1, 1).
-        lightDistance: Distance of the lamp that casts shadows from the world's origin [m]; default 2. It
-            lights what the camera would see from there. Negative: no change.
+        lightDistance: Distance of the lamp that casts shadows from the world's origin [m]; default 2. The
+            shadow map is rendered from there with the camera's projection. Negative: no change.
         shadow: 1 for shadows, 0 for none; -1: no change; default none.
         lightAmbientCoeff: Ambient share of the colour, visible without light; default 0.6. Negative: no
             change.

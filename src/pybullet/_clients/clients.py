@@ -158,7 +158,7 @@ def why_not_connected(physics_client_id: Any) -> str:
     """Error message: the reason why there is no such connection."""
     if physics_client_id in closed_by_users:
         return f"The window of client {physics_client_id} has been closed."
-    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) before."
+    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) first."
 
 
 def client_of(physics_client_id: Any) -> Client:

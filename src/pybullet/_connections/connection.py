@@ -93,14 +93,13 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
             which connects by `GRAPHICS_CLIENT` (also called `SHARED_MEMORY_GUI`) or, over TCP, by
             `GRAPHICS_SERVER_TCP`; without such a server these two have a world without a window.
         key: Key of shared memory: servers and clients with the same key connect.
-        options: Separated by spaces; unknown ones are ignored. Of the window: `--width=1024 --height=768`,
-            the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
-            `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
-            `--port=8400`, where the page is. Of servers: `--tcp=6667` and
-            `--udp=1234`, additional ports to listen at; `--bind=127.0.0.1`, the address of these ports. Of
-            servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the secret key that both sides
-            need; otherwise it is the environment variable `CAROM_SERVER_KEY`. Processes of one user on one
-            machine need no key.
+        options: Options separated by spaces; unknown ones are ignored. For a window: `--width=1024
+            --height=768`, the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a
+            video; `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
+            `--port=8400`, the address of the page. For servers: `--tcp=6667` and `--udp=1234`, additional
+            ports to listen at; `--bind=127.0.0.1`, the address of these ports. For servers and for `TCP` and
+            `UDP`: `--key-file=FILE`, a file with the secret key that both sides need; without it the key is
+            the environment variable `CAROM_SERVER_KEY`. Processes of one user on one machine need no key.
         hostName: Host of the server.
         port: Port of the server; 6667 for TCP and 1234 for UDP if it is negative.
 

@@ -339,9 +339,9 @@ def setPhysicsEngineParameter(
         numSubSteps: Number of substeps, each solved separately; 0 or 1 for none. The maximum impulse of a
             motor applies to each substep.
         collisionFilterMode: 0: both bodies' filters have to agree; 1: one is enough.
-        contactBreakingThreshold: Distance at which a contact is removed, relative to the size.
-        maxNumCmdPer1ms: Of PyBullet's server; no effect.
-        enableFileCaching: Of PyBullet's file reader; no effect: files are read again when they change.
+        contactBreakingThreshold: Distance at which a contact is removed, relative to the size of a shape.
+        maxNumCmdPer1ms: Option of PyBullet's server; no effect.
+        enableFileCaching: Option of PyBullet's file reader; no effect: files are read again when they change.
         restitutionVelocityThreshold: Speed below which nothing bounces [m/s].
         erp: Fraction of an error of limits and constraints corrected in one step.
         contactERP: The same for penetration.
@@ -363,7 +363,7 @@ def setPhysicsEngineParameter(
         reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
         warmStartingFactor: Fraction of the last step's impulses to start from, for rigid bodies other than
             multibodies; no effect.
-        sparseSdfVoxelSize: Of deformable bodies; no effect.
+        sparseSdfVoxelSize: Option for PyBullet's deformable bodies; no effect.
         numNonContactInnerIterations: Iterations over motors, limits and constraints for each iteration over
             contacts; at least 1.
         physicsClientId: The connection.

@@ -62,8 +62,8 @@ def startStateLogging(
             `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results, bit for bit,
             in a world in the same state as at the start of the log. See docs/command-logs.md.
         fileName: The file; an existing one is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
-        objectUniqueIds: Bodies to log; an empty list for all, but a Minitaur has to be given. Those with more
-            joints than columns, or with spherical or planar joints, are left out.
+        objectUniqueIds: Bodies to log; an empty list for all, but a Minitaur has to be given. Bodies with
+            more joints than columns, or with spherical or planar joints, are left out.
         maxLogDof: Number of joints that have columns, at most 10,000; 12 if negative.
         bodyUniqueIdA: Body whose contacts are logged; -1 for any.
         bodyUniqueIdB: The other body of these contacts; -1 for any.
@@ -79,7 +79,7 @@ def startStateLogging(
         first body is not a Minitaur, and if there is a log of commands already.
 
     Raises:
-        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, a
+        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is not a sequence, a
             video is asked for and PyAV is not installed, or a log cannot be replayed: its file is missing or
             damaged (then nothing is done), or one of its commands fails.
 

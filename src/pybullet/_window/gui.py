@@ -74,7 +74,7 @@ def readUserDebugParameter(itemUniqueId: int, physicsClientId: int = 0) -> float
         Its value.
 
     Raises:
-        pybullet.error: Not connected, or there is no such slider; in `DIRECT` there never is.
+        pybullet.error: Not connected, or there is no such slider or button; in `DIRECT` there are none.
 
     Examples:
         >>> slider = p.addUserDebugParameter("speed", 0, 2, 1)
