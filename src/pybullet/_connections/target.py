@@ -15,10 +15,10 @@ class Target:
     """The arguments of `connect` after the method.
 
     Attributes:
-        key: Of shared memory.
-        host: Of a server.
-        port: Of a server; negative for the usual one.
-        options: Separated by spaces; double quotes enclose values with spaces.
+        key: Key of shared memory.
+        host: Host of the server.
+        port: Port of the server; negative for the default.
+        options: Options separated by spaces; double quotes enclose values with spaces.
     """
 
     key: int = SHARED_MEMORY_KEY
@@ -27,7 +27,7 @@ class Target:
     options: str = ""
 
     def option(self, name: str) -> str | None:
-        """The value of `--name=value`, empty for `--name`; None if it is not there."""
+        """The value of the last `--name=value`, empty for `--name`; None if not given."""
         for word in reversed(_WORDS.findall(self.options)):
             found, _, value = word.lstrip("-").partition("=")
             if found == name:

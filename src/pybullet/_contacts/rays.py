@@ -135,9 +135,10 @@ def rayTestBatch(
 
 
 def _frame_of(client: Client, body_id: int, link: int) -> Pose | None:
-    """The frame of the rays; None for the world frame, also used for unknown bodies.
+    """The frame of the rays; None for the world frame, which is also used for unknown bodies.
 
-    As in PyBullet it is that of `getLinkState`, after a step at the start of its last substep.
+    As in PyBullet it is the frame that `getLinkState` returns: after a step, that at the start of its last
+    substep.
     """
     body = client.world.bodies.get(body_id)
     if body is None or not _BASE <= link < body.joint_count:

@@ -32,7 +32,7 @@ _PAUSED = (
     "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
 )
 _GOES_ON = "The simulation continues."
-# A colour component that is not given, or is not a number.
+# Value of a colour component that is not given, or is not a number.
 _DEFAULT_SHADE = 0.8
 
 
@@ -61,7 +61,7 @@ class PageWindow(RecordingWindow):
 
     @property
     def viewer(self) -> Viewer:
-        """The viewer behind it."""
+        """The viewer that serves the page."""
         return self._viewer
 
     def is_open(self) -> bool:
@@ -179,7 +179,7 @@ class PageWindow(RecordingWindow):
 
 
 def open_window(client: Client, options: str) -> PageWindow:
-    """Shows the world of a client.
+    """Opens a window that shows the world of a client.
 
     Args:
         client: The connection.
@@ -220,7 +220,7 @@ def open_window(client: Client, options: str) -> PageWindow:
 
 
 def _title() -> str:
-    """The name of the script."""
+    """Title of the window: the name of the script."""
     from carom.viewer.notebook import in_notebook
 
     return "Carom" if in_notebook() else Path(sys.argv[0]).stem or "Carom"
