@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
 from carom.record import record
 from pybullet._calls.constants import SHARED_MEMORY_KEY
-
-_WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
+from pybullet._calls.options import values_of
 
 
 @record
@@ -28,8 +25,4 @@ class Target:
 
     def option(self, name: str) -> str | None:
         """The value of the last `--name=value`, empty for `--name`; None if not given."""
-        for word in reversed(_WORDS.findall(self.options)):
-            found, _, value = word.lstrip("-").partition("=")
-            if found == name:
-                return value.replace('"', "")
-        return None
+        return values_of(self.options).get(name)

@@ -61,7 +61,8 @@ def rayTest(
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
+    with client.lock:
+        hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
     client.window.show_rays((start,), (end,), (hit,))
     return (hit,)
 
@@ -127,9 +128,10 @@ def rayTestBatch(
     )
     if frame is not None:
         starts, ends = in_world(starts, frame), in_world(ends, frame)
-    hits = client.world.queries().cast_rays(
-        starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
-    )
+    with client.lock:
+        hits = client.world.queries().cast_rays(
+            starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
+        )
     client.window.show_rays(starts, ends, hits)
     return hits
 

@@ -197,7 +197,8 @@ def configureDebugVisualizer(
     client.window.configure(options)
     if options.flags.get(COV_ENABLE_SINGLE_STEP_RENDERING):
         client.window.draw_now()
-        client.logs.shoot()
+        with client.lock:
+            client.logs.shoot()
 
 
 @exported
