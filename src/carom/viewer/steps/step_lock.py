@@ -26,7 +26,7 @@ class StepLock:
         """Waits while the simulation is paused, then takes the lock."""
         if self._viewer.held:
             self._viewer.wait_for_turn()
-        # A step that failed has not released it.
+        # A step that failed has not released the lock.
         if not self._held:
             self._lock.acquire()
             self._held = True
