@@ -23,7 +23,7 @@ class Handles:
         self._show(number, handle)
 
     def move(self, number: int, position: Vector3, orientation: Quaternion) -> None:
-        """Sets the pose that the user has given to a handle; unknown handles and invalid poses are ignored."""
+        """Sets the pose of a handle, moved by the user; unknown handles and invalid poses are ignored."""
         handle = self._handles.get(number)
         length = hypot(*orientation)
         if handle is None or not all(map(isfinite, (*position, *orientation))) or length < 1e-6:
