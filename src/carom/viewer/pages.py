@@ -9,7 +9,7 @@ from carom.viewer.board import Board
 
 
 class Page:
-    """One page that is open.
+    """An open page.
 
     Attributes:
         number: Its number.

@@ -84,7 +84,10 @@ def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
 
 
 def _shades(depth: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Grey levels of the ranks of depths, near is dark. Of the depths themselves most are at the horizon."""
+    """Grey levels of a depth image; near is dark.
+
+    They show ranks, not depths: most of a scene's range of depths is at its horizon.
+    """
     shades = np.full(depth.shape, 255, dtype=np.uint8)
     seen = depth < 1.0
     _, ranks = np.unique(depth[seen], return_inverse=True)

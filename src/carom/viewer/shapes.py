@@ -41,7 +41,7 @@ _FLOOR_SIZE = 9.0
 _NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
 # Sides of the polygons for circles, by level of detail.
 _SEGMENTS = (48, 24, 12)
-# Largest error of a round shape's outline that nobody sees [pixels].
+# Maximum error of a round shape's outline, too small to be visible [pixels].
 _OUTLINE_ERROR = 0.35
 
 

@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
 
 class StepLock:
-    """One of `World.observers`: a step waits for the viewer and holds its lock.
+    """Makes each step wait for the viewer and hold its lock; one of `World.observers`.
 
-    With it pages can pause, pull bodies and go back in time while a script calls `World.step`.
+    So pages can pause, pull bodies and go back in time while a script calls `World.step`.
 
     Args:
         viewer: The viewer.

@@ -10,7 +10,7 @@ const FRAME_BYTES = 200;
 const LEAST_INTERVAL = 1 / 60;
 /** Number of frames between two checks of the memory. */
 const TIDY_EVERY = 64;
-/** Types of messages that the history keeps; all others are only for the live view. */
+/** Types of messages that the history keeps besides frames; all others are only for the live view. */
 const SINGLE = new Set(["layout", "constraints", "rays", "pyramid"]);
 const NUMBERED = { body: "body", mesh: "mesh", texture: "texture", slider: "slider", dynamics: "dynamics", line: "item", text: "item", points: "item" };
 
