@@ -164,23 +164,26 @@ def changeConstraint(
     if constraint is None:
         logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
         return
-    if auxiliary >= 0:
-        constraint.gear_auxiliary_link = _link(constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED)
-    if pivot is not None or orientation is not None:
-        old = constraint.child_frame
-        constraint.child_frame = Pose(
-            pivot or old.position, old.orientation if orientation is None else unit(orientation)
-        )
-    if force >= 0.0:
-        constraint.max_force = force
-        constraint.max_impulse = force * client.world.parameters.substep_time
-    if ratio != 0.0:
-        constraint.gear_ratio = ratio
-    if target < _UNCHANGED_TARGET:
-        constraint.relative_position_target = target
-    if share >= 0.0:
-        constraint.erp = share
-    client.world.user_constraints.write(client.world.contact_arrays)
+    with client.lock:
+        if auxiliary >= 0:
+            constraint.gear_auxiliary_link = _link(
+                constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED
+            )
+        if pivot is not None or orientation is not None:
+            old = constraint.child_frame
+            constraint.child_frame = Pose(
+                pivot or old.position, old.orientation if orientation is None else unit(orientation)
+            )
+        if force >= 0.0:
+            constraint.max_force = force
+            constraint.max_impulse = force * client.world.parameters.substep_time
+        if ratio != 0.0:
+            constraint.gear_ratio = ratio
+        if target < _UNCHANGED_TARGET:
+            constraint.relative_position_target = target
+        if share >= 0.0:
+            constraint.erp = share
+        client.world.user_constraints.write(client.world.contact_arrays)
 
 
 @exported

@@ -1,6 +1,5 @@
 // The camera's controls: presets, following, and the arguments of resetDebugVisualizerCamera.
 
-import { add, turned } from "../view/maths.js";
 import { boundsOfBody, boundsOfScene } from "../view/bounds.js";
 import { PRESETS } from "../view/camera.js";
 
@@ -62,7 +61,7 @@ export class Viewpoint {
     if (!this.following.checked) return;
     const { body, link } = this.selection ?? {};
     const pose = body === undefined ? null : this.scene.inertialPose(body, link ?? 0);
-    this.camera.follow(pose && add(pose.position, turned(pose.orientation, [0, 0, 0])));
+    this.camera.follow(pose && pose.position);
   }
 
   show() {

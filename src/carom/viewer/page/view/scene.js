@@ -66,8 +66,8 @@ export class Scene {
     this.dynamics.set(header.body, header);
   }
 
-  removeDynamics({ body }) {
-    this.dynamics.delete(body);
+  removeDynamics({ dynamics }) {
+    this.dynamics.delete(dynamics);
   }
 
   addBody(header) {
