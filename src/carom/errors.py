@@ -15,7 +15,7 @@ class DescriptionError(CaromError):
     Attributes:
         reason: What is wrong, in words.
         file: The file at fault.
-        line: Line in that file, counted from 1, where one is known.
+        line: Line in that file, counted from 1, if known.
         element: The XML element at fault, written as `robot > link "arm" > inertial`.
     """
 
@@ -39,7 +39,7 @@ class StateError(CaromError):
 
 
 class SimulationWarning(RuntimeWarning):
-    """One of many worlds has been halted."""
+    """One of the worlds of `carom.Worlds` has been halted."""
 
 
 class NativeLibraryError(CaromError):
