@@ -36,7 +36,7 @@ class SoftLoading(BodyAdding):
 
         Args:
             size: Of a rectangle along x and y [m].
-            cells: Number of cells along each axis; there is one node more.
+            cells: Number of cells along each axis; there is one node more along each.
             position: Of its middle [m].
             orientation: Quaternion (x, y, z, w).
             mesh: An OBJ file whose surface is the cloth, instead of a rectangle.

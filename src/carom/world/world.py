@@ -192,7 +192,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Remove all bodies and reset all parameters except the time step and the substeps.
 
         Args:
-            also: A function called as part of the reset, even if that is interrupted; it may be called twice.
+            also: A function called as part of the reset, even if it is interrupted; may be called repeatedly.
         """
         kept = self.parameters
         parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
@@ -588,7 +588,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
         if self.contact_arrays.soft.bodies:
             if self._derived.step is None:
-                # Anchored nodes are left out; the preparation of a step writes which nodes are anchored.
+                # Nodes anchored to the world are left out; usually the preparation of a step writes these.
                 self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 
