@@ -21,7 +21,7 @@ class ContactSummary(NamedTuple):
         touching: Whether there is a contact with a force, (count,).
         number: Number of contact points, including those that do not touch yet, (count,).
         forces: Force on the body, friction included, in world axes [N], (count, 3).
-        distances: Distance at the deepest point [m], < 0 for penetration; infinite without contacts, (count,).
+        distances: Distance at the deepest point [m], < 0 for penetration, inf without contacts, (count,).
         deepest: Deepest point on the body in world axes [m], (count, 3); NaN without contacts.
     """
 
