@@ -78,7 +78,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
 
 def _numbers(value: ArrayLike, name: str) -> Array:
     try:
-        # PyTorch's tensors warn when NumPy asks them for a copy.
+        # Copied separately, because PyTorch's tensors warn when NumPy requests a copy from them.
         return np.asarray(value, dtype=np.float64).copy()
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be a number or an array of numbers, not {value!r}") from None

@@ -13,7 +13,7 @@ class DescriptionError(CaromError):
     """A robot or mesh file cannot be used.
 
     Attributes:
-        reason: What is wrong, in words.
+        reason: Description of the error.
         file: The file at fault.
         line: Line in that file, counted from 1, if known.
         element: The XML element at fault, written as `robot > link "arm" > inertial`.
@@ -43,4 +43,4 @@ class SimulationWarning(RuntimeWarning):
 
 
 class NativeLibraryError(CaromError):
-    """The compiled kernels are missing, damaged or of another version; the message says what to do."""
+    """The compiled kernels are missing, damaged or of another version; the message explains what to do."""

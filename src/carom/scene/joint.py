@@ -214,7 +214,7 @@ class Joint:
         Args:
             target: Rest position of the spring.
             stiffness: [N m/rad or N/m].
-            damping: [N m s/rad or N s/m]. The force is explicit: too much for the inertia is unstable.
+            damping: [N m s/rad or N s/m]. It is explicit: too large a value for the inertia is unstable.
             velocity: Velocity at which the damper exerts no force.
             max_force: Maximum force; `effort_limit` by default.
         """

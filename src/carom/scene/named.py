@@ -7,7 +7,7 @@ from typing import Generic, Protocol, TypeVar
 
 
 class HasName(Protocol):
-    """Something with a name."""
+    """Interface of items that have a name."""
 
     @property
     def name(self) -> str:

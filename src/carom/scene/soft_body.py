@@ -118,7 +118,7 @@ class SoftBody(Body):
         self.update()
 
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Move and rotate the whole body, its centre of mass to `position`; see `Body.set_base_pose`."""
+        """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_base_pose`."""
         state = self.world.arrays.state.numpy
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
@@ -129,7 +129,7 @@ class SoftBody(Body):
         self.update()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Set the nodes' velocities to a rigid motion: of the centre of mass [m/s], angular [rad/s]."""
+        """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
         self.node_velocities[:] = np.asarray(linear) + np.cross(np.asarray(angular), self.nodes - center)

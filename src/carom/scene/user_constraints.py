@@ -28,7 +28,7 @@ ROWS = {
 
 @record(frozen=False, eq=False)
 class UserConstraint:
-    """One constraint.
+    """A user constraint.
 
     Attributes:
         id: Number of the constraint in its world.

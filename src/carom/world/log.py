@@ -60,7 +60,7 @@ class Log:
         self.stop()
 
     def stop(self) -> None:
-        """Stop recording; what has been recorded is kept."""
+        """Stop recording; recorded rows are kept."""
         if self in self._world.observers:
             self._world.observers.remove(self)
 

@@ -44,7 +44,7 @@ class SoftLoading(BodyAdding):
             stiffness: Of springs along edges [N/m].
             bending: Of springs between nodes that have a neighbour in common [N/m].
             damping: Of all springs [N s/m].
-            friction: Coulomb coefficient, multiplied by that of what it touches.
+            friction: Coulomb coefficient, multiplied by that of the other surface.
             margin: Distance at which it rests on other surfaces [m].
             self_collision: Whether it collides with itself.
 
@@ -96,7 +96,7 @@ class SoftLoading(BodyAdding):
             stiffness: Of each spring [N/m].
             bending: Of springs from each node to the next but one [N/m].
             damping: Of all springs [N s/m].
-            friction: Coulomb coefficient, multiplied by that of what it touches.
+            friction: Coulomb coefficient, multiplied by that of the other surface.
             radius: Distance at which its nodes rest on other surfaces [m].
 
         Raises:
@@ -142,7 +142,7 @@ class SoftLoading(BodyAdding):
             poissons_ratio: For small strains; less than 0.5.
             damping: Viscosity as a share of the elastic parameters [s].
             mass: Of all of it [kg]; every node has the same.
-            friction: Coulomb coefficient, multiplied by that of what it touches.
+            friction: Coulomb coefficient, multiplied by that of the other surface.
             margin: Distance at which it rests on other surfaces [m].
 
         Raises:

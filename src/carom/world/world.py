@@ -209,7 +209,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
 
-        Handles of bodies are found in `bodies` under their numbers. Observers and logs are not copied.
+        The new handles are in `bodies`, under the same numbers. Observers and logs are not copied.
         """
         from carom.world.copying import copy_world
 
@@ -313,7 +313,9 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """
         unknown = [name for name in names if name not in VIEWS]
         if unknown or every < 1:
-            raise ValueError(f"there is no array {unknown[0]!r}" if unknown else f"every is {every}")
+            raise ValueError(
+                f"there is no array {unknown[0]!r}" if unknown else f"every must be at least 1, not {every}"
+            )
         from carom.world.log import Log
 
         return Log(self, names, every)
@@ -588,7 +590,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
         if self.contact_arrays.soft.bodies:
             if self._derived.step is None:
-                # Nodes anchored to the world are left out; usually the preparation of a step writes these.
+                # Nodes anchored to the world are left out. `write_anchors` marks them; preparing a step calls it too.
                 self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 

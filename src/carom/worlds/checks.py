@@ -51,7 +51,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
         count: Number of worlds.
 
     Raises:
-        ValueError: A mask has another length.
+        ValueError: A mask has the wrong length, or the indices are not integers.
         IndexError: There is no such world.
     """
     if where is None:
