@@ -590,7 +590,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
         if self.contact_arrays.soft.bodies:
             if self._derived.step is None:
-                # Nodes anchored to the world are left out. `write_anchors` marks them; preparing a step calls it too.
+                # Nodes anchored to the world are left out; `write_anchors` marks these.
                 self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 

@@ -66,7 +66,7 @@ class SavedWorlds:
         return np.arange(len(worlds))
 
     def put_back(self, engine: Engine, worlds: np.ndarray, rows: np.ndarray) -> None:
-        """Restore worlds to saved states; `rows` has the index of the state of each.
+        """Restore worlds to saved states; `rows` are the indices of the states that they get.
 
         Raises:
             ValueError: They are states of other bodies; nothing is changed.
