@@ -151,7 +151,7 @@ class CameraImage:
         if isinstance(body, str):
             found = [identifier for identifier, (name, _) in self._names.items() if name == body]
         else:
-            identifier = body if isinstance(body, int) else body.id
+            identifier = int(body) if isinstance(body, (int, np.integer)) else body.id
             found = [identifier] if identifier in self._names else []
         if not found:
             raise KeyError(f"there was no body {body!r} when the image was taken")
@@ -163,7 +163,7 @@ class CameraImage:
             if link not in links:
                 raise KeyError(f"body {body!r} has no link {link!r}")
             return links.index(link) - 1
-        index = link if isinstance(link, int) else link.index
+        index = int(link) if isinstance(link, (int, np.integer)) else link.index
         if not -1 <= index < len(links) - 1:
             raise KeyError(f"body {body!r} has no link {index}")
         return index

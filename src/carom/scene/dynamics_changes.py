@@ -94,11 +94,19 @@ def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
     """Check that a parameter exists and has a value of the right type, before anything is changed."""
     if name in _VECTORS:
         x, y, z = value
-        _ = float(x), float(y), float(z)
+        for component in (x, y, z):
+            _check_number(component)
     elif type(value) is not float:
-        float(value)
+        _check_number(value)
     if name not in _NOT_OF_SURFACE:
         getattr(dynamics, name)
+
+
+def _check_number(value: Any) -> None:
+    # `float` also takes text.
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"must be a real number, not {value!r}")
+    float(value)
 
 
 def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Callable[[], None]]:

@@ -134,12 +134,18 @@ class Joint:
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
+        self.body.set_joint_state(self.index, *self.checked_state(position, velocity))
+
+    def checked_state(
+        self, position: ArrayLike, velocity: ArrayLike = 0.0
+    ) -> tuple[list[float], list[float]]:
+        """The coordinates of a state for `reset`, checked as it does."""
         world_of(self.body)  # raises an error if the body has been removed
         position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
         if self._has_quaternion and not position.any():
             raise ValueError("position must be a quaternion other than 0")
         velocity = np.broadcast_to(finite(velocity, "velocity"), self.degrees_of_freedom)
-        self.body.set_joint_state(self.index, position.tolist(), velocity.tolist())
+        return position.tolist(), velocity.tolist()
 
     # Drive
 
@@ -368,8 +374,8 @@ class Joints(Named[Joint]):
     @property
     def limits(self) -> tuple[Array, Array]:
         """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
-        lower, upper = zip(*(joint.limits for joint in self._movable), strict=True)
-        return np.array(lower), np.array(upper)
+        lower, upper = np.array([joint.limits for joint in self._movable], dtype=float).reshape(-1, 2).T
+        return lower, upper
 
     @property
     def effort_limits(self) -> Array:
@@ -382,15 +388,22 @@ class Joints(Named[Joint]):
         Args:
             positions: All position coordinates, as in `positions`.
             velocities: All velocity coordinates, as in `velocities`, or one number for all.
+
+        Raises:
+            ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
+                has changed.
         """
         positions = vector(positions, sum(self._body.position_count), "positions")
         dof_count = sum(self._body.velocity_count)
         velocities = np.broadcast_to(finite(velocities, "velocities"), dof_count)
         q = u = 0
+        states = []
         for joint in self._movable:
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
-            joint.reset(positions[q:q_end], velocities[u:u_end])
+            states.append(joint.checked_state(positions[q:q_end], velocities[u:u_end]))
             q, u = q_end, u_end
+        for joint, state in zip(self._movable, states, strict=True):
+            self._body.set_joint_state(joint.index, *state)
 
     def set_position_targets(
         self,

@@ -80,7 +80,18 @@ def test_scripts_may_go_on_calling(monkeypatch: pytest.MonkeyPatch, arm_path: st
         lambda cube, tie: p.performCollisionDetection(),
         lambda cube, tie: p.removeConstraint(tie),
     ],
-    ids=["ray", "rays", "closest", "overlapping", "contacts", "mask", "pair", "constraint", "detection", "removal"],
+    ids=[
+        "ray",
+        "rays",
+        "closest",
+        "overlapping",
+        "contacts",
+        "mask",
+        "pair",
+        "constraint",
+        "detection",
+        "removal",
+    ],
 )
 def test_calls_that_need_the_arrays_wait_for_the_end_of_a_step(call: Callable[[int, int], object]) -> None:
     p.connect(p.DIRECT)
