@@ -31,7 +31,7 @@ class Player:
         mode = env.metadata.get("autoreset_mode")
         if mode != AutoresetMode.DISABLED:
             raise ValueError(
-                "the environment must leave it to the rollout when episodes begin: make it with "
+                "the environment must not reset itself, because the rollout does: make it with "
                 f"autoreset_mode=AutoresetMode.DISABLED, not {mode}"
             )
         self._env = env

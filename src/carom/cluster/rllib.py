@@ -45,7 +45,7 @@ def train_on(config: Config, make_env: MakeEnv, num_envs_per_runner: int, *, nam
         mode = env.metadata.get("autoreset_mode")
         if mode != AutoresetMode.NEXT_STEP:
             raise ValueError(
-                "RLlib counts on episodes that begin with the step after the last one: make the environment "
+                "RLlib needs environments that are reset by the step after an episode: make the environment "
                 f"with autoreset_mode=AutoresetMode.NEXT_STEP, not {mode}"
             )
         return env

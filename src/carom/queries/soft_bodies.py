@@ -148,7 +148,11 @@ class SoftQueries:
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
     def _touches(self, soft: SoftRows) -> list[tuple[int, int, float, np.ndarray, np.ndarray]]:
-        """Contacts with shapes: node, shape, gap beyond the margin [m], normal to the node, force [N]."""
+        """Contacts of the nodes of a soft body with shapes.
+
+        Returns:
+            Node, shape, gap beyond the margin [m], unit normal towards the node, force on the node [N].
+        """
         work, found = self._work, []
         nodes = self._nodes(soft)
         touching = np.flatnonzero(work["node_touches"][0, nodes]) + nodes.start
