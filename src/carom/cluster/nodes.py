@@ -65,7 +65,7 @@ class Failure:
         return cls(copy if isinstance(copy, Exception) else None, text)
 
     def cause(self) -> Exception:
-        """The exception, as the cause of another one; the traceback of the other process is its own cause."""
+        """The exception, to be used as a cause; its own cause is the traceback of the other process."""
         elsewhere = RemoteError(self.text)
         if self.error is None:
             return elsewhere

@@ -33,8 +33,8 @@ class Rollouts:
         num_envs_per_node: Number of environments on each node.
         nodes: Maximum number of nodes, or "all" nodes present when a collection begins.
         batch_size: Number of episodes given to a node at a time, and repeated if the node is lost; None for
-            its number of environments. In larger batches environments are idle for a smaller part of the
-            time, while the last episodes of a batch end.
+            its number of environments. Some environments are idle while the last episodes of a batch end;
+            the larger the batches, the smaller the idle share.
         max_episode_steps: Number of steps after which episodes are truncated; None: as in the environment.
         cpus_per_node: Number of CPUs that Ray reserves on each node. `make_env` determines how many an
             environment really uses.

@@ -17,7 +17,7 @@ from carom.native.launch import KernelStructs
 def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step of all worlds that take part in it.
 
-    If a world has an error, or its arrays are too small, the end of the step restores the world to its start.
+    If a world has an error, or its arrays are too small, the end of the step restores its state from before.
 
     Args:
         structs: Structs over the arrays of a device.

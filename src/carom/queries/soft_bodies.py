@@ -123,8 +123,8 @@ class SoftQueries:
         """The contacts of nodes with shapes or other soft bodies; for the arguments see `Queries.contacts`.
 
         Body a is the soft body that the node belongs to, unless the query names the other body as `body_a`.
-        The distance of a contact is that from the node to the surface, less the margin or thickness. Its
-        forces are those of the last substep.
+        The distance of a contact is the node's distance from the surface minus the margin, or minus the
+        thickness if the surface is that of a soft body. The forces are those of the last substep.
         """
         with self._present_poses():
             self._find_touches()
