@@ -1,4 +1,4 @@
-"""Robots of a file of any kind."""
+"""Reading robots from a file of any supported format."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
         search: Folders in which the file, if not found as named, and meshes are searched.
 
     Raises:
-        DescriptionError: The file cannot be used, or its kind is not known.
+        DescriptionError: The file cannot be used, or its format is not known.
     """
     match source.suffix.lower():
         case ".sdf" | ".world":

@@ -1,9 +1,9 @@
 """Legacy VTK files in text form: tetrahedra of an unstructured grid.
 
 The format is that of "VTK File Formats", simple legacy formats: a header line with the version, a title,
-`ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Cells that are no
-tetrahedra, and data of points and cells, are left out. Some of Bullet's own files have no space in the first
-line, a wrong sum of the lengths of cells, or no types of cells after the word for them; they are read, too.
+`ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Other cells than
+tetrahedra, and data of points and cells, are ignored. Some of Bullet's own files have no space in the first
+line, a wrong total size after `CELLS`, or nothing after `CELL_TYPES`; they are read, too.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from carom.formats.files import read_bounded
 MAX_FILE_BYTES = 256 << 20
 """Largest file that is read."""
 MOST_CELLS = 20_000_000
-"""Most points or cells that a file may claim to have."""
+"""Most points or cells that a file may declare."""
 TETRAHEDRON = 10
-"""VTK's number for the kind of cell."""
-# VTK's largest cell of a fixed kind has 27; polyhedra have more.
+"""VTK's cell type of tetrahedra."""
+# VTK's largest cell with a fixed number of corners has 27; polyhedra may have more.
 _MOST_CORNERS = 10_000
 
 
