@@ -1,4 +1,4 @@
-"""From a file to bodies and their poses."""
+"""Loading bodies and their poses from files."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:
-    """Prepare the shapes for collision detection now, so that errors are raised now.
+    """Prepare all shapes for collision detection early, so that errors are raised before bodies are added.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
