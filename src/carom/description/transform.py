@@ -31,9 +31,9 @@ def rotation_matrix(quaternion: Quaternion) -> Matrix3:
 
 
 def quaternion_from_matrix(m: Matrix3) -> Quaternion:
-    """Unit quaternion of a rotation matrix, its sign fixed.
+    """Unit quaternion of a rotation matrix, with a defined sign.
 
-    w is positive while the trace is; otherwise the largest of x, y and z is positive.
+    w is positive if the trace is; otherwise that of x, y and z with the largest magnitude is positive.
     """
     trace = m[0][0] + m[1][1] + m[2][2]
     if trace > 0.0:
@@ -65,7 +65,7 @@ def turns_about_axes(roll: float, pitch: float, yaw: float) -> Quaternion:
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """Unit quaternion of roll, pitch and yaw [rad] about the fixed axes x, y and z, its sign fixed.
+    """Unit quaternion of roll, pitch and yaw [rad] about the fixed axes x, y and z, with a defined sign.
 
     The sign rule is that of `quaternion_from_matrix`.
     """
@@ -128,7 +128,7 @@ def dot(a: Vector3, b: Vector3) -> float:
 
 
 def subtracted(a: Vector3, b: Vector3) -> Vector3:
-    """A - b."""
+    """Difference a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 

@@ -30,7 +30,7 @@ class AssetSearch:
         return (self.additional, *self.folders)
 
     def find(self, name: str | os.PathLike[str]) -> Path | None:
-        """The file a script asks for: as named, in nearby data folders, in the additional directories.
+        """The file that a script names: as named or in a nearby `data` folder, then in `places`.
 
         Args:
             name: Path, absolute or relative to one of the searched places.

@@ -37,7 +37,7 @@ from carom.native.trigonometry import atan2
 # Angles are rounded to fewer decimals than this if that is exact; otherwise all their digits are written.
 _DIGITS = 16
 _GIMBAL_LOCK = 1e-10
-"""Cosine of the pitch below which roll and yaw cannot be told apart."""
+"""Cosine of the pitch below which roll and yaw are about the same axis (gimbal lock)."""
 
 _UNNAMED = "material"
 

@@ -36,7 +36,7 @@ def decompose(
     Args:
         vertices: (n, 3) positions.
         triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
-        options: How finely.
+        options: How finely it is cut.
 
     Returns:
         Vertices and triangles of each piece.

@@ -25,7 +25,7 @@ def assemble(
     fixed_base: bool = False,
     compound_margin: float = MARGIN,
 ) -> BodySpec:
-    """Flattens a robot for the engine.
+    """Convert a robot to a body for the engine.
 
     Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in
     the order of the file, except that a link never comes before its parent.

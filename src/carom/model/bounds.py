@@ -84,7 +84,7 @@ class Bounds(NamedTuple):
         return Bounds(*turned_box(self.center, self.half, rotation, position))
 
     def joined(self, other: Bounds) -> Bounds:
-        """Bounds of both boxes."""
+        """The bounding box of both boxes."""
         low = [
             min(a - h, b - k)
             for a, h, b, k in zip(self.center, self.half, other.center, other.half, strict=True)

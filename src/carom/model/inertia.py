@@ -213,7 +213,7 @@ def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3
 
 
 def _shape_terms(geometry: Geometry, implicit_cylinder: bool) -> MassTerms:
-    """Moments of one shape about the axes of its own frame."""
+    """Terms of the moments of one shape about the axes of its own frame."""
     match geometry:
         case Sphere(radius):
             ball = MassTerm(1.0, (0.4, radius, radius)), _NO_TERM

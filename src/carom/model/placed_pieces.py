@@ -38,7 +38,7 @@ class PlacedPiece:
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
-    """The pieces of all shapes of a link, which is the `index`-th of its body."""
+    """The pieces of all collision shapes of a link with this index in its body; the base is 0."""
     placed = []
     for collision in link.collisions:
         rotation, position = placement(link.inertial_frame, collision.frame)

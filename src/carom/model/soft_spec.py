@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-# Rows of `SoftSpec.spring_terms`.
+# Columns of `SoftSpec.spring_terms`.
 LENGTH, STIFFNESS, DAMPING = 0, 1, 2
 # Largest thickness, relative to the shortest edge.
 _SHARE_OF_EDGE = 0.4

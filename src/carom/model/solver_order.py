@@ -72,10 +72,10 @@ def batch_islands(tags: Sequence[int], minimum_size: int) -> list[tuple[int, int
 
 
 class IslandTags:
-    """Numbers of the islands of bodies that touch nothing.
+    """Island numbers of bodies that touch nothing.
 
-    Bullet numbers its moving collision objects (one per link) in list order and names an island
-    after the number of its last link; removed objects are replaced by the last of the list.
+    Bullet numbers its moving collision objects (one per link) in list order. The number of an island is that
+    of its last link. When an object is removed, the last in the list takes its place.
     """
 
     def __init__(self) -> None:
@@ -85,11 +85,11 @@ class IslandTags:
 
     @property
     def links(self) -> list[tuple[Hashable, int]]:
-        """Body and link, the base being 0, of every object in the order of the list."""
+        """Body and link (the base is 0) of every object, in the order of the list."""
         return [key for key, _ in self._objects]  # type: ignore[misc]
 
     def reorder(self, links: Sequence[tuple[Hashable, int]]) -> None:
-        """Put the objects in another order, given as `links` gives it.
+        """Put the objects in another order, given in the form of the property `links`.
 
         Raises:
             KeyError: There is no such link.
@@ -115,7 +115,7 @@ class IslandTags:
         return go_back
 
     def remove(self, body: Hashable, link_count: int) -> None:
-        """Take out the links of a body, base first."""
+        """Remove the links of a body, base first."""
         self.removal(body, link_count)()
 
     def removal(self, body: Hashable, link_count: int) -> Callable[[], None]:

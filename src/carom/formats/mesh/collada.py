@@ -194,7 +194,7 @@ class ColladaReader:
             else:
                 sizes = np.empty(0, dtype=np.int64) if counts is None else self._integers(counts)
             if sizes.sum() != len(corners) or (sizes < 0).any():
-                raise self.error(run, f"{len(corners)} corners do not fit the polygons announced")
+                raise self.error(run, f"{len(corners)} corners do not fit the sizes of the polygons")
             fans.append(cut_into_fans(corners, sizes))
         return np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
 

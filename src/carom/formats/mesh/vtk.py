@@ -1,7 +1,7 @@
 """Legacy VTK files in text form: tetrahedra of an unstructured grid.
 
 The format is that of "VTK File Formats", simple legacy formats: a header line with the version, a title,
-`ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Other cells than
+`ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Cells that are not
 tetrahedra, and data of points and cells, are ignored. Some of Bullet's own files have no space in the first
 line, a wrong total size after `CELLS`, or nothing after `CELL_TYPES`; they are read, too.
 """
@@ -54,7 +54,7 @@ def read_vtk(path: Path) -> TetraMesh:
 
 
 class _Sections:
-    """The words of a file, section by section."""
+    """Reads the sections of a file word by word."""
 
     def __init__(self, data: bytes, file: Path) -> None:
         self._file = file
@@ -100,7 +100,7 @@ class _Sections:
         self, points: NDArray[np.float64], cells: list[NDArray[np.int64]], kinds: NDArray[np.int64] | None
     ) -> TetraMesh:
         if kinds is not None and len(kinds) != len(cells):
-            raise self._wrong(f"there are {len(cells)} cells, and the types of {len(kinds)}")
+            raise self._wrong(f"there are {len(cells)} cells, but {len(kinds)} cell types")
         is_tetra = [len(cell) == 4 for cell in cells] if kinds is None else (kinds == TETRAHEDRON).tolist()
         chosen = [cell for cell, wanted in zip(cells, is_tetra, strict=True) if wanted]
         if any(len(cell) != 4 for cell in chosen):

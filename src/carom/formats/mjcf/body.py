@@ -43,7 +43,7 @@ _LEFT_OUT = ("light", "camera", "site", "freejoint", "composite", "flexcomp", "p
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The context of an element.
+    """What an element takes over from the elements that enclose it.
 
     Attributes:
         child_class: Class of defaults that the enclosing bodies set for it.
@@ -258,7 +258,7 @@ def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> Con
 
 
 def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
-    """The elements of a body or of the world, those in `<frame>` included, and their contexts."""
+    """The elements of a body or of the world, those in `<frame>` included, and their scopes."""
     for child in parent.children:
         if child.tag == "frame":
             child_class = child.attributes.get("childclass", scope.child_class)
@@ -269,7 +269,7 @@ def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iter
 
 
 def world_elements(context: MjcfContext, world: Element) -> Iterator[tuple[Element, Scope]]:
-    """The bodies, geoms and so on of a `<worldbody>`, and their contexts."""
+    """The bodies, geoms and so on of a `<worldbody>`, and their scopes."""
     return _without_frames(context, world, Scope())
 
 

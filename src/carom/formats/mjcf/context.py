@@ -25,7 +25,7 @@ class CompilerOptions:
     Attributes:
         degrees: Angles are in degrees; as in PyBullet, only if there is a `<compiler>`.
         global_frames: Positions and orientations are in world axes.
-        euler_sequence: Axes of Euler angles; capitals turn about fixed axes.
+        euler_sequence: Axes of Euler angles; upper case means fixed axes, lower case rotated axes.
         mesh_directory: Prefix of the file names of meshes.
         auto_limits: Joints with a range are limited.
         inertia_from_geoms: Inertia tensors in the file are ignored.

@@ -32,8 +32,8 @@ class FileContext:
         file: The file being read.
         root: The element that holds all others.
         scale: Factor on every length.
-        search: Where meshes and textures are looked for.
-        references: What each file name in the file was resolved to.
+        search: The search for meshes and textures.
+        references: The path that each file name in the file was resolved to; None if there is no such file.
         links_without_inertial: Names of links that got the default mass.
     """
 
@@ -81,7 +81,7 @@ class FileContext:
         return self.parse_number(element, key, text)
 
     def non_negative(self, element: Element, key: str) -> float:
-        """A required number that may not be below zero."""
+        """A required number that must not be negative."""
         value = self.value(element, key)
         if value < 0.0:
             raise self.error(element, f"{key}={value:g} must not be negative")
