@@ -24,7 +24,8 @@ class Robot:
         root: Index of the link without parent.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
-        deformable: Its description if it is a soft body; it then has one link of the same name and no joints.
+        deformable: Its description if it is a soft body; it then has a single link with the name of the
+            `<deformable>` or `<reduced_deformable>` element, and no joints.
     """
 
     name: str

@@ -16,7 +16,7 @@ Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
 SETTLED_NS = 2_000_000_000
-"""A file changed more recently than this could change again within the resolution of its time stamp."""
+"""A file changed more recently than this could change again without a new time stamp, which is coarse."""
 
 FRESH_NS = 60_000_000_000
 """A file written more recently than this may be a temporary one that is deleted soon."""
@@ -102,7 +102,7 @@ class FileCache(Generic[Key, Value]):
         self._lock = Lock()
 
     def get(self, key: Key, file: Path) -> Value | None:
-        """The value made from `file` under `key`, unless the file has changed or may have."""
+        """The value of `key`, made from `file`; None if there is none, or the file may have changed."""
         with self._lock:
             entry = self._entries.get(key)
             if entry is None:

@@ -20,7 +20,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     Entity declarations and external entities are refused; nothing but `data` is ever read.
 
     Args:
-        data: Content of the file, in UTF-8, or in Latin-1 where it is not.
+        data: Content of the file in UTF-8; content that is not valid UTF-8 is read as Latin-1.
         file: Named in errors.
 
     Returns:

@@ -45,7 +45,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
         points: (n, 3) positions, n at least 1. They may coincide, lie on a line or in a plane: then the
             hull is a slab around them, at most 0.2 mm thick.
         tolerance: Points outside the hull by less than this fraction of its size are left out.
-        most_vertices: Stop after so many vertices, at least 4; None for no bound.
+        most_vertices: Maximum number of vertices, at least 4; None for no limit.
 
     Returns:
         The hull; coplanar triangles are joined to polygons.

@@ -30,7 +30,7 @@ _HULL_GRID = 10216
 """Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""
 
 _UNBOUNDED = 1e30
-"""Half extent that stands for the infinite one of a plane [m]."""
+"""Half extent of planes [m]; large enough to represent an infinite one."""
 
 
 def turned_box(

@@ -81,7 +81,7 @@ class SoftSpec:
     def thickness(self) -> float:
         """Distance that nodes of soft bodies keep from its faces [m].
 
-        The margin, but at most a fraction of its shortest edge at rest; edges without length are ignored.
+        The margin, but at most a fraction of the shortest edge at rest; edges without length are ignored.
         """
         import numpy as np
 

@@ -43,7 +43,7 @@ _LEFT_OUT = ("light", "camera", "site", "freejoint", "composite", "flexcomp", "p
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What an element takes over from the elements that enclose it.
+    """Settings that an element takes from the elements that enclose it.
 
     Attributes:
         child_class: Class of defaults that the enclosing bodies set for it.
@@ -89,7 +89,7 @@ class ModelReader:
         """The robot whose root is this `<body>` of the world."""
         pose = self._read_body(element, scope, None)
         root = next(index for index in range(len(self.links)) if all(j.child != index for j in self.joints))
-        # PyBullet puts the centre of mass at the position that the file gives for the body's frame.
+        # PyBullet puts the inertial frame at the pose that the file gives for the body's frame.
         place = compose(pose, inverse(self.links[root].inertial.frame)) if root == 0 else IDENTITY
         return PlacedRobot(self._robot(root), place)
 

@@ -30,7 +30,7 @@ def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = No
         path: The file; looked up with `AssetSearch.find`.
         scale: Factor on every length (positions, shapes, limits of prismatic joints). Masses and
             inertia tensors stay as they are.
-        search: Where the file, its meshes and its textures are looked for.
+        search: Folders in which the file, its meshes and its textures are searched.
 
     Returns:
         The robot, its links and joints in file order.
