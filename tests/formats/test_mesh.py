@@ -196,7 +196,7 @@ class TestCollada:
     @pytest.mark.parametrize(
         ("before", "after", "words"),
         [
-            ("<COLLADA>", "<DAE>", "no <COLLADA>|is due"),
+            ("<COLLADA>", "<DAE>", "no <COLLADA>|does not match"),
             ('url="#g"', 'url="#h"', "no geometry 'h'"),
             ('url="#x"', 'url="#y"', "shows no triangles"),
             ('source="#s"', 'source="#t"', "no POSITION input"),
