@@ -32,7 +32,7 @@ FLAT = 1e-6
 """Relative thickness below which points count as lying in a plane, on a line or in one point."""
 
 THICKEST_SLAB = 1e-4
-"""Largest half thickness given to points that span no volume [m]."""
+"""Half thickness given to points that span no volume [m]; more only if they are more than 100 m apart."""
 
 _SLAB = 1e-3
 """Half thickness given to points that span no volume, relative to their size."""
@@ -43,7 +43,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
 
     Args:
         points: (n, 3) positions, n at least 1. They may coincide, lie on a line or in a plane: then the
-            hull is a slab around them, at most 0.2 mm thick.
+            hull is a slab around them, 0.2 mm thick or less; of points far apart, a millionth of their size.
         tolerance: Points outside the hull by less than this fraction of its size are left out.
         most_vertices: Maximum number of vertices, at least 4; None for no limit.
 
@@ -129,7 +129,7 @@ def _first_corners(points: Points, thin: float) -> list[int]:
 
 def _thickened(points: Points, corners: list[int], size: float) -> Points:
     """The points moved both ways along every direction in which they have no extent."""
-    half = min(THICKEST_SLAB, _SLAB * size) if size > 0.0 else THICKEST_SLAB
+    half = max(min(THICKEST_SLAB, _SLAB * size), FLAT * size) if size > 0.0 else THICKEST_SLAB
     spanned = points[corners[1:]] - points[corners[0]]
     for direction in _directions_beside(spanned):
         points = np.concatenate([points - half * direction, points + half * direction])
