@@ -33,5 +33,6 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
             return [PlacedRobot(read_urdf(source, search=search))]
         case suffix:
             raise DescriptionError(
-                f"files of type {suffix!r} are not known; known are .sdf, .xml and .urdf", file=source
+                f"files of type {suffix!r} are not known; known are .sdf, .world, .xml, .mjcf and .urdf",
+                file=source,
             )

@@ -334,9 +334,11 @@ def combine(operation: int, first: DeviceArray, second: DeviceArray) -> DeviceAr
         second: Right operand; the two shapes have to broadcast to each other.
 
     Raises:
-        ValueError: The shapes do not broadcast to each other.
+        ValueError: The shapes do not broadcast to each other, or have more than three axes.
     """
     shape = np.broadcast_shapes(first.shape, second.shape)
+    if len(shape) > _COMBINED_AXES:
+        raise ValueError(f"arrays of {len(shape)} axes cannot be combined; {_COMBINED_AXES} are the maximum")
     result = DeviceArray.zeros(shape, _REAL, first.device)
     if result.size:
         dim = (1,) * (_COMBINED_AXES - len(shape)) + shape

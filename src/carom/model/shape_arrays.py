@@ -349,7 +349,9 @@ class ShapeArrays:
         if len(pieces) != shapes.stop - shapes.start or not all(
             self._fits(placed.piece, row) for row, placed in enumerate(pieces, start=shapes.start)
         ):
-            raise ValueError("its hull would have a different number of corners")
+            raise ValueError(
+                "its shapes would be of another kind, or have another number of parts or corners"
+            )
         self.changes += 1
         body.bounds[link] = link_bounds(
             spec.collisions,

@@ -62,11 +62,6 @@ class SoftQueries:
         self._places = places
         self._present_poses = present_poses
 
-    @property
-    def any(self) -> bool:
-        """Whether there are soft bodies."""
-        return bool(self._soft.bodies)
-
     @cached_property
     def _find_touches(self) -> Launch:
         return self._structs.launch(find_touches_kernel, world=0)
